@@ -589,7 +589,7 @@ Other code follows the same rules:
 | beginning of a pass: reset of the bins, matrices of each structure multiplied and transposed, light | i860 code in the same manner |
 | receiving and sending of messages and chains | crates/pxpl5-gp/kernels/ring.s, ring_rules.md |
 | bin handoff for tokens | crates/pphigs/kernels/token.s |
-| frames in regions of 128 x 128 for faces of a cube and other displays | kernels/grid.s |
+| frames in regions of 128 x 128 for faces of a cube and other displays | kernels/picture.s and bins.s |
 | selection of the faces that a primitive may touch | crates/pphigs/kernels/sort.s, sort_rules.md |
 | window search for a strip of lines or a block | windows.s, windows_rules.md |
 | triangles between the views of a field's begin and end | compiled.s, between_rules.md |

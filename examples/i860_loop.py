@@ -1,4 +1,4 @@
-"""A loop on the graphics processor's i860: assemble, run, step, and where its clocks went."""
+"""A loop on the graphics processor's i860: assembles, steps and runs the code, and prints the clocks of each label."""
 
 import pxpl5
 

@@ -1,4 +1,4 @@
-"""My model on my machine: both pipelines, their latencies and their pixels."""
+"""Runs a model of your own on a machine of your own, with two pipelines, and prints latencies and pixels."""
 
 import sys
 
@@ -6,7 +6,7 @@ import numpy as np
 
 import pxpl5
 
-# A model file (PLY, OBJ or PDB), or vertices and triangles of NumPy: here a pyramid.
+# The model is a file (PLY, OBJ or PDB), or a pyramid from NumPy arrays of vertices and triangles.
 if len(sys.argv) > 1:
     model = pxpl5.Scene.load(sys.argv[1])
 else:

@@ -1,4 +1,4 @@
-"""A pipeline of my own: which renderer draws which region, decided by a function of mine in every frame."""
+"""A pipeline of your own: in every frame, a function assigns the regions of the picture to renderers."""
 
 import pxpl5
 
@@ -6,12 +6,12 @@ Answer = list[tuple[int, int]]
 
 
 def in_turn(frame: pxpl5.PolicyFrame) -> Answer:
-    """Region after region, renderer after renderer."""
+    """Assigns the regions in order to the renderers in turn."""
     return [(region, region % frame["renderers"]) for region in range(len(frame["primitives"]))]
 
 
 def heaviest_first(frame: pxpl5.PolicyFrame) -> Answer:
-    """The region with most primitives first, each to the renderer that has least to do."""
+    """Assigns the regions in order of their primitives, each to the renderer with the least work."""
     load = [0] * frame["renderers"]
     answer = []
     primitives = frame["primitives"]

@@ -1,4 +1,4 @@
-"""My recording of a head: what each pipeline makes of it, in pixels of error."""
+"""Runs pipelines with a recording of a head and prints their latencies and errors in pixels."""
 
 import sys
 
@@ -6,7 +6,7 @@ import numpy as np
 
 import pxpl5
 
-# A file of its own format, of EuRoC or TUM, or arrays: seconds, metres, quaternions with the real part first.
+# The recording is a file in the format of the emulator, of EuRoC or of TUM, or arrays of seconds, metres and quaternions (real part first).
 if len(sys.argv) > 1:
     motion = pxpl5.Motion.recording(sys.argv[1])
 else:

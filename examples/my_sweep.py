@@ -1,4 +1,4 @@
-"""A sweep: how latency grows with triangles and falls with graphics processors, as a table."""
+"""A sweep: a table of the latency for several numbers of triangles and graphics processors."""
 
 import pxpl5
 

@@ -150,7 +150,7 @@ fn of_run(outcome: &Outcome, blank: Row) -> Row {
     let shown = showings().into_iter().map(|(_, _, showing)| {
         let errors = PixelErrors::shown(outcome, showing);
         let device = EyeReport::shown(outcome, showing).and_then(|eye| eye.reprojection);
-        let is_known = errors.judged > 0;
+        let is_known = errors.evaluated > 0;
         Shown {
             mean_px: is_known.then_some(errors.pixels.mean),
             mean_deg: is_known.then_some(errors.degrees.mean),

@@ -97,7 +97,7 @@ fn measure(system: &str, setting: Option<(&str, &str)>, motion: &str) -> Result<
 fn of_run(outcome: &Outcome) -> Found {
     let seconds = outcome.fields() as f64 * outcome.field_ms() * 1e-3;
     let has_faces = outcome.pipeline().draws_faces();
-    let errors = outcome.pixel_errors().filter(|errors| errors.judged > 0);
+    let errors = outcome.pixel_errors().filter(|errors| errors.evaluated > 0);
     let arrivals = outcome.observation().arrivals.iter();
     let texels = arrivals.map(|arrival| {
         let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);

@@ -126,7 +126,7 @@
 //! All features are on by default. A crate that only runs experiments builds faster with `default-features = false`.
 //!
 //! Every number of the model has a unit, a provenance (published, derived, assumed) and a source.
-//! [`MachineConfig::parameters`] lists all of them.
+//! [`MachineConfig::parameters`] lists all these numbers.
 //!
 //! **Not modelled:** see the data sheet at the beginning of each board's crate. ACCURACY.md lists the results that
 //! differ from the papers.
@@ -159,7 +159,7 @@ pub use pxpl5_volume as volume;
 pub use pxpl5_wire::display;
 pub use tracking;
 
-/// Further parts of an outcome: faces around the head, updates, and texts about boards.
+/// Further parts of an outcome: cube faces around the viewer's head, updates, and texts about boards.
 pub mod run {
     pub use pxpl5_run::{
         ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, FrameStarts, KEPT_SAMPLES,

@@ -1,4 +1,4 @@
-//! Machines, their boards and displays, their parameters, and what was observed of them.
+//! Machines, their boards and displays, their parameters, and records of their boards during a run.
 
 /// ```
 /// use pxpl5::{MachineConfig, Parameter};
@@ -111,17 +111,17 @@ pub use pxpl5_machine::{Blocked, RunError};
 pub use pxpl5_machine::Optimization;
 
 /// ```
-/// use pxpl5::{MachineConfig, ParameterInfo, ParameterTable, Standing, Value};
+/// use pxpl5::{MachineConfig, ParameterInfo, ParameterTable, Provenance, Value};
 ///
 /// let machine = MachineConfig::small_hmd();
 /// // A table is read by names too. Each entry states where its value comes from.
 /// let word: &ParameterInfo = machine.ring.entries()[0].info;
 /// assert_eq!(machine.ring.get(word.name)?, word.papers);
-/// assert_eq!("published".parse(), Ok(Standing::Published));
+/// assert_eq!("published".parse(), Ok(Provenance::Published));
 /// assert_eq!(Value::Whole(50).to_string(), "50");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_sim::parameters::{ParameterInfo, ParameterTable, Standing, Value};
+pub use pxpl5_sim::parameters::{ParameterInfo, ParameterTable, Provenance, Value};
 
 /// ```
 /// use pxpl5::{Board, Level, NameError, TextError};

@@ -194,7 +194,7 @@ pub use pxpl5_measure::HeadSum;
 ///     fn take(&mut self, results: &FinalResults<'_>) {
 ///         self.0 += results.pictures.len();
 ///     }
-///     fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+///     fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
 ///         Box::new(self.0)
 ///     }
 /// }
@@ -203,7 +203,7 @@ pub use pxpl5_measure::HeadSum;
 /// let scene = scene::builtin("full-screen:12")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
 /// let outcome = experiment.keep(Keep::Statistics).observed_by(Some(begin)).run()?;
-/// assert!(outcome.said::<usize>().is_some_and(|pictures| *pictures > 0));
+/// assert!(outcome.observed::<usize>().is_some_and(|pictures| *pictures > 0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_run::{FinalResults, ObserverFactory, StreamingObserver};

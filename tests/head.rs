@@ -71,7 +71,7 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
         let head = report.head.expect("a motion was given");
         let row = comparison.row(name).expect("a row for each");
         assert!(row.error.n > 0, "{name}");
-        assert_eq!((head.error.pixels.mean, head.error.judged), (row.error.mean_px.mean, row.error.n), "{name}");
+        assert_eq!((head.error.pixels.mean, head.error.evaluated), (row.error.mean_px.mean, row.error.n), "{name}");
         assert_eq!((head.error.pixels.p99, head.end_to_end), (row.error.pixels.p99, row.end_to_end), "{name}");
         assert_eq!(report.updates_hz, Some(row.updates_hz.mean), "{name}");
         assert_eq!(head.end_to_end.n, row.head_to_light_ms.n, "{name}");

@@ -6,7 +6,7 @@ fn report(settings: &[&str]) -> Report {
     let mut file = ExperimentFile::default();
     let usual =
         ["pipeline=jitp-field", "scene=full-screen:2", "fields=40", "head.motion=pan:40", "head.tracker=optical"];
-    for setting in usual.iter().chain(&["head.predict=none", "head.judge_at=1000"]).chain(settings) {
+    for setting in usual.iter().chain(&["head.predict=none", "head.evaluate_at=1000"]).chain(settings) {
         file.set_text(setting, "test").unwrap_or_else(|error| panic!("{error}"));
     }
     let plan = file.resolve().unwrap_or_else(|error| panic!("{error}"));

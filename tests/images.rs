@@ -29,8 +29,8 @@ struct Subject {
 
 const SUBJECTS: [Subject; 4] = [
     Subject { scene: "mig", piece: [200, 120, 256, 200], fields: 60 },
-    // Under Slats, a picture of this scene takes four fields. After so many fields, both halves of the frame have been
-    // drawn.
+    // Under Slats, a picture of this scene takes four fields. After this number of fields, both halves of the frame
+    // have been drawn.
     Subject { scene: "molecules", piece: [180, 130, 240, 180], fields: 90 },
     Subject { scene: "head", piece: [120, 60, 320, 260], fields: 160 },
     Subject { scene: "full-screen:12", piece: [288, 208, 64, 64], fields: 60 },

@@ -278,7 +278,7 @@ fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
 fn a_perfect_tracker_and_a_still_head_leave_no_error() {
     let outcome = run(Slats::split(), perfect(Still(Pose::at(DVec3::new(0.3, 0.1, 0.2)))), 60);
     let errors = PixelErrors::of(&outcome);
-    assert!(errors.judged > 500 && errors.pixels.max < 1e-6, "{errors:?}");
+    assert!(errors.evaluated > 500 && errors.pixels.max < 1e-6, "{errors:?}");
 }
 
 #[test]
@@ -359,7 +359,7 @@ fn every_pipeline_goes_on_when_the_tracker_fails() {
             let outcome = experiment.head(Arc::clone(&head)).fields(45).pixels(Pixels::Off).run().expect(entry.name);
             let errors = PixelErrors::of(&outcome);
             let Percentiles { mean, max, .. } = errors.pixels;
-            assert!(mean.is_finite() && max.is_finite() && errors.judged > 100, "{} {errors:?}", entry.name);
+            assert!(mean.is_finite() && max.is_finite() && errors.evaluated > 100, "{} {errors:?}", entry.name);
         });
     }
 }

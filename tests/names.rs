@@ -7,8 +7,8 @@ use pxpl5::tracking::motion::{Axes, Columns, End};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::{
     Aim, Board, Cause, Code, CodeVersion, CopySchedule, DisplayEntry, Every, Eye, Fingerprint, FinishedRegions,
-    HeadPlace, Keep, Level, Measure, NameError, Optimization, PRESETS, PipelineEntry, Pixels, Preset, QUANTITIES,
-    Raster, RegionBinning, Registry, Reprojection, Resource, SlatsLighting, Standing, TestScene, TraceHash, Warp,
+    HeadPlace, Keep, Level, Measure, NameError, Optimization, PRESETS, PipelineEntry, Pixels, Preset, Provenance,
+    QUANTITIES, Raster, RegionBinning, Registry, Reprojection, Resource, SlatsLighting, TestScene, TraceHash, Warp,
 };
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -91,7 +91,7 @@ fn every_public_name_is_read_as_it_is_written() {
     round_trip(Resource::ALL);
     listed(Stage::ALL);
     listed(StageEdge::ALL);
-    listed(Standing::ALL);
+    listed(Provenance::ALL);
     assert_eq!("00f0".parse::<TraceHash>().map(|hash| hash.to_string()), Ok("00000000000000f0".to_owned()));
     let hash = Fingerprint::of(b"a");
     assert_eq!(hash.to_string().parse(), Ok(hash));

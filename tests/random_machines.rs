@@ -180,7 +180,8 @@ fn assert_no_shown_buffer_is_written(outcome: &Outcome, told: &str) {
             assert_eq!(first, last, "{told}: swapped while {:?} came", arrival.target.region);
             (u64::from(arrival.target.buffer) + first as u64) % 2
         });
-        // The buffers take turns, so the number of swaps tells which buffer is hidden during all regions of a frame.
+        // The buffers take turns, so the number of swaps determines which buffer is hidden during all regions of a
+        // frame.
         let which: Vec<u64> = written.collect();
         assert!(which.iter().all(|buffer| *buffer == which[0]), "{told}: {surface:?}");
     }
@@ -192,7 +193,8 @@ fn the_rules_of_the_ring_hold_and_every_region_arrives_on_random_machines() {
     let (mut ran, mut swapped) = (0, 0);
     each_case(60, SHORT, |experiment, told| {
         let (outcome, error) = outcome(experiment, told);
-        // A machine that a pipeline cannot use must be refused with a reason. It must never come to a deadlock.
+        // A machine that a pipeline cannot use must be refused with a reason. Such a machine must never come to a
+        // deadlock.
         assert!(!matches!(error, Some(RunError::Deadlock { .. } | RunError::Ring { .. })), "{told}: {error:?}");
         assert_the_ring_is_a_ring(&outcome, told);
         assert_every_region_arrives_once(&outcome, told);
@@ -317,11 +319,11 @@ fn assert_errors_are_of_what_was_shown(report: &Value, told: &str) {
         Value::Null => 0,
         window => whole(&window["last_period"], "last", told) + 1 - whole(&window["first_period"], "first", told),
     };
-    let all = ["judged", "behind", "empty", "incomplete", "before"].map(of).iter().sum::<u64>();
+    let all = ["evaluated", "behind", "empty", "incomplete", "before"].map(of).iter().sum::<u64>();
     assert_eq!(all, 25 * periods, "{told}: {error}");
-    assert_eq!(error["pixels"]["n"], of("judged"), "{told}");
+    assert_eq!(error["pixels"]["n"], of("evaluated"), "{told}");
     let shown = report["due"]["shown"].as_u64().unwrap_or(1);
-    assert!(shown > 0 || (of("judged"), of("behind")) == (0, 0), "{told}: {error}");
+    assert!(shown > 0 || (of("evaluated"), of("behind")) == (0, 0), "{told}: {error}");
     let budget = &report["head"]["end_to_end"];
     let stages = ["tracking_ms", "waiting_ms", "sending_ms", "drawing_ms", "showing_ms", "scanning_ms"];
     let sum = stages.map(|stage| number(&budget[stage])).into_iter().sum::<Option<f64>>();

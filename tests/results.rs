@@ -148,7 +148,7 @@ fn mean_ms(report: &Report, of: &str, until: &str) -> f64 {
 fn the_latencies_of_the_eyes_lie_between_their_events() {
     let outcome = stereo();
     let report = outcome.report();
-    // The latency of a frame is that of the pair: from its first TRANSFORM to the swap.
+    // The latency of a frame is the latency of the pair: from its first TRANSFORM to the swap.
     assert!((mean_ms(&report, "pair", "swap") - report.latency_ms.statistics.mean).abs() < 1e-9);
     let pictures = outcome.steady_pictures().iter();
     let to_copy: Vec<f64> =

@@ -1,4 +1,5 @@
-//! One eye's picture of a scene by the software renderers `euc` and `retrofire`, and by what the emulated machine computes without its times.
+//! One eye's picture of a scene by the software renderers `euc` and `retrofire`, and by the computations of the
+//! emulated machine without its times.
 
 use euc::buffer::Buffer2d;
 use euc::rasterizer::{BackfaceCullingDisabled, Triangles};
@@ -24,7 +25,7 @@ use std::sync::Arc;
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;
 
-/// Views in turn, more than the display list remembers, so that nothing is drawn from memory.
+/// Number of views that are drawn in turn. The display list stores the results of fewer views, so no result is reused.
 const VIEWS: u64 = 8;
 
 pub(crate) fn views(head: &Scene) -> Vec<EyeView> {

@@ -1,7 +1,7 @@
 //! Finds the commit from which the command is built, and sets PXPL5_COMMIT and PXPL5_SHORT_COMMIT for the compiler.
 //!
-//! A package from a registry has `.cargo_vcs_info.json`. In a clone, Git is asked. If neither is there, the commit is
-//! `unknown`: a build must not fail for that reason.
+//! A package from a registry has `.cargo_vcs_info.json`. In a clone, Git names the commit. If the crate has neither the
+//! file nor a clone, the commit is `unknown`: a build must not fail because no commit was found.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -52,7 +52,8 @@ fn of_clone(crate_folder: &Path) -> Option<(String, bool)> {
     Some((digits, !changes.is_empty()))
 }
 
-/// Makes Cargo run the script again when a file or folder changes. A missing path would make it run at every build.
+/// Makes Cargo run the script again when a file or folder changes. A missing path would make the script run at every
+/// build.
 fn watch(path: &Path) {
     if path.exists() {
         println!("cargo:rerun-if-changed={}", path.display());

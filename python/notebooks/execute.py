@@ -1,7 +1,7 @@
-"""Executes the notebooks at a small size and keeps what they draw under target/notebooks, to be looked at.
+"""Executes the notebooks at a small size and writes their pictures to target/notebooks.
 
-``python python/notebooks/execute.py [NAME ...]``; without names all. It ends with 1 when a cell fails or
-warns, and when a notebook draws nothing.
+``python python/notebooks/execute.py [NAME ...]``; without names, all notebooks. The exit code is 1 if a cell fails or warns, or if a
+notebook draws no picture.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ OUT = HERE.parents[1] / "target/notebooks"
 
 
 def kept(notebook: nbformat.NotebookNode, name: str) -> int:
-    """Writes the pictures of a notebook as files; so many there are."""
+    """Writes the pictures of a notebook to files. Returns the number of pictures."""
     count = 0
     for cell in notebook.cells:
         for output in cell.get("outputs", []):
@@ -35,7 +35,7 @@ def kept(notebook: nbformat.NotebookNode, name: str) -> int:
 
 
 def warnings_of(notebook: nbformat.NotebookNode) -> str:
-    """What the cells of a notebook wrote to standard error, without progress bars."""
+    """Returns the output of a notebook's cells on standard error, without progress bars."""
     streams = [output for cell in notebook.cells for output in cell.get("outputs", []) if output.output_type == "stream"]
     lines = [line for stream in streams if stream.name == "stderr" for line in re.split(r"[\r\n]", stream.text)]
     # A bar of tqdm has its time in brackets: `12 fields [00:01, 11.8 fields/s]`.
@@ -43,7 +43,7 @@ def warnings_of(notebook: nbformat.NotebookNode) -> str:
 
 
 def execute(path: Path) -> None:
-    """Executes a notebook; raises what a cell raises, and ends the program when a cell warns or a private name is imported."""
+    """Executes a notebook. Raises exceptions of cells. Ends the program if a cell warns or imports a private name."""
     notebook = nbformat.read(path, as_version=4)
     if any("pxpl5._" in cell.source for cell in notebook.cells):
         raise SystemExit(f"{path.name} imports a private module")
@@ -58,7 +58,7 @@ def execute(path: Path) -> None:
 
 
 def main() -> None:
-    """Executes those that are named, or all."""
+    """Executes the notebooks that are named on the command line, or all."""
     os.environ["PXPL5_SMALL"] = "1"
     OUT.mkdir(parents=True, exist_ok=True)
     names = sys.argv[1:] or sorted(path.name for path in HERE.glob("*.ipynb"))

@@ -1,7 +1,7 @@
-"""Pixel-Planes 5 and its low-latency rendering pipelines, emulated cycle by cycle.
+"""A cycle-accurate emulator of Pixel-Planes 5 and its low-latency rendering pipelines.
 
-An :class:`Experiment` runs a pipeline with a scene on a machine, and gives an :class:`Outcome`: latencies, pictures, and everything that
-was observed::
+An :class:`Experiment` runs a pipeline with a scene on a machine and returns an :class:`Outcome` with latencies, pictures and all
+observations of the run::
 
     import pxpl5
 
@@ -9,10 +9,12 @@ was observed::
     outcome.latency_fields.mean      # 1.0: one field, always
     outcome.picture("left").array    # (480, 640, 3) uint8
 
-Times are simulated time unless a name says host. Lengths are metres, angles degrees; axes are right-handed, y up. Numbers of the machine
-have a unit, a standing (published, derived, assumed), a range and a source: :attr:`Machine.parameters`.
+All times are simulated time, except values whose names contain "host". Lengths are in metres and angles in degrees. Axes are
+right-handed, with y up. Each number of the machine has a unit, a provenance (``provenance``: published, derived or assumed), a range and
+a source: see :attr:`Machine.parameters`.
 
-Everything that this package raises by itself is a :class:`Pxpl5Error`, with the words of the library: what, where, expected, found.
+All exceptions of this package are subclasses of :class:`Pxpl5Error`. The message states the setting, its place, the expected value
+and the found value.
 """
 
 from ._drawing import Drawing

@@ -36,7 +36,7 @@ def names(name: str, value: str | Iterable[str]) -> list[str]:
 
 
 def choice(name: str, value: object, expected: Iterable[str]) -> str:
-    """Returns an argument that is one of some names; raises :class:`SettingError` with all of them."""
+    """Returns an argument if it is one of the expected names; otherwise raises :class:`SettingError` with all names."""
     known = list(expected)
     if isinstance(value, str) and value in known:
         return value
@@ -44,7 +44,7 @@ def choice(name: str, value: object, expected: Iterable[str]) -> str:
 
 
 class Strict:
-    """Base of classes whose objects refuse new attributes, so that a misspelled attribute does not go unnoticed."""
+    """Base of classes whose objects refuse new attributes, so a misspelled attribute raises an exception."""
 
     #: Names of public attributes that objects have besides the properties of their class.
     _fields: ClassVar[tuple[str, ...]] = ()

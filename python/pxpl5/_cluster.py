@@ -1,19 +1,19 @@
-"""Points of a sweep on the workers of a Dask cluster.
+"""Computation of the points of a sweep on the workers of a Dask cluster.
 
 ::
 
     client --- chunk (numbers of points) ---> scheduler ---> worker
     client <-- rows, several times a second -- scheduler <--- worker
 
-What keeps a sweep going on a cluster whose workers die:
+A sweep continues if workers die, for three reasons:
 
-- Rows go to the client as they are finished, as messages, and are in the folder at once. They are no results of Dask tasks: such a
-  result stays in its worker's memory until somebody fetches it, is lost with the worker, and whoever fetches it from a worker that
-  has just died waits until the connection times out.
-- A chunk is as long as the scheduler needs it to be and no longer, by the analytic level's estimate, corrected by how long points have
-  taken on these workers so far. So a worker that dies takes little work with it.
-- Dask hands a chunk to another worker when its worker dies. When it gives a chunk up (``distributed.scheduler.allowed-failures``), the
-  points of it that have no row are handed out in halves.
+- Workers send finished rows to the client as messages, and the client writes the rows to the folder at once. Rows are not results of
+  Dask tasks. A result of a task stays in the memory of the worker until a client fetches the result, and is lost with the worker. A
+  client that fetches a result from a dead worker waits until the connection times out.
+- Chunks are only as long as the scheduler needs, so little work is lost with a worker. The length of a chunk comes from the estimate of
+  the analytic level, corrected by the measured times of finished points.
+- If a worker dies, Dask gives its chunk to another worker. After several failures (``distributed.scheduler.allowed-failures``) Dask
+  gives up the chunk. The client then divides the points without a row into two new chunks.
 """
 
 from __future__ import annotations
@@ -36,39 +36,39 @@ from ._space import SweepSpace, sweep_of_text
 if TYPE_CHECKING:
     from distributed import Client
 
-#: Seconds of work that a worker is given at a time: far above what handing it out costs (some milliseconds).
+#: Seconds of work in a chunk. The transfer of a chunk costs only some milliseconds.
 CHUNK_S = 0.5
 
-#: Seconds from one message with rows to the next: what a dying worker may lose besides the point in its hand.
+#: Seconds between two messages with rows. If a worker dies, the rows of this time are lost, and the current point.
 ROWS_S = 0.25
 
-#: Seconds that a chunk must be long for each thread of the cluster, so that scheduler and client have half their time to spare: twice what they
-#: spend on a chunk with its messages. Measured: docs/sweeps.md, "A million points".
+#: Least seconds of a chunk for each thread of the cluster. This is twice the time that scheduler and client spend on a chunk with its
+#: messages, so scheduler and client are busy for at most half of the time. Measured: docs/sweeps.md, "A million points".
 HANDING_S = 7e-3
 
-#: Seconds that the estimate of a point takes, about (measured there), and which part of its time the client may estimate.
+#: Approximate seconds for the estimate of a point (docs/sweeps.md), and the greatest share of its time that the client spends on estimates.
 ESTIMATE_S = 8e-4
 ESTIMATING = 0.1
 
-#: Most points of a chunk.
+#: Greatest number of points in a chunk.
 MOST_POINTS = 1_000
 
-#: Chunks that wait for each thread of the cluster, besides the one that it works on.
+#: Number of waiting chunks for each thread of the cluster, in addition to the chunk in progress.
 WAITING = 1
 
-#: How often Dask may give up a chunk of one point before the sweep is given up: each time some workers (four, unless its configuration
-#: says otherwise) have died over it, and a hundred are not chance.
+#: Number of times that Dask gives up a chunk of one point before the sweep fails. Each time, four workers have died (the default of
+#: Dask). A hundred dead workers are not chance.
 MOST_GIVEN_UP = 25
 
-#: Points whose costs are estimated at a time.
+#: Number of points whose costs are estimated together.
 ESTIMATED = 100
 
-#: Seconds from one look at how many threads the cluster has to the next.
+#: Seconds between two queries of the cluster's number of threads.
 LOOK_S = 2.0
 
 
 def compute(text: str, path: str, points: list[int], topic: str, every_s: float) -> None:
-    """What a worker does with a chunk: it sends the rows of its points under a topic, every so many seconds those that are finished."""
+    """Computes a chunk on a worker. Every ``every_s`` seconds, the worker sends the finished rows under a topic."""
     from distributed import get_worker
 
     worker = get_worker()
@@ -79,7 +79,7 @@ def compute(text: str, path: str, points: list[int], topic: str, every_s: float)
         points = points[len(rows) :]
 
 
-#: Sweeps that this process has made already, by text and path: a worker makes each once, and loads each scene once.
+#: Sweeps that this process has built, by text and path. So a worker builds each sweep and loads each scene only once.
 _KNOWN: dict[tuple[str, str], _native.Sweep] = {}
 
 
@@ -91,31 +91,31 @@ def _sweep(text: str, path: str) -> _native.Sweep:
 
 
 def packed(rows: list[tuple[str, float]]) -> bytes:
-    """Rows as a message: the scheduler keeps the last thousand of them, and rows of one sweep are much alike."""
+    """Returns rows as a compressed message. The scheduler keeps the last thousand messages, and rows of a sweep compress well."""
     return zlib.compress(json.dumps(rows).encode(), 1)
 
 
 def unpacked(message: bytes) -> list[tuple[str, float]]:
-    """The rows of a message."""
+    """Returns the rows of a message."""
     return [(line, seconds) for line, seconds in json.loads(zlib.decompress(message))]
 
 
 @dataclass
 class Pace:
-    """How many seconds points take on the cluster for one that was estimated: old points count less and less.
+    """Ratio of measured to estimated seconds of points on the cluster. Old points have less weight than new points.
 
-    Before anything is known a point is taken to need four times its estimate, so that the first chunks are short.
+    The initial ratio is 4, so the first chunks are short.
     """
 
-    #: Seconds that points took.
+    #: Weighted sum of the measured seconds of points.
     measured_s: float = 4e-3
-    #: Seconds that were estimated for them.
+    #: Weighted sum of the estimated seconds of the same points.
     estimated_s: float = 1e-3
-    #: How many they were.
+    #: Weighted number of these points.
     points: float = 0.0
 
     def learn(self, measured_s: float, estimated_s: float) -> None:
-        """Takes a point in."""
+        """Adds the times of a finished point."""
         weight = 1 - min(1.0, measured_s / (20 * CHUNK_S))
         self.measured_s = self.measured_s * weight + measured_s
         self.estimated_s = self.estimated_s * weight + estimated_s
@@ -123,41 +123,42 @@ class Pace:
 
     @property
     def ratio(self) -> float:
-        """Measured seconds for one that was estimated."""
+        """Measured seconds for each estimated second."""
         return self.measured_s / self.estimated_s
 
     @property
     def point_s(self) -> float:
-        """Seconds of a point in the mean; without end before anything is known."""
+        """Mean seconds of a point; infinite before the first point is finished."""
         return self.measured_s / self.points if self.points else float("inf")
 
 
 @dataclass
 class Chunks:
-    """Points that nobody has been given yet, as chunks made when they are asked for."""
+    """Points that no worker has yet. They are divided into chunks on demand."""
 
     space: SweepSpace
     #: Numbers of the points, in order.
     points: list[int]
     pace: Pace = field(default_factory=Pace)
     _at: int = 0
-    #: Points whose costs are estimated, and the costs; those before `_at` are handed out and have no row yet.
+    #: Estimated costs of points in seconds. Points before `_at` are assigned to workers and have no row yet.
     _costs: dict[int, float] = field(default_factory=dict)
 
     def cost(self, point: int) -> float:
-        """What a point was estimated to take, seconds; known of points that have been handed out and not learnt of."""
+        """Estimated seconds of a point that is assigned to a worker and not finished."""
         return self._costs[point]
 
     def learn(self, point: int, measured_s: float) -> None:
-        """Takes in how long a point took. A point may come twice."""
+        """Adds the measured time of a point. A point that comes twice counts once."""
         estimated_s = self._costs.pop(point, None)
         if estimated_s is not None:
             self.pace.learn(measured_s, estimated_s)
 
     def next(self, most_s: float, threads: int = 1) -> list[int]:
-        """The next points, at least one, that take about ``most_s`` seconds at most; none when all are handed out.
+        """Returns the next points whose estimated times add up to at most ``most_s`` seconds, but at least one point.
 
-        Where so many threads take points faster than all can be estimated, one point of several is, and the next are taken to cost the same.
+        The list is empty if all points are assigned. If many threads compute points faster than the client can estimate their costs, the
+        client estimates only one of several points. The following points then get the same cost.
         """
         chunk: list[int] = []
         left_s = most_s
@@ -208,7 +209,7 @@ class Submitting(Protocol):
 
 
 class Cluster:
-    """A sweep on a cluster while it goes on."""
+    """A running sweep on a cluster."""
 
     def __init__(
         self, space: SweepSpace, store: _native.Store, client: Client, told: Callable[[int, int], object] | None
@@ -220,21 +221,21 @@ class Cluster:
         missing = store.missing()
         self._missing = set(missing)
         self._chunks = Chunks(space, missing)
-        #: Chunks that were given up, to be handed out before others.
+        #: Chunks that Dask gave up. They are assigned before other chunks.
         self._again: list[list[int]] = []
         self._given: dict[object, tuple[Future, list[int]]] = {}
         self._made = 0
         self._lost_alone: dict[int, int] = {}
-        #: Messages with rows, and futures that ended, in the order in which they came.
+        #: Messages with rows, and finished futures, in the order of their arrival.
         self._news: queue.SimpleQueue[bytes | Future] = queue.SimpleQueue()
         self._threads = 1
         self._looked_s = float("-inf")
         self._topic = f"pxpl5-{uuid.uuid4().hex}"
 
     def run(self) -> None:
-        """Computes all points that are missing. What has come when an exception ends it is in the store.
+        """Computes all missing points. After an exception, the store has the rows that arrived before.
 
-        Raises :class:`SweepError` for a point over which worker after worker dies, and what a worker raises.
+        Raises :class:`SweepError` if many workers die while they compute the same point, and exceptions of workers.
         """
         self._client.subscribe_topic(self._topic, self._heard)
         try:
@@ -245,11 +246,11 @@ class Cluster:
             self._client.cancel([future for future, _ in self._given.values()])
 
     def _heard(self, event: tuple[float, bytes]) -> None:
-        """Called by the client's own thread with the time of a message, and the message."""
+        """Receives the time of a message and the message, in the client's own thread."""
         self._news.put(event[1])
 
     def _hand_out(self) -> bool:
-        """Gives the cluster as much as it should have; whether it has anything to do."""
+        """Assigns chunks until each thread has enough. Returns true if the cluster has work."""
         threads = self._cluster_threads()
         chunk_s = max(CHUNK_S, threads * HANDING_S)
         while len(self._given) < threads * (1 + WAITING):
@@ -268,7 +269,7 @@ class Cluster:
         future.add_done_callback(self._news.put)
 
     def _cluster_threads(self) -> int:
-        """Threads of all workers; of a cluster that has none just now, as many as it had."""
+        """Returns the number of threads of all workers, or the previous number if the cluster has no worker now."""
         now_s = time.monotonic()
         if now_s - self._looked_s > LOOK_S:
             self._looked_s = now_s
@@ -290,7 +291,7 @@ class Cluster:
             self._told(self._space.points - len(self._missing), self._space.points)
 
     def _end(self, future: Future) -> None:
-        """Of a chunk that ended: its rows came before this news, on the same way. What has none is handed out again."""
+        """Handles the end of a chunk. Its rows have arrived before. Points without a row are assigned again."""
         from distributed import KilledWorker
 
         _, chunk = self._given.pop(future.key)

@@ -1,4 +1,4 @@
-"""Drawings as SVG, which notebooks show."""
+"""Drawings in the format SVG."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from ._checks import Strict, names
 
 
 class Drawing(Strict):
-    """A drawing as SVG, which notebooks show."""
+    """A drawing in the format SVG. Notebooks show the drawing."""
 
     _fields = ("svg",)
 
     def __init__(self, svg: str) -> None:
-        #: The document.
+        #: The text of the SVG document.
         self.svg = svg
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes it as a file; raises OSError when it cannot be written."""
+        """Writes the drawing to a file. Raises OSError if the file cannot be written."""
         Path(path).write_text(self.svg, encoding="utf-8")
 
     def _repr_svg_(self) -> str:
-        """For notebooks, which want the element alone."""
+        """Returns the SVG element without the XML header, as notebooks need it."""
         return self.svg[self.svg.index("<svg") :]
 
     def __repr__(self) -> str:

@@ -10,11 +10,11 @@ if TYPE_CHECKING:
 
 
 class Pxpl5Error(Exception):
-    """Base class of all exceptions that this package raises by itself."""
+    """Base class of all exceptions of this package."""
 
 
 class SettingError(Pxpl5Error, ValueError):
-    """A wrong setting, name, file or array. The message names it, with the expected and the found value."""
+    """A wrong setting, name, file or array. The message names the wrong input, the expected value and the found value."""
 
 
 class UnknownNameError(SettingError, AttributeError):
@@ -37,9 +37,9 @@ class RunError(Pxpl5Error, RuntimeError):
     """A run that ended early, or a processor that trapped."""
 
     _native: _native.Outcome | None = None
-    #: Number of fields after which a picture behind the warm-up would have been shown, by a closed form; None if unknown.
+    #: Number of fields that the run needs to show a picture after the warm-up, by a formula; None if unknown.
     fields_needed: int | None = None
-    #: All observations until the error; None if there are none.
+    #: Outcome with all observations before the error; None without observations.
     partial: Outcome | None = None
 
 

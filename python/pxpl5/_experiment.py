@@ -1,4 +1,4 @@
-"""Experiments: a machine, a pipeline, a scene and a head, given as keywords or as an experiment file."""
+"""Experiments. An experiment has a machine, a pipeline, a scene and a head, given as keywords or as an experiment file."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from ._rows import ParameterRow, WhatIfRow
     from ._saved import ExperimentState
 
-#: A function that gets a frame and returns (region, renderer) for every region, in the order of sending.
+#: A function that takes a frame and returns a pair (region, renderer) for every region, in the order of sending.
 Policy = Callable[[PolicyFrame], Sequence[tuple[int, int]]]
 
 
 class Made:
-    """Settings as the library takes them, with what cannot be named in them."""
+    """Settings in the form of the library, and the objects that have no name in the settings."""
 
     def __init__(self) -> None:
         self.settings = _native.Settings()
@@ -41,7 +41,7 @@ class Made:
         self.phong = True
 
     def put(self, path: str, value: object) -> None:
-        """Sets a path."""
+        """Sets the value of a key."""
         self.settings.set(f"{path}={toml_of(value)}", f"keyword {path}")
 
     def put_all(
@@ -52,7 +52,7 @@ class Made:
         head: str | Head | None,
         keys: Mapping[str, object],
     ) -> None:
-        """Sets what keywords say; a key whose value is None is not set."""
+        """Sets the values of keywords. A keyword with the value None is ignored."""
         self._put_pipeline(pipeline)
         self._put_scene(scene)
         self._put_machine(machine)
@@ -63,7 +63,7 @@ class Made:
 
     def _put_pipeline(self, pipeline: str | PolicyPipeline | None) -> None:
         if isinstance(pipeline, PolicyPipeline):
-            # What the firmware is told apart by is its own; keys and checks are those of the nearest in the registry.
+            # The registry has no entry for a policy, so keys and checks come from the entry of Rendering Control.
             self.policy = pipeline.policy
             self.phong = pipeline.shading == "phong"
             self.put("pipeline", "rendering-control")
@@ -102,7 +102,7 @@ class Made:
             raise SettingError(f"machine: expected the name of a preset or a Machine, found {machine!r}")
 
     def check_scene(self, keys: Mapping[str, object]) -> None:
-        """A scene that was given as such is drawn as it is."""
+        """Refuses keys that would change a :class:`Scene` object."""
         given = [key for key in ("triangles", "cull", "fit") if keys.get(key) is not None]
         if self.scene is not None and given:
             methods = "Scene.decimated, Scene.culled or the scene's own fit"
@@ -110,14 +110,21 @@ class Made:
 
 
 class PolicyPipeline(Strict):
-    """A pipeline of one's own: one graphics processor draws mono frames, and a callable says which renderer draws what.
+    """A pipeline in which a callable, the *policy*, assigns the regions of each frame to renderers.
 
-    ``policy(frame)`` is asked when TRANSFORM is done. ``frame`` is a dictionary: ``frame`` (its number), ``time_s`` (simulated
-    seconds), ``columns`` (regions in a row), ``primitives`` (a list, how many each region has, row by row) and ``renderers`` (how
-    many there are). It returns a list of (region, renderer) with every region once, in the order in which they are sent.
+    One graphics processor draws frames for one eye. After TRANSFORM of a frame, the pipeline calls ``policy(frame)``. ``frame`` is a
+    dictionary with these keys:
 
-    What it raises ends the run, and is raised there. The same frame must always get the same answer: a run may be repeated to tell
-    whether it is stuck, or when views are seen.
+    - ``frame``: number of the frame.
+    - ``time_s``: simulated time in seconds.
+    - ``columns``: number of regions in a row of the screen.
+    - ``primitives``: list with the number of primitives of each region, row by row.
+    - ``renderers``: number of renderers.
+
+    The policy returns a list of pairs (region, renderer). The list has each region once, in the order in which the regions are sent.
+
+    An exception of the policy ends the run, and :meth:`Experiment.run` raises the exception. The policy must always return the same
+    list for the same frame, because a run can be repeated: to detect a deadlock, or as a dry run before prediction.
     """
 
     _fields = ("policy", "shading")
@@ -135,13 +142,17 @@ class Experiment(Strict):
 
     - ``pipeline``: a name of :func:`pipelines`, or a :class:`PolicyPipeline`.
     - ``scene``: a built-in name, the path of a model file (PLY, OBJ, STL, PDB), or a :class:`Scene`.
-    - ``machine``: a preset or a :class:`Machine`; default: the one on which the pipeline was published.
-    - ``head``: a :class:`Head`, or the name of a motion; default: the scene's own motion, followed without delay.
-    - ``fields``: periods of the display to simulate, NTSC fields of 1/60 s; default 120.
-    - ``seed``, ``level`` (transaction or cycle; analytic for :meth:`measure`), ``pixels`` (off, lazy or all), ``triangles`` (the scene
-      thinned out to so many), ``measure`` (names of :func:`quantities`), and any other key of :func:`keys` as a keyword, with ``__``
-      for a point: ``copy="whole"``, ``motion__sway=0.5``.
-    - ``settings``: keys that are not Python names, by path, such as ``{"machine.gp.triangle_ns": 30_000}``.
+    - ``machine``: the name of a preset or a :class:`Machine`; default: the machine with which the pipeline was published.
+    - ``head``: a :class:`Head`, or the name of a motion; default: the scene's own motion, without a tracker.
+    - ``fields``: number of display periods to simulate (fields of 1/60 s on an NTSC display); default 120.
+    - ``seed``: seed of the random numbers.
+    - ``level``: ``transaction`` or ``cycle``; also ``analytic`` for :meth:`measure`.
+    - ``pixels``: ``off``, ``lazy`` or ``all``.
+    - ``triangles``: number of triangles to which the scene is decimated.
+    - ``measure``: names of :func:`quantities`.
+    - ``settings``: other keys by path, such as ``{"machine.gp.triangle_ns": 30_000}``.
+
+    Each key of :func:`keys` can also be a keyword argument, with ``__`` instead of a point: ``copy="whole"``, ``motion__sway=0.5``.
 
     Raises :class:`SettingError` for the first setting that is wrong or missing.
     """
@@ -171,9 +182,9 @@ class Experiment(Strict):
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], settings: Mapping[str, object] | None = None) -> Experiment:
-        """An experiment file (TOML), as ``pxpl5 run FILE`` takes it, with some keys otherwise.
+        """Reads an experiment file (TOML) for ``pxpl5 run FILE``. ``settings`` replace keys of the file.
 
-        Raises :class:`SettingError` with the file, the line, what was expected and what was found.
+        Raises :class:`SettingError` with the file, the line, the expected value and the found value.
         """
         made = Made()
         made.settings.load(Path(path))
@@ -184,9 +195,9 @@ class Experiment(Strict):
 
     @classmethod
     def from_text(cls, text: str, settings: Mapping[str, object] | None = None) -> Experiment:
-        """The same of the text of an experiment file.
+        """Reads an experiment from the text of an experiment file. ``settings`` replace keys of the text.
 
-        Raises :class:`SettingError` as :meth:`from_file`.
+        Raises :class:`SettingError` as :meth:`from_file` does.
         """
         made = Made()
         made.settings.parse(text, "text")
@@ -209,45 +220,46 @@ class Experiment(Strict):
         keep: str = "everything",
         each_field: Callable[[Stepper], object] | None = None,
     ) -> Outcome:
-        """Runs it, without the interpreter's lock; Ctrl-C ends it within a fraction of a second.
+        """Runs the experiment without the interpreter's lock. Ctrl-C ends the run within a fraction of a second.
 
-        - ``progress``: True for a bar of tqdm, False for none, or a callable (fields done, of all); default: a bar in notebooks and
-          terminals.
-        - ``threads``: workers for ``pixels="all"``; default: one a core. No result depends on them.
-        - ``keep``: ``everything``, or ``statistics`` for runs of any length, without tables and timelines.
-        - ``each_field``: a callable that gets the :class:`Stepper` of the run after each field, for pictures and states of boards.
-          The outcome is the same as without it.
+        - ``progress``: True for a progress bar of tqdm, False for no bar, or a callable with two arguments: the number of simulated fields
+          and the number of all fields. Default: a bar in notebooks and terminals.
+        - ``threads``: number of threads that draw pixels with ``pixels="all"``; default: one for each core. No result depends on this number.
+        - ``keep``: ``everything``; or ``statistics``, for runs of any length without tables and timelines.
+        - ``each_field``: a callable that is called after each field with the :class:`Stepper` of the run, for example to read pictures.
+          The callable does not change the outcome.
 
-        Gives a RuntimeWarning with advice when the machine was too slow for the scene. Raises :class:`TooShortError` when nothing but
-        the warm-up was shown, and :class:`RunError` when the machine cannot go on; both have all observations until then in
-        ``partial``.
+        If the machine was too slow for the scene, the method gives a RuntimeWarning with advice.
+
+        Raises :class:`TooShortError` if the run showed only pictures of the warm-up, and :class:`RunError` if the machine cannot continue.
+        The attribute ``partial`` of both exceptions has the observations before the exception.
         """
         choice("keep", keep, ("everything", "statistics"))
         number = optional("threads", threads)
-        with reporting(progress, "fields") as told:
+        with reporting(progress, "fields") as reporter:
             if each_field is None:
-                outcome = self._finished(lambda: self._native.run(told, number, keep == "everything"))
+                outcome = self._finished(lambda: self._native.run(reporter, number, keep == "everything"))
             else:
-                outcome = self._run_by_fields(keep, told, each_field)
+                outcome = self._run_by_fields(keep, reporter, each_field)
         advice = outcome.advice
         if advice is not None:
             warnings.warn(advice, RuntimeWarning, stacklevel=2)
         return outcome
 
     def _run_by_fields(
-        self, keep: str, told: Callable[[int, int], object] | None, each_field: Callable[[Stepper], object]
+        self, keep: str, reporter: Callable[[int, int], object] | None, each_field: Callable[[Stepper], object]
     ) -> Outcome:
         stepper = Stepper(self._native.stepper(keep == "everything"), self)
         for done in range(1, self.fields + 1):
             if stepper.run_to_field(done) not in ("reached", "end"):
                 break
             each_field(stepper)
-            if told is not None:
-                told(done, self.fields)
+            if reporter is not None:
+                reporter(done, self.fields)
         return stepper.finish()
 
     def _finished(self, run: Callable[[], _native.Outcome]) -> Outcome:
-        """Returns the outcome of a run; an error gets the observations until then."""
+        """Returns the outcome of a run. If the run raises an error, the error gets the observations before the error."""
         try:
             return Outcome(run(), self)
         except RunError as error:
@@ -255,9 +267,9 @@ class Experiment(Strict):
             raise
 
     def stepper(self, *, keep: str = "everything") -> Stepper:
-        """Begins a run that advances on request, by fields, lines or events, and whose state can be read.
+        """Returns a run that advances step by step, by fields, lines or events. Its state can be read between two steps.
 
-        ``keep`` is as in :meth:`run`. Raises :class:`SettingError` if the machine cannot be built.
+        ``keep`` has the same meaning as in :meth:`run`. Raises :class:`SettingError` if the machine cannot be built.
         """
         choice("keep", keep, ("everything", "statistics"))
         return Stepper(self._native.stepper(keep == "everything"), self)
@@ -265,10 +277,12 @@ class Experiment(Strict):
     def frames(
         self, surface: str | int = "left", *, first: int = 0, fields: int | None = None
     ) -> Iterator[_native.Picture]:
-        """Pictures of a run, one for each field from ``first`` on: the screen at the end of the field.
+        """Returns an iterator over the pictures of a run. Each picture is the screen at the end of a field, from field ``first`` on.
 
-        ``surface`` is ``left``, ``right``, ``both`` side by side, or the number of a surface. ``fields`` is how many; default: all up
-        to the last complete field of the run. The experiment is run once for this, with pixels, while the pictures are taken.
+        - ``surface``: ``left``, ``right``, ``both`` (side by side), or the number of a surface.
+        - ``fields``: number of pictures; default: all up to the last complete field of the run.
+
+        The iterator runs the experiment once more, with pixels.
 
         Raises :class:`SettingError` for a surface that the display does not have.
         """
@@ -278,9 +292,9 @@ class Experiment(Strict):
     def film(
         self, path: str | PathLike[str], surface: str | int = "left", *, first: int = 0, fields: int | None = None
     ) -> None:
-        """Writes the pictures of :meth:`frames` as an animated PNG at the true rate, which browsers play.
+        """Writes the pictures of :meth:`frames` as an animated PNG with the rate of the display. Browsers play such a file.
 
-        Raises as :meth:`frames`, and OSError when the file cannot be written.
+        Raises the exceptions of :meth:`frames`, and OSError if the file cannot be written.
         """
         count = self._frame_count(first, fields)
         Path(path).write_bytes(self._native.film(_surface(surface), first, count))
@@ -294,9 +308,9 @@ class Experiment(Strict):
         return self.fields - 1 - start
 
     def what_if(self) -> Table[WhatIfRow]:
-        """What 10 % more of each resource of the machine would bring: a row for each, with latency and rate before and after.
+        """Returns the effect of 10 % more of each resource of the machine: a row for each resource with latency and rate before and after.
 
-        Raises as :meth:`run`.
+        Raises the exceptions of :meth:`run`.
         """
         rows = self._native.what_if()
         flat: list[dict[str, object]] = []
@@ -319,45 +333,45 @@ class Experiment(Strict):
         return table_of(flat, WHAT_IF_DEFINITIONS)
 
     def measure(self) -> dict[QuantityName, float | None]:
-        """The quantities in ``measure`` at the experiment's own level, which may be analytic; None where it shows none.
+        """Returns the quantities of the setting ``measure``. The level of the experiment can be ``analytic``.
 
-        Raises as :meth:`run`.
+        A quantity without a value is None. Raises the exceptions of :meth:`run`.
         """
         return self._native.measure()
 
     @property
     def fields(self) -> int:
-        """Number of display periods that a run simulates: for NTSC, fields of 1/60 s."""
+        """Number of display periods that a run simulates (fields of 1/60 s on an NTSC display)."""
         return self._native.fields
 
     @property
     def config_hash(self) -> str:
-        """Name of everything on which the trace depends: the same as that of the command and of Rust."""
+        """Hash of all settings on which the trace depends. The command and the Rust library give the same hash."""
         return self._native.config_hash()
 
     @property
     def warnings(self) -> list[str]:
-        """Parameters that no source allows, each with range and source; and what has no code at the cycle level."""
+        """Warnings: parameters outside the ranges of their sources, and work without i860 code at the cycle level."""
         return self._native.warnings()
 
     @property
     def parameters(self) -> list[Parameter]:
-        """All numbers of the experiment: of the machine as the pipeline adapts it, and of the tracker and its predictor."""
+        """All parameters of the experiment: the machine with the changes of the pipeline, the tracker and the predictor."""
         return [Parameter(**entry) for entry in self._native.parameters()]
 
     def parameter_table(self) -> Table[ParameterRow]:
-        """The same as a table: path, value, unit, standing, low, high, source, read_only."""
+        """Returns :attr:`parameters` as a table: path, value, unit, provenance, low, high, source, read_only."""
         return parameter_table(self.parameters)
 
     def settings(self) -> str:
-        """Every setting as it takes effect: the text of an experiment file that says the same.
+        """Returns all effective settings as the text of an experiment file.
 
-        A :class:`Scene`, a :class:`Motion` and a policy have no name there: what stands for them does.
+        A :class:`Scene`, a :class:`Motion` and a policy have no name in an experiment file. The text has substitutes for them.
         """
         return self._made.settings.text()
 
     def _plain_state(self) -> ExperimentState | None:
-        """The experiment as plain data; None if a Python function belongs to it."""
+        """Returns the experiment as plain data, or None if the experiment has a Python function."""
         made = self._made
         state: ExperimentState = {"settings": self.settings(), "phong": made.phong}
         if made.policy is not None:
@@ -396,7 +410,7 @@ class Experiment(Strict):
 def _experiment_of(
     text: str, scene: Scene | None, motion: Motion | None, policy: Policy | None, phong: bool
 ) -> Experiment:
-    """Returns the experiment with these settings and objects, for the module pickle."""
+    """Returns the experiment with the given settings and objects. The module pickle calls this function."""
     made = Made()
     made.settings.parse(text, "pickle")
     made.scene, made.motion, made.policy, made.phong = scene, motion, policy, phong
@@ -425,5 +439,5 @@ WHAT_IF_DEFINITIONS = {
     "level": "level of modelling of the results",
 }
 
-# An outcome that is loaded needs its experiment, whose module imports that of outcomes.
+# A loaded outcome needs its experiment. The module of outcomes cannot import this module, because this module imports the module of outcomes.
 Outcome._experiment_of_state = Experiment._of_plain_state

@@ -1,4 +1,4 @@
-"""What notebooks show, as HTML without scripts."""
+"""Output for notebooks, as HTML without scripts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def number(value: object) -> str:
-    """A value for people: four significant digits of a real number, nothing of what is missing."""
+    """Returns a value as text: four significant digits of a real number, and an empty text for a missing value."""
     if value is None:
         return ""
     if isinstance(value, float):
@@ -22,7 +22,7 @@ def number(value: object) -> str:
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> str:
-    """A table with a head; everything in it is escaped."""
+    """Returns a table with a head. All texts are escaped."""
     cells = "".join(f"<th>{escape(name)}</th>" for name in head)
     body = "".join("<tr>" + "".join(f"<td>{escape(number(cell))}</td>" for cell in row) + "</tr>" for row in rows)
     title = f"<caption>{escape(caption)}</caption>" if caption else ""
@@ -30,37 +30,37 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]], caption: str = 
 
 
 def picture(png: bytes, title: str) -> str:
-    """A picture within the page."""
+    """Returns a picture whose data are part of the page."""
     from base64 import b64encode
 
     return f'<img alt="{escape(title)}" title="{escape(title)}" src="data:image/png;base64,{b64encode(png).decode()}">'
 
 
 def warning(text: str) -> str:
-    """A warning above or below other parts."""
+    """Returns a warning as a paragraph."""
     return f"<p><strong>Warning:</strong> {escape(text)}</p>"
 
 
 def lines(rows: Iterable[str], caption: str) -> str:
-    """Lines of text under a caption."""
+    """Returns lines of text under a caption."""
     return f"<p>{escape(caption)}</p><pre>{escape(chr(10).join(rows))}</pre>"
 
 
-#: Seconds of a motion that a notebook shows, and instants in them.
+#: Seconds of a motion that a notebook shows, and number of samples in this time.
 MOTION_S = 10.0
 MOTION_SAMPLES = 201
 
-#: Width and height of the drawing of a motion, pixels.
+#: Width and height of the drawing of a motion, in pixels.
 MOTION_SIZE = (560, 120)
 
 
 def motion(moving: Motion, about: str) -> str:
-    """Origin and end of a motion, and a drawing: degrees by which the head has turned since the start."""
+    """Returns origin and end of a motion, and a plot of the angle in degrees between the head and its start."""
     ends_s = moving.ends_s
     seconds = min(MOTION_S, ends_s) if ends_s is not None else MOTION_S
     times = np.linspace(0, seconds, MOTION_SAMPLES)
     turns = moving.poses(times)[:, 3:]
-    # The angle of the rotation from the first orientation to each other one.
+    # The angles of the rotations from the first orientation to the other orientations.
     degrees = 2 * np.degrees(np.arccos(np.clip(np.abs(turns @ turns[0]), 0, 1)))
     width, height = MOTION_SIZE
     greatest = max(float(degrees.max()), 1e-9)

@@ -1,4 +1,4 @@
-"""Questions over many experiments: figures, limits, comparison; and what there is to choose from."""
+"""Studies of many experiments (figures, limits, comparisons), and lists of the names and keys of the library."""
 
 from __future__ import annotations
 
@@ -28,98 +28,99 @@ if TYPE_CHECKING:
 
 
 def presets() -> dict[str, str]:
-    """Names of the machines that are built in, those of the papers first, each with what it is and its source."""
+    """Returns the names of the built-in machines, each with a description and the source. Machines of the papers come first."""
     return dict(_native.presets())
 
 
 def builtin_scenes() -> dict[str, str]:
-    """Names of the built-in scenes, each with what it is; ``N`` stands for a number of triangles."""
+    """Returns the names of the built-in scenes, each with a description. ``N`` stands for a number of triangles."""
     return dict(_native.builtin_scenes())
 
 
 def pipelines() -> Table[PipelineRow]:
-    """A row for each pipeline: name, family, about, preset, whether it has a closed form, and its keys as JSON."""
+    """Returns a row for each pipeline: name, family, about, preset, true if it has a closed form, and its keys as JSON."""
     return table_of(_native.pipelines(), {"about": "what it is and where it was published"})
 
 
 def displays() -> list[str]:
-    """Names of the displays that pipelines draw for, for the key ``display``."""
+    """Returns the names of the displays, for the key ``display``."""
     return _native.displays()
 
 
 def quantities() -> dict[QuantityName, str]:
-    """Names of what can be measured, each with its definition."""
+    """Returns the names of the quantities that can be measured, each with its definition."""
     return _native.quantities()
 
 
 def keys() -> dict[str, str]:
-    """All keys of experiments but the parameters, each with what it sets and takes."""
+    """Returns all keys of experiments except parameters, each with its effect and its values."""
     return dict(_native.keys())
 
 
 def tracking_parameters() -> list[Parameter]:
-    """Numbers of all trackers, of the host's port and of the predictors, for :attr:`Head.tracking`."""
+    """Returns the parameters of all trackers, of the host's serial port and of the predictors, for :attr:`Head.tracking`."""
     return [Parameter(**entry) for entry in _native.tracking_parameters()]
 
 
 FIGURE_DEFINITIONS = {
     "published": "as the paper prints it, in the unit beside it",
-    "simulated": "what the model gives, in the same unit",
+    "simulated": "result of the model, in the same unit",
     "error_percent": "(simulated - published) / published, percent",
     "low": "least value when open parameters are varied within their ranges",
     "high": "greatest value when open parameters are varied within their ranges",
-    "standing": "free check, fitted, or rule",
+    "provenance": "free check, fitted, or rule",
     "misses": "outside of the printed range, or off by more than 3 percent",
 }
 
 
 def figure_ids() -> dict[str, str]:
-    """Numbers of the published figures, such as 4b, each with what the paper states."""
+    """Returns the numbers of the published figures, such as 4b, each with the statement of the paper."""
     return dict(_native.figure_ids())
 
 
 def figures(
     ids: str | Sequence[str] | None = None, *, level: LevelName | str = "transaction", progress: Progress = None
 ) -> Table[FigureRow]:
-    """The papers' figures, measured: a row for each with published and simulated value, unit, error and source.
+    """Measures the figures of the papers. Returns a row for each figure: published and simulated value, unit, error and source.
 
-    Without ``ids`` it takes minutes, since intervals are found too (columns low and high); with them each figure is measured alone.
+    Without ``ids``, the function also computes the intervals (columns low and high), which takes minutes. With ``ids``, it measures only
+    these figures, without intervals.
 
-    Raises :class:`SettingError` for a number that there is not.
+    Raises :class:`SettingError` for the number of an unknown figure.
     """
     rows: list[FigureData]
-    with reporting(progress, "figures") as told:
+    with reporting(progress, "figures") as reporter:
         if ids is None:
-            rows = _native.figures(level, told)
+            rows = _native.figures(level, reporter)
         else:
             rows = []
             wanted = names("ids", ids)
             for done, number in enumerate(wanted, 1):
                 rows.append(_native.figure(number, level))
-                if told is not None:
-                    told(done, len(wanted))
+                if reporter is not None:
+                    reporter(done, len(wanted))
     return table_of(rows, FIGURE_DEFINITIONS)
 
 
 @dataclass(frozen=True)
 class Limit:
-    """The most triangles that a pipeline draws in time, and how sure that is."""
+    """The largest number of triangles that a pipeline draws in time, with the tested numbers."""
 
-    #: One less than the first miss; 0 if the goal was missed with one triangle.
+    #: One less than ``first_miss``; 0 if one triangle misses the goal.
     triangles: int
-    #: The least size that was tried and missed the goal; None if all that were tried reached it.
+    #: The smallest tried number of triangles that misses the goal; None if all tried numbers reach the goal.
     first_miss: int | None
-    #: The greatest size above the first miss that was tried and reaches the goal all the same; None if there is none.
+    #: The largest tried number of triangles above ``first_miss`` that reaches the goal; None without such a number.
     island: int | None
-    #: All sizes from here to ``triangles`` were tried; below it only some were.
+    #: Least number of triangles from which all numbers up to ``triangles`` were tried. Below, only some numbers were tried.
     unbroken_from: int
-    #: Sizes that were simulated.
+    #: How many numbers of triangles were simulated.
     tried: int
-    #: What had to hold.
+    #: Goal of the search.
     goal: str | dict[str, float]
-    #: Fields that each size was simulated for.
+    #: Number of simulated fields for each number of triangles.
     fields: int
-    #: What was drawn at every size.
+    #: Scene whose triangles were drawn.
     scene: str
 
 
@@ -129,9 +130,9 @@ class OverLimit:
 
     #: Path of the setting.
     over: str
-    #: What had to hold.
+    #: Goal of the search.
     goal: str | dict[str, float]
-    #: Fields that each value was simulated for.
+    #: Number of simulated fields for each value.
     fields: int
     #: Least value of the search.
     low: float
@@ -145,9 +146,9 @@ class OverLimit:
     reached: bool
     #: Tried values in ascending order, each with True if it reaches the goal.
     tried: list[tuple[float, bool]]
-    #: A value that misses the goal: next to the limit, or the best if all miss; None if all reach it.
+    #: A value that misses the goal: the value next to the limit, or the best value if all miss the goal; None if all reach the goal.
     missed_at: float | None
-    #: What limits the experiment with ``missed_at``, in words; None if that is unknown.
+    #: The resource that limits the experiment with ``missed_at``, in words; None if unknown.
     because: str | None
 
 
@@ -168,14 +169,15 @@ def limit_over(
     progress: Progress = None,
     **keys: object,
 ) -> OverLimit:
-    """The values of a numeric setting with which an experiment reaches a goal, as ``pxpl5 limit --over``.
+    """Returns the values of a numeric setting with which an experiment reaches a goal, as ``pxpl5 limit --over`` does.
 
-    - ``over``: path of the setting, such as ``machine.n_gps``; ``low`` and ``high``: the range that is searched; default: for numbers
-      of boards 1 to the number in the largest preset, else the range that the sources allow.
-    - ``rate_hz`` (least updates a second) or ``latency_fields`` (greatest mean latency) replace the pipeline's own goal.
+    - ``over``: path of the setting, such as ``machine.n_gps``.
+    - ``low``, ``high``: range of the search. The default for a number of boards is 1 to the number in the largest preset. The default for
+      another parameter is the range of its sources.
+    - ``rate_hz`` (least number of updates a second) or ``latency_fields`` (greatest mean latency): goal instead of the pipeline's goal.
 
-    The search tries the ends of the range and three values between, and bisects from one that reaches the goal. Raises
-    :class:`SettingError` for a setting or a range that is wrong.
+    The search tries both ends of the range and three values between. From a value that reaches the goal, the search continues by
+    bisection. Raises :class:`SettingError` for a wrong setting or range.
     """
     made = Made()
     made.put_all(pipeline, scene, machine, head, {"level": level, **keys, **(settings or {})})
@@ -185,7 +187,7 @@ def limit_over(
     _positive("latency_fields", latency_fields)
     # An unknown key is refused with the nearest one, before its range is asked for.
     made.settings.copy().set(f"{over}=1", "over")
-    with reporting(progress, "values") as told:
+    with reporting(progress, "values") as reporter:
         found = _native.limit_over(
             made.settings,
             over,
@@ -194,7 +196,7 @@ def limit_over(
             rate_hz=rate_hz,
             latency_fields=latency_fields,
             fields=optional("fields", fields, LEAST_FIELDS),
-            progress=told,
+            progress=reporter,
         )
     return OverLimit(
         over=found["over"],
@@ -211,7 +213,7 @@ def limit_over(
     )
 
 
-#: Least fields of a search: shorter runs end during the warm-up of every pipeline.
+#: Least number of fields of a search. Shorter runs end during the warm-up of every pipeline.
 LEAST_FIELDS = 10
 
 
@@ -232,13 +234,13 @@ def limit(
     settings: Mapping[str, object] | None = None,
     **keys: object,
 ) -> Limit:
-    """The most triangles that a pipeline draws in time, found by simulation.
+    """Finds the largest number of triangles that a pipeline draws in time, by simulation.
 
-    - ``scene``: ``full-screen`` or ``typical`` triangles, or a built-in scene or model file that is thinned out evenly; default: the
-      pipeline's own test.
-    - ``rate_hz`` (least updates a second) or ``latency_fields`` (greatest mean latency) replace the pipeline's own goal.
+    - ``scene``: ``full-screen`` or ``typical``, or a built-in scene or model file, which is decimated; default: the scene in the
+      pipeline's own definition of the limit.
+    - ``rate_hz`` (least number of updates a second) or ``latency_fields`` (greatest mean latency): goal instead of the pipeline's goal.
 
-    Raises :class:`SettingError` for a setting that is wrong.
+    Raises :class:`SettingError` for a wrong setting.
     """
     _positive("rate_hz", rate_hz)
     _positive("latency_fields", latency_fields)
@@ -258,7 +260,7 @@ def limit(
 
 
 class Comparison(Strict):
-    """Every way to fight latency side by side: :attr:`table` has a row for each, :attr:`data` everything."""
+    """Results of all compared pipelines. :attr:`table` has a row for each pipeline, and :attr:`data` has all results."""
 
     _fields = ("data",)
 
@@ -268,10 +270,10 @@ class Comparison(Strict):
 
     @property
     def table(self) -> Table[dict[str, Cell]]:
-        """A row for each pipeline: latency, head to light, rate, errors in pixels and most triangles; nested names with points.
+        """A row for each pipeline: latency, head to light, rate, errors in pixels and largest number of triangles.
 
-        Means over seeds have ``.mean``, and ``.low``, ``.high`` and ``.method`` of their 95 % intervals. ``due`` and ``not_shown``
-        count the pictures, ``error.n`` the evaluated pixels.
+        Names of columns contain points. A mean over seeds has the column ``.mean``, and ``.low``, ``.high`` and ``.method`` for its 95 %
+        interval. ``due`` and ``not_shown`` count pictures, and ``error.n`` counts evaluated pixels.
         """
         left_out = ("end_to_end", "causes", "predictors", "picture", "errors", "display_counters")
         rows = []
@@ -293,7 +295,7 @@ class Comparison(Strict):
         title: str = "",
         width_mm: float = 120.0,
     ) -> Drawing:
-        """Draws column ``y`` over column ``x`` as ``pxpl5 plot`` does; see :meth:`SweepResults.plot`."""
+        """Plots column ``y`` against column ``x`` as ``pxpl5 plot`` does; see :meth:`SweepResults.plot`."""
         options = {"by": by, "where": where, "x_scale": x_scale, "y_scale": y_scale, "title": title}
         return plotted("comparison.json", json.dumps(self.data), x, y, width_mm, options)
 
@@ -339,11 +341,12 @@ def compare(
     progress: Progress = None,
     **keys: object,
 ) -> Comparison:
-    """Every pipeline with the same settings, a run for each seed: errors in pixels by cause, latencies, and, on demand, limits.
+    """Runs every pipeline with the same settings, once for each seed. Returns errors in pixels by cause, and latencies.
 
-    - ``fields``: length of each run; default: the length of a recording, else 300.
-    - ``only``: names of the rows that are run; all where it is empty.
-    - ``head``: a motion with a name, or the path of a recording. A head of ``synthetic`` moves otherwise in every seed.
+    - ``head``: a head whose motion has a name or is the path of a recording. The motion ``synthetic`` differs with the seed.
+    - ``fields``: number of fields of each run; default: the length of the recording, or 300 without a recording.
+    - ``only``: names of the rows to run; default: all rows.
+    - ``limits``: True to add the largest number of triangles of each pipeline.
     - ``confidence``: that of all intervals, between 0 and 1.
     - ``until_precision``: greatest width of the interval of each mean error, from end to end, as a share of the mean (``"10%"``) or in
       pixels (``"0.2px"``). A row gets more seeds until its interval is narrower, up to ``max_seeds`` (default 50). Only for the head
@@ -372,7 +375,7 @@ def compare(
     else:
         numbers = [whole("seeds", seed) for seed in seeds]
     folder = None if out is None else Path(out)
-    with reporting(progress, "runs") as told:
+    with reporting(progress, "runs") as reporter:
         data = _native.compare(
             made.settings,
             names("only", only),
@@ -383,7 +386,7 @@ def compare(
             max_seeds=optional("max_seeds", max_seeds, 2),
             folder=None if folder is None else folder / "rows",
             resume=resume,
-            progress=told,
+            progress=reporter,
         )
     if folder is not None:
         (folder / "comparison.json").write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
@@ -401,9 +404,12 @@ def rig(
     settings: Mapping[str, object] | None = None,
     **keys: object,
 ) -> RigData:
-    """Latency measured from outside with a pendulum and photodiodes, beside the pipeline's own time stamps, as ``pxpl5 rig``.
+    """Measures latency from outside with a simulated pendulum and photodiodes, as ``pxpl5 rig`` does.
 
-    - ``passes``: low points of the pendulum that are measured, 2 to 10,000; ``line``: the line of a field with the photodiode.
+    The result also has the pipeline's own time stamps of the same frames.
+
+    - ``passes``: number of measured low points of the pendulum, 2 to 10,000.
+    - ``line``: line of a field at which the photodiode is.
 
     The rig has its own scene, motion and length. Raises :class:`SettingError` for a wrong setting, and for a pipeline whose light does
     not identify a frame.
@@ -420,10 +426,10 @@ def rig(
     return found
 
 
-#: Settings that the rig determines itself.
+#: Settings that the rig sets itself.
 KEYS_SET_BY_RIG = ("scene", "triangles", "fields", "pixels")
 
-#: Most passes of the pendulum in a measurement.
+#: Greatest number of passes of the pendulum in a measurement.
 MOST_PASSES = 10_000
 
 LEVEL_DEFINITIONS = {
@@ -437,13 +443,16 @@ LEVEL_DEFINITIONS = {
 
 
 def levels(*, experiments: int | None = None, speeds: bool = False, progress: Progress = None) -> Table[LevelRow]:
-    """The levels of modelling beside each other: a row for each, with its errors and its speed.
+    """Returns a row for each level of modelling, with its errors and its speed.
 
-    By default the measurement that is recorded in the repository. With ``experiments`` the errors are measured now, over so many random
-    experiments; with ``speeds`` the speeds too, which needs an idle computer. Raises :class:`RunError` if an experiment fails.
+    - ``experiments``: number of random experiments over which the errors are measured now. By default, the function returns the
+      measurement that is recorded in the repository.
+    - ``speeds``: True to measure the speeds too. This measurement needs an idle computer.
+
+    Raises :class:`RunError` if an experiment fails.
     """
-    with reporting(progress, "steps") as told:
-        found = _native.levels(optional("experiments", experiments, 1), speeds, told)
+    with reporting(progress, "steps") as reporter:
+        found = _native.levels(optional("experiments", experiments, 1), speeds, reporter)
     return table_of(found["levels"], LEVEL_DEFINITIONS)
 
 
@@ -458,13 +467,15 @@ READING_DEFINITIONS = {
 
 
 def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Progress = None) -> Table[ReadingRow]:
-    """Interpretations of the papers' open questions, ranked by how well they explain the figures of Rendering Control.
+    """Ranks interpretations of the papers' open questions by their agreement with the figures of Rendering Control.
 
-    A row for each interpretation at the analytic level, then the ``best`` of them at the transaction level. ``seeds`` and ``frames``
-    are the size of the fly-throughs. It takes minutes. Raises :class:`RunError` if a figure cannot be simulated.
+    The table has a row for each interpretation at the analytic level. Rows for the ``best`` interpretations at the transaction level
+    follow. ``seeds`` and ``frames`` give the number and the length of the simulated motions. The function takes minutes.
+
+    Raises :class:`RunError` if a figure cannot be simulated.
     """
-    with reporting(progress, "runs") as told:
-        found = _native.readings(whole("best", best), whole("seeds", seeds, 1), whole("frames", frames, 10), told)
+    with reporting(progress, "runs") as reporter:
+        found = _native.readings(whole("best", best), whole("seeds", seeds, 1), whole("frames", frames, 10), reporter)
     rows = [
         {"evaluated_at": level, **{key: value for key, value in fit.items() if key in READING_DEFINITIONS}}
         for level, fits in (("analytic", found["analytic"]), ("transaction", found["transaction"]))

@@ -19,23 +19,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number of a machine with its origin."""
+    """A number of a machine with its provenance and source."""
 
     #: Board and field, such as ``ring.word_ns``.
     path: str
-    #: Its value, in :attr:`unit`.
+    #: Value of the parameter, in :attr:`unit`.
     value: float
     #: Unit of the value and the range, such as ns.
     unit: str
-    #: Published, derived or assumed.
-    standing: str
+    #: Provenance: published, derived or assumed.
+    provenance: str
     #: Least value that the sources allow.
     low: float
     #: Greatest value that the sources allow.
     high: float
-    #: Where it comes from.
+    #: Source of the value and the range.
     source: str
-    #: Whether it is listed only: what a part is, which nobody can set.
+    #: True if the parameter is only listed and cannot be set.
     read_only: bool
 
     @property
@@ -45,22 +45,22 @@ class Parameter:
 
     @property
     def in_range(self) -> bool:
-        """Whether the sources allow the value; the model takes more, and warns."""
+        """True if the value is in the range of the sources. The model accepts other values with a warning."""
         return self.low <= self.value <= self.high
 
 
 PARAMETER_DEFINITIONS = {
     "path": "board and field",
     "value": "in the unit beside it",
-    "standing": "published, derived or assumed",
+    "provenance": "published, derived or assumed",
     "low": "least value that the sources allow",
     "high": "greatest value that the sources allow",
-    "read_only": "whether it is listed only",
+    "read_only": "true if the parameter is listed but cannot be changed",
 }
 
 
 def parameter_table(parameters: list[Parameter]) -> Table[ParameterRow]:
-    """Parameters as a table: path, value, unit, standing, low, high, source, read_only."""
+    """Returns parameters as a table: path, value, unit, provenance, low, high, source, read_only."""
     rows = [asdict(parameter) for parameter in parameters]
     for row in rows:
         row.update({key: float(row[key]) for key in ("value", "low", "high")})
@@ -68,14 +68,15 @@ def parameter_table(parameters: list[Parameter]) -> Table[ParameterRow]:
 
 
 class Machine(Strict, Mapping[str, Parameter]):
-    """A machine: a preset, and the numbers of it that are otherwise.
+    """A machine: a preset with changed parameters.
 
-    ``machine["gp.triangle_ns"]`` is a :class:`Parameter`; ``machine["gp.triangle_ns"] = 30_000`` changes its value, and
-    ``machine.n_gps = 20`` the number of boards. What the sources do not allow is listed in :attr:`warnings`.
+    ``machine["gp.triangle_ns"]`` is a :class:`Parameter`. ``machine["gp.triangle_ns"] = 30_000`` changes the value of this parameter,
+    and ``machine.n_gps = 20`` changes the number of boards. :attr:`warnings` lists values outside the ranges of the sources.
 
-    A pipeline may adapt the machine further (the time of its code): what is set here holds all the same.
+    A pipeline can change other parameters of the machine, such as the times of its code. A pipeline never replaces a value that is set
+    here.
 
-    Raises :class:`SettingError` for a preset, path or value that no machine has, with the nearest that there is.
+    Raises :class:`SettingError` for an unknown preset or path, with the nearest known name, and for a value beyond the limits.
     """
 
     def __init__(self, preset: MachineName | str = "small-hmd", changes: Mapping[str, float] | None = None) -> None:
@@ -91,12 +92,12 @@ class Machine(Strict, Mapping[str, Parameter]):
 
     @property
     def changes(self) -> dict[str, float]:
-        """What was set, by path, in the unit of each parameter. A copy."""
+        """A copy of the changed values, by path, in the unit of each parameter."""
         return dict(self._changes)
 
     @property
     def n_gps(self) -> int:
-        """Graphics processors, the master included."""
+        """Number of graphics processors, with the master."""
         return self._known["n_gps"]
 
     @n_gps.setter
@@ -105,7 +106,7 @@ class Machine(Strict, Mapping[str, Parameter]):
 
     @property
     def n_renderers(self) -> int:
-        """Renderers, each an array of 128 x 128 pixels."""
+        """Number of renderers, each with an array of 128 x 128 pixels."""
         return self._known["n_renderers"]
 
     @n_renderers.setter
@@ -118,21 +119,21 @@ class Machine(Strict, Mapping[str, Parameter]):
         self._changes = changes
 
     def replaced(self, changes: Mapping[str, float]) -> Machine:
-        """The same with some numbers otherwise, by path; this one stays as it is."""
+        """Returns a copy of this machine with other values of some parameters, given by path."""
         return Machine(self._preset, {**self._changes, **changes})
 
     @property
     def parameters(self) -> list[Parameter]:
-        """All numbers in the order of the boards, those of firmware included."""
+        """All parameters in the order of the boards, with the parameters of firmware."""
         return [Parameter(**entry) for entry in self._known["parameters"]]
 
     @property
     def warnings(self) -> list[str]:
-        """Numbers that no source allows, each with range and source."""
+        """Warnings about values outside the ranges of their sources, each with range and source."""
         return list(self._known["warnings"])
 
     def table(self) -> Table[ParameterRow]:
-        """The parameters as a table: path, value, unit, standing, low, high, source, read_only."""
+        """Returns the parameters as a table: path, value, unit, provenance, low, high, source, read_only."""
         return parameter_table(self.parameters)
 
     def __getitem__(self, path: str) -> Parameter:
@@ -158,6 +159,6 @@ class Machine(Strict, Mapping[str, Parameter]):
         return f"<pxpl5.Machine {self._preset}: {self.n_gps} GPs, {self.n_renderers} renderers{changes}>"
 
     def _repr_html_(self) -> str:
-        rows = [[p.path, p.value, p.unit, p.standing, f"{p.low:g} to {p.high:g}", p.source] for p in self.parameters]
-        head = ["parameter", "value", "unit", "standing", "range", "source"]
+        rows = [[p.path, p.value, p.unit, p.provenance, f"{p.low:g} to {p.high:g}", p.source] for p in self.parameters]
+        head = ["parameter", "value", "unit", "provenance", "range", "source"]
         return _html.table(head, rows, f"{self._preset}: {self.n_gps} GPs, {self.n_renderers} renderers")

@@ -1,4 +1,5 @@
-# What crates/pxpl5-py gives; checked against it by stubtest (scripts/python). Docstrings stand in the module itself.
+# Types of the native module (crates/pxpl5-py). The tool stubtest in scripts/python compares this file with the module. The module
+# itself has the docstrings.
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from types import GenericAlias

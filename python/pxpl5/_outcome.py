@@ -31,24 +31,24 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Statistics:
-    """How many numbers there are, their mean, sample standard deviation, least and greatest; None where there are too few."""
+    """Statistics of a set of values: number, mean, sample standard deviation, least and greatest value."""
 
-    #: How many numbers there are.
+    #: Number of values.
     n: int
-    #: Their mean; None without numbers.
+    #: Mean of the values; None without values.
     mean: float | None
-    #: Sample standard deviation (n - 1); None with fewer than two numbers.
+    #: Sample standard deviation (n - 1); None with fewer than two values.
     sd: float | None
-    #: The least; None without numbers.
+    #: Least value; None without values.
     min: float | None
-    #: The greatest; None without numbers.
+    #: Greatest value; None without values.
     max: float | None
-    #: What they are of, in a sentence.
+    #: Definition of the quantity, as a sentence.
     definition: str = ""
 
 
 class Report(dict[str, object]):
-    """Everything that a run says, as numbers: the object of ``pxpl5 run --json``, which notebooks show as a table."""
+    """All results of a run as numbers: the object of ``pxpl5 run --json``. Notebooks show the report as a table."""
 
     def _repr_html_(self) -> str:
         report = cast("ReportData", self)
@@ -61,7 +61,7 @@ class Report(dict[str, object]):
 
 
 def _spread(found: StatisticsData) -> str:
-    """Mean, standard deviation and number of values in words."""
+    """Returns mean, standard deviation and number of values as text."""
     if found["mean"] is None:
         return "none: no picture was complete in time"
     sd = found["sd"]
@@ -74,13 +74,13 @@ class Differences:
 
     #: True if both runs have the same trace and the same statistics.
     same_trace: bool
-    #: A row for each setting that differs: key, a and b.
+    #: A row for each different setting: key, a and b.
     settings: Table[SettingRow]
-    #: A row for each result that differs: key, a, b, and percent of a. Host times are left out.
+    #: A row for each different result: key, a, b, and percent of a. Computing times are not compared.
     results: Table[ResultRow]
-    #: Number of results that are equal.
+    #: Number of equal results.
     equal: int
-    #: A row for each surface with a picture in both: surface, pixels, differing pixels, and largest difference of a colour (0 to 255).
+    #: A row for each surface with a picture in both outcomes: surface, pixels, differing pixels, largest difference of a colour (0 to 255).
     pictures: Table[PictureDifferenceRow]
 
     def __repr__(self) -> str:
@@ -94,8 +94,8 @@ class Differences:
 class Outcome(Strict):
     """Results of an experiment, from :meth:`Experiment.run` or :meth:`load`.
 
-    An outcome can be pickled and saved. It then has the report, the quantities, the tables and the last pictures. Everything else is
-    computed on demand by running the experiment again, which gives the same trace.
+    An outcome can be pickled and saved. A saved outcome has the report, the quantities, the tables and the last pictures. For other
+    results, the outcome runs its experiment again, with the same trace.
     """
 
     #: Returns the experiment of a saved state; the module of experiments sets it.
@@ -113,7 +113,7 @@ class Outcome(Strict):
 
     @property
     def _live(self) -> _native.Outcome:
-        """The run itself; of an outcome that was saved, a new run with the same trace."""
+        """The run of this outcome. For a saved outcome, this is a new run with the same trace."""
         if self._run is None:
             if self._experiment is None or self._saved is None:
                 raise RunError("expected an outcome with its experiment, found one whose experiment could not be saved")
@@ -128,43 +128,43 @@ class Outcome(Strict):
 
     @property
     def trace_hash(self) -> str:
-        """Hash of everything that happened: the same experiment has the same one in the command and in Rust."""
+        """Hash of all events of the run. The same experiment has the same hash in the command and in Rust."""
         return self._value(lambda saved: saved["trace_hash"], lambda native: native.trace_hash)
 
     @property
     def config_hash(self) -> str:
-        """Name of everything on which the trace depends."""
+        """Hash of all settings on which the trace depends."""
         return self._value(lambda saved: saved["config_hash"], lambda native: native.config_hash)
 
     @property
     def report(self) -> ReportData:
-        """Everything as numbers, with definitions: the object of ``pxpl5 run --json``. What was not measured is None."""
+        """All results as numbers with definitions: the object of ``pxpl5 run --json``. A value that was not measured is None."""
         found: ReportData = self._value(lambda saved: json.loads(saved["report"]), lambda native: native.report())
         return cast("ReportData", Report(found))
 
     @property
     def latency_ms(self) -> Statistics:
-        """Latency in milliseconds of simulated time over the complete pictures in the window, as the pipeline defines it."""
+        """Latency of the complete pictures in the window, in milliseconds of simulated time. Each pipeline defines its latency."""
         return Statistics(**self.report["latency_ms"])
 
     @property
     def latency_fields(self) -> Statistics:
-        """The same in periods of the display: for NTSC, fields of 1001/60000 s."""
+        """Latency of the complete pictures in the window, in periods of the display (fields of 1001/60000 s for NTSC)."""
         return Statistics(**self.report["latency_fields"])
 
     @property
     def missed_retraces(self) -> int | None:
-        """Pictures that were due and not shown: late, incomplete or missed; None where none was due."""
+        """Number of due pictures that were not shown: late, incomplete or missed; None if no picture was due."""
         return self.report["missed_retraces"]
 
     @property
     def advice(self) -> str | None:
-        """Advice of the library where the machine was too slow for the scene, or showed nothing; None otherwise."""
+        """Advice of the library if the machine was too slow for the scene, or showed no picture; otherwise None."""
         return self._value(lambda saved: saved["advice"], lambda native: native.advice())
 
     @property
     def utilisation(self) -> UtilisationData | None:
-        """Shares of time, 0 to 1, in which boards were busy: host, gps, renderers, ring and ports."""
+        """Shares of time, 0 to 1, for which boards were busy: host, gps, renderers, ring and ports."""
         return self.report["utilisation"]
 
     @property
@@ -174,13 +174,13 @@ class Outcome(Strict):
 
     @property
     def boards(self) -> Table[BoardRow]:
-        """A row for each kind of board and activity: share of time in the mean, of the busiest board, and its number."""
+        """A row for each kind of board and activity: mean share of time, share of the busiest board, number of the busiest board."""
         return table_of(_board_rows(self.utilisation), BOARD_DEFINITIONS)
 
     def quantity(self, name: QuantityName | str) -> float | None:
-        """A quantity of :func:`quantities` by its name; None where the run shows none.
+        """Returns a quantity of :func:`quantities` by its name, or None if the run has no value.
 
-        Raises :class:`SettingError` with the nearest name.
+        Raises :class:`SettingError` with the nearest name for an unknown name.
         """
         for known, value in [] if self._saved is None else self._saved["quantities"].items():
             if known == name:
@@ -188,17 +188,17 @@ class Outcome(Strict):
         return self._live.quantity(name)
 
     def quantities(self) -> dict[QuantityName, float | None]:
-        """All quantities by name, in the unit that the name ends with; None where the run shows none."""
+        """Returns all quantities by name. Most names end with the unit. A quantity without a value is None."""
         return self._value(lambda saved: dict(saved["quantities"]), lambda native: native.quantities())
 
     @property
     def measured(self) -> dict[QuantityName, float | None]:
-        """The quantities that the experiment named in ``measure``."""
+        """The quantities of the experiment's setting ``measure``."""
         return self._value(lambda saved: dict(saved["measured"]), lambda native: native.measured())
 
     @property
     def has_discarded_records(self) -> bool:
-        """True if the run kept only statistics and has discarded records: there are no tables and timelines then."""
+        """True if the run kept only statistics and has discarded records. The outcome then has no tables and timelines."""
         return self._value(lambda saved: saved["discarded"], lambda native: native.has_discarded_records())
 
     def _check_records(self, what: str) -> None:
@@ -207,9 +207,9 @@ class Outcome(Strict):
 
     @property
     def pictures(self) -> Table[PictureRow]:
-        """A row for each picture that was begun: when it was sampled, transformed, copied and shown, and where its latency went.
+        """A row for each begun picture: times of sample, TRANSFORM, COPY and display, and the parts of the latency.
 
-        Times are whole picoseconds of simulated time. Raises :class:`DiscardedError` where a run with ``keep="statistics"`` has
+        Times are whole picoseconds of simulated time. Raises :class:`DiscardedError` if a run with ``keep="statistics"`` has
         discarded rows.
         """
         self._check_records("pictures")
@@ -220,7 +220,7 @@ class Outcome(Strict):
     def stages(self) -> Table[StageRow]:
         """A row for each stage of each picture: picture, stage, surface, begin_ps and end_ps.
 
-        Raises :class:`DiscardedError` as :attr:`pictures`.
+        Raises :class:`DiscardedError` as :attr:`pictures` does.
         """
         self._check_records("stages")
         saved = None if self._saved is None else self._saved["stages"]
@@ -231,7 +231,7 @@ class Outcome(Strict):
         """A row for each observed event in the order of time: time_ps, board, picture and event.
 
         Events are stages of programs, regions that renderers copied, regions that arrived at displays, and swaps. Raises
-        :class:`DiscardedError` as :attr:`pictures`.
+        :class:`DiscardedError` as :attr:`pictures` does.
         """
         self._check_records("events")
         return self._live.events()
@@ -242,29 +242,29 @@ class Outcome(Strict):
         return self._value(lambda saved: list(saved["surfaces"]), lambda native: native.surfaces())
 
     def picture(self, surface: str = "left") -> Picture | None:
-        """What the viewer of a surface sees at the end: an NTSC screen is 640 x 480 pixels; None without pixels.
+        """Returns the picture that the viewer of a surface sees at the end of the run, or None if no pixels were computed.
 
-        Raises :class:`SettingError` with the surfaces that there are.
+        An NTSC screen has 640 x 480 pixels. Raises :class:`SettingError` with the names of all surfaces for an unknown surface.
         """
         if self._saved is not None and surface in self._saved["last"]:
             return self._saved["last"][surface]
         return self._live.picture(surface)
 
     def seen(self, field: int, surface: str = "left") -> Picture | None:
-        """What the viewer of a surface saw at the end of a field; None of a field whose record is no longer kept.
+        """Returns the picture that the viewer of a surface saw at the end of a field, or None if the record of the field was discarded.
 
-        :meth:`frames` has the pictures of all fields. Raises :class:`SettingError` with the surfaces that there are.
+        :meth:`frames` has the pictures of all fields. Raises :class:`SettingError` with the names of all surfaces for an unknown surface.
         """
         return self._live.seen(surface, whole("field", field))
 
     def frames(self, surface: str | int = "left", *, first: int = 0, fields: int | None = None) -> Iterator[Picture]:
-        """All pictures of the run, one for each field, as :meth:`Experiment.frames`: the experiment is run once more for them."""
+        """Returns an iterator over the pictures of all fields, as :meth:`Experiment.frames` does. The experiment runs once more."""
         return self._source().frames(surface, first=first, fields=fields)
 
     def film(
         self, path: str | PathLike[str], surface: str | int = "left", *, first: int = 0, fields: int | None = None
     ) -> None:
-        """Writes the pictures of :meth:`frames` as an animated PNG, as :meth:`Experiment.film`."""
+        """Writes the pictures of :meth:`frames` as an animated PNG, as :meth:`Experiment.film` does."""
         self._source().film(path, surface, first=first, fields=fields)
 
     def _source(self) -> Experiment:
@@ -274,27 +274,27 @@ class Outcome(Strict):
 
     @property
     def experiment(self) -> Experiment | None:
-        """The experiment whose outcome this is; None of a saved outcome whose experiment could not be saved."""
+        """The experiment of this outcome; None for a saved outcome whose experiment could not be saved."""
         return self._experiment
 
     def face(self, eye: str = "left", memory: int = 0) -> Picture | None:
-        """The six cube faces that a display memory of address recalculation shows to an eye at the end, unfolded into a cross.
+        """Returns the six cube faces of a display memory for an eye at the end of the run, unfolded into a cross.
 
-        None for a display without such memories. Raises :class:`SettingError` for an eye or a memory that does not exist.
+        The result is None for a display without six faces. Raises :class:`SettingError` for an eye or a memory that does not exist.
         """
         return self._live.face(eye, whole("memory", memory))
 
     def pixel_memory(self, renderer: int = 0) -> NDArray[np.uint8] | None:
-        """Pixel memory of a renderer at the end: shape (208, 128, 128) by bit, row and column, 0 or 1; None where nothing was drawn.
+        """Returns the pixel memory of a renderer at the end of the run, or None if the renderer drew nothing.
 
-        :attr:`pixel_memory_fields` says which bits are colour, depth and normals. Raises :class:`SettingError` for a renderer that
-        there is not.
+        The array has the shape (208, 128, 128) for bit, row and column, and the values 0 and 1. :attr:`pixel_memory_fields` lists the
+        bits of colour, depth and normals. Raises :class:`SettingError` for a renderer that does not exist.
         """
         return self._live.pixel_memory(whole("renderer", renderer))
 
     @property
     def pixel_memory_fields(self) -> list[tuple[str, int, int]]:
-        """How the pipeline divides pixel memory: name, first bit and number of bits of each field, the lowest bit first."""
+        """Layout of pixel memory: name, first bit and number of bits of each field. Bits of a field are in order from the lowest."""
         return self._live.pixel_memory_fields()
 
     @property
@@ -313,25 +313,25 @@ class Outcome(Strict):
         fields: int | None = None,
         title: str | None = None,
     ) -> Drawing:
-        """Which board worked on which picture when, in the manner of the papers; at most 16 fields.
+        """Returns a timeline as in the papers: the work of each resource on each picture. A timeline has at most 16 fields.
 
-        Drawn are the dependencies of one picture, by default the first after the warm-up. Raises :class:`DiscardedError` as
-        :attr:`pictures`.
+        The timeline shows the dependencies of one picture, by default the first picture after the warm-up. Raises
+        :class:`DiscardedError` as :attr:`pictures` does.
         """
         self._check_records("timeline")
         numbers = optional("picture", picture), optional("first_field", first_field), optional("fields", fields, 1)
         return Drawing(self._live.timeline(*numbers, title))
 
     def page(self, name: str = "run") -> str:
-        """The run as one page of HTML, with pictures and timeline, that asks for nothing from outside.
+        """Returns the results as one page of HTML that contains the pictures and the timeline and loads no other file.
 
-        Raises :class:`DiscardedError` as :attr:`pictures`.
+        Raises :class:`DiscardedError` as :attr:`pictures` does.
         """
         self._check_records("page")
         return self._live.page(name)
 
     def diff(self, other: Outcome) -> Differences:
-        """Differences between this outcome (a) and another one (b): settings, results and last pictures, as ``pxpl5 diff``."""
+        """Returns the differences of settings, results and last pictures between this outcome (a) and ``other`` (b)."""
         if not isinstance(other, Outcome):
             raise SettingError(f"other: expected an Outcome, found {type(other).__name__}")
         found = _native.diff(self._report_json(), other._report_json())
@@ -356,7 +356,7 @@ class Outcome(Strict):
     def save(self, path: str | PathLike[str]) -> None:
         """Writes the outcome to a file, a ZIP archive of JSON and PNG, which :meth:`load` reads.
 
-        The file has the experiment too, unless a Python function belongs to it. Raises OSError when it cannot be written.
+        The file also has the experiment, unless the experiment has a Python function. Raises OSError if the file cannot be written.
         """
         state = None if self._experiment is None else self._experiment._plain_state()
         _saved.write(path, self._data(), state)
@@ -375,7 +375,7 @@ class Outcome(Strict):
         return Outcome(None, _saved.read_with(path, lambda: Outcome._experiment_of_state(known)), saved)
 
     def __reduce__(self) -> tuple[type[Outcome], tuple[None, Experiment | None, _saved.Saved]]:
-        # A function that was defined within another one cannot be pickled. The outcome then goes without its experiment.
+        # A function that is defined within another function cannot be pickled. The outcome is then pickled without its experiment.
         experiment = self._experiment
         try:
             pickle.dumps(experiment)
@@ -425,7 +425,7 @@ def _board_rows(found: UtilisationData | None) -> list[dict[str, object]]:
 
 
 def _cell(value: object) -> str | None:
-    """A value of a report as text, since one column has values of several types."""
+    """Returns a value of a report as text, because a column of differences has values of several types."""
     return value if value is None or isinstance(value, str) else json.dumps(value)
 
 

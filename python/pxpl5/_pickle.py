@@ -1,4 +1,4 @@
-"""Functions by which the module pickle makes objects of the native module again."""
+"""Functions with which the module pickle restores objects of the native module."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Progress of what takes long: a bar of tqdm, a callable, or nothing."""
+"""Display of progress: a bar of tqdm, a call of a function, or nothing."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from contextlib import contextmanager
 from types import TracebackType
 from typing import Protocol
 
-#: What ``progress=`` takes: None for a bar where one makes sense, True or False for a bar or none, or a callable that is told
-#: (done, of all).
+#: Values of ``progress=``: None for a bar in notebooks and terminals, True for a bar, False for no bar, or a callable. The callable
+#: gets two numbers: finished steps and all steps.
 Progress = bool | None | Callable[[int, int], object]
 
 
 def _wants_bar(progress: bool | None) -> bool:
-    """Where nothing is said, a bar is for people: notebooks and terminals."""
+    """Returns true if a bar shall be shown. With None, notebooks and terminals get a bar."""
     if progress is not None:
         return progress
     return "ipykernel" in sys.modules or sys.stderr.isatty()
@@ -37,8 +37,8 @@ class _Bar(Protocol):
 
 
 def _bar(unit: str) -> _Bar | None:
-    """A bar of tqdm, in notebooks too; None without tqdm."""
-    # Without ipywidgets tqdm warns in every notebook that it shows a bar of text.
+    """Returns a bar of tqdm, or None if tqdm is not installed."""
+    # In a notebook without ipywidgets, tqdm would warn that it shows a bar of text.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
@@ -51,7 +51,7 @@ def _bar(unit: str) -> _Bar | None:
 
 @contextmanager
 def reporting(progress: Progress, unit: str) -> Iterator[Callable[[int, int], object] | None]:
-    """What is told of progress, for as long as some work takes."""
+    """Yields a function that shows progress during some work, or None if no progress is shown."""
     if callable(progress):
         yield progress
         return

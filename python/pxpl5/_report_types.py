@@ -126,7 +126,7 @@ class PixelErrorsData(TypedDict):
     centre_px: PercentilesData
     centre_deg: PercentilesData
     #: Number of evaluated pixels.
-    judged: int
+    evaluated: int
     #: Numbers of pixels that were left out, by reason.
     behind: int
     empty: int
@@ -213,7 +213,7 @@ class HeadData(TypedDict):
     prediction: PredictorData
     training: TrainingData | None
     fingerprint: str
-    judged_at_m: float | None
+    evaluated_at_m: float | None
     #: Raster of the display, or the device that reprojects pictures.
     display: str | dict[str, ReprojectionDeviceData]
     end_to_end: BudgetData

@@ -132,7 +132,7 @@ class ParameterRow(TypedDict):
     path: str
     value: float
     unit: str
-    standing: str
+    provenance: str
     low: float
     high: float
     source: str
@@ -162,7 +162,7 @@ class FigureRow(TypedDict):
     analytic: float | None
     #: Ends of the interval as JSON.
     interval: str | None
-    standing: str
+    provenance: str
     spread: float | None
     fitted: str
     source: str
@@ -199,7 +199,7 @@ class VolumeFigureRow(TypedDict):
     #: Ends of the interval that the paper's number stands for, as JSON.
     interval: str
     computed: float
-    standing: str
+    provenance: str
     source: str
     scene: str | None
     error_percent: float | None

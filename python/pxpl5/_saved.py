@@ -1,4 +1,4 @@
-"""Outcomes as data: what the module pickle and files keep of a run."""
+"""Outcomes as data, for the module pickle and for files."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ SCHEMA = "pxpl5-outcome/1"
 class Saved(TypedDict):
     """Results of a run. Times are simulated time."""
 
-    #: Hash of the trace, with statistics.
+    #: Hash of the trace and the statistics.
     trace_hash: str
-    #: Hash of everything on which the trace depends.
+    #: Hash of all settings on which the trace depends.
     config_hash: str
     #: Names of pipeline, machine and scene.
     subject: tuple[str, str, str]
@@ -105,7 +105,7 @@ def saved_of(native: _native.Outcome) -> Saved:
 def write(path: str | PathLike[str], saved: Saved, experiment: ExperimentState | None) -> None:
     """Writes results and the state of their experiment to a file: a ZIP archive of JSON and PNG.
 
-    Raises OSError when the file cannot be written.
+    Raises OSError if the file cannot be written.
     """
     pictures = {f"{label}.png": picture for label, picture in saved["last"].items() if picture is not None}
     if saved["both"] is not None:
@@ -130,7 +130,7 @@ def write(path: str | PathLike[str], saved: Saved, experiment: ExperimentState |
 def read(path: str | PathLike[str]) -> tuple[Saved, ExperimentState | None]:
     """Reads results and the state of their experiment, if the file has it.
 
-    Raises :class:`SettingError` for a file that :func:`write` has not written, and OSError when it cannot be read.
+    Raises :class:`SettingError` for a file that :func:`write` has not written, and OSError if the file cannot be read.
     """
 
     def contents() -> tuple[Saved, ExperimentState | None]:

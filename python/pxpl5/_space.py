@@ -1,4 +1,4 @@
-"""Spaces of settings, at whose points a sweep runs an experiment."""
+"""Spaces of settings. A sweep runs an experiment at each point of a space."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Range:
-    """Whole numbers from ``start`` to ``stop``, both included, in steps."""
+    """Whole numbers from ``start`` to at most ``stop`` at equal distances."""
 
-    #: The first.
+    #: First number.
     start: int
-    #: The last, if a step meets it.
+    #: Greatest possible number.
     stop: int
-    #: From one to the next, above 0.
+    #: Distance between two numbers, above 0.
     step: int = 1
 
 
 class SweepSpace(Strict):
-    """A space of settings: what all points share, and the axes along which they differ.
+    """A space of settings: the settings that all points share, and the settings that vary.
 
-    - ``base``: keys of an experiment with their values, such as ``{"pipeline": "slats", "scene": "mig"}``; a :class:`Machine` under
-      ``machine`` stands for its preset and its changes.
-    - ``grid``: keys with the values that they take, lists or :class:`Range`: all combinations, the
-      last key in the order of the alphabet fastest.
-    - ``together``: keys that change in step, lists of one length.
-    - ``seeds``: so many seeds from 1 on for every point.
+    - ``base``: shared keys with their values, such as ``{"pipeline": "slats", "scene": "mig"}``. A :class:`Machine` under the key
+      ``machine`` gives its preset and its changes.
+    - ``grid``: keys with all of their values, as lists or :class:`Range`. The space has all combinations of the values. From point to
+      point, the key that is last in alphabetical order changes fastest.
+    - ``together``: keys whose values change together, as lists of equal length.
+    - ``seeds``: number of seeds, counted from 1, for every combination.
 
-    Raises :class:`SettingError` for a space that makes no sense.
+    Raises :class:`SettingError` for a wrong space.
     """
 
     _fields = ("text",)
@@ -64,34 +64,34 @@ class SweepSpace(Strict):
 
     @classmethod
     def from_file(cls, path: str | PathLike[str]) -> SweepSpace:
-        """The space of an experiment file with a table ``sweep``, as ``pxpl5 sweep FILE`` takes it.
+        """Reads a space from an experiment file with a table ``sweep``, as for ``pxpl5 sweep FILE``.
 
-        Raises :class:`SettingError` with the file and the line.
+        Raises :class:`SettingError` with the file and the line of an error.
         """
         space = cls.__new__(cls)
         space._take(Path(path).read_text(encoding="utf-8"), Path(path).absolute())
         return space
 
     def _take(self, text: str, path: Path) -> None:
-        #: The text of an experiment file that says the same.
+        #: Text of an experiment file that describes this space.
         self.text = text
         self._path = path
         self._native = sweep_of_text(text, fspath(path))
 
     @property
     def points(self) -> int:
-        """How many points there are."""
+        """Number of points of the space."""
         return self._native.points
 
     def header(self) -> SweepHeaderData:
-        """What all rows have in common: schema, version, machine, quantities with their definitions, axes.
+        """Returns the data that all rows share: schema, version, machine, quantities with their definitions, axes.
 
-        Raises :class:`SettingError` when no point is an experiment.
+        Raises :class:`SettingError` if no point has valid settings of an experiment.
         """
         return self._native.header()
 
     def costs(self, points: Sequence[int]) -> list[float]:
-        """About how many seconds each of some points will take on one core, by the analytic level."""
+        """Returns the estimated seconds on one core for each of the given points, by the analytic level."""
         return self._native.costs([whole("points", point) for point in points])
 
     def __repr__(self) -> str:
@@ -122,7 +122,7 @@ def _axis(values: Sequence[object] | Range) -> str:
 
 
 def sweep_of_text(text: str, path: str) -> _native.Sweep:
-    """Returns the sweep of a text; names of files in it are relative to the folder of ``path``, if it is the path of a file."""
+    """Returns the sweep of a text. If ``path`` is the path of a file, file names in the text are relative to its folder."""
     settings = _native.Settings()
     if path in ("", "."):
         settings.parse(text, "space")

@@ -33,13 +33,13 @@ class Stepper(Strict):
         return self._native.step_field()
 
     def step_line(self) -> str:
-        """Runs until the next line of the first surface begins to be lit."""
+        """Runs to the instant at which the next line of the first surface begins to light."""
         return self._native.step_line()
 
     def step_event(self, board: str | None = None) -> str:
-        """Handles one event, or all events up to the next one of a board: ``host``, ``ring``, ``gp 3``, ``renderer 0``.
+        """Handles one event. With ``board``, handles all events up to the next event of this board.
 
-        Raises :class:`SettingError` for an unknown board.
+        Names of boards are ``host``, ``ring``, ``gp 3`` or ``renderer 0``. Raises :class:`SettingError` for an unknown board.
         """
         return self._native.step_event(board)
 
@@ -68,7 +68,7 @@ class Stepper(Strict):
 
     @property
     def shown(self) -> int:
-        """Number of complete pictures that were shown so far and whose records are kept."""
+        """Number of complete pictures that were shown up to now and whose records are kept."""
         return self._native.shown
 
     @property
@@ -82,7 +82,7 @@ class Stepper(Strict):
         return self._native.last_event()
 
     def board(self, name: str) -> BoardState | None:
-        """State of a processor or renderer as a dictionary; None for other boards and boards that do not exist.
+        """Returns the state of a processor or renderer as a dictionary, or None for other boards and boards that do not exist.
 
         Raises :class:`SettingError` for an unknown kind of board.
         """
@@ -90,18 +90,23 @@ class Stepper(Strict):
 
     @property
     def channels(self) -> Table[ChannelRow]:
-        """A row for each message that occupies a channel of the ring now."""
+        """A row for each message that now occupies a channel of the ring."""
         return table_of(self._native.channels())
 
     def picture(self, surface: str = "left") -> Picture | None:
-        """Picture that the viewer of a surface sees now, with the beam at its place; None without pixels.
+        """Returns the picture that the viewer of a surface sees now, or None without pixels.
+
+        Lines above the beam are of the current field, and lines below the beam are of the previous field.
 
         Raises :class:`SettingError` with the surfaces of the display.
         """
         return self._native.picture(surface)
 
     def finish(self) -> Outcome:
-        """Runs to the end and returns the outcome; raises as :meth:`Experiment.run`. The stepper cannot be used afterwards."""
+        """Runs to the end and returns the outcome. The stepper cannot be used afterwards.
+
+        Raises the exceptions of :meth:`Experiment.run`.
+        """
         return self._experiment._finished(self._native.finish)
 
     def __repr__(self) -> str:

@@ -13,7 +13,7 @@ class ParameterData(TypedDict):
     path: str
     value: float
     unit: str
-    standing: str
+    provenance: str
     low: float
     high: float
     source: str
@@ -66,7 +66,7 @@ class FigureData(TypedDict):
     error_percent: float | None
     analytic: float | None
     interval: list[float] | None
-    standing: str
+    provenance: str
     spread: float | None
     fitted: str
     source: str
@@ -415,7 +415,7 @@ class VolumeFigureData(TypedDict):
     published: float
     interval: list[float]
     computed: float
-    standing: str
+    provenance: str
     source: str
     scene: str | None
     error_percent: float | None
@@ -429,7 +429,7 @@ class VolumeDefinitionData(TypedDict):
     statement: str
     value: float
     unit: str
-    standing: str
+    provenance: str
     source: str
 
 

@@ -1,4 +1,4 @@
-"""Sweeps: an experiment at every point of a space of settings, on this computer or on a cluster."""
+"""Sweeps. A sweep runs an experiment at every point of a space of settings, on this computer or on a cluster."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class SweepResults(Strict):
     _fields = ("lines", "folder", "header")
 
     def __init__(self, lines: list[str], folder: Path | None, header: SweepHeaderData) -> None:
-        #: The rows as lines of JSON, the same bytes whoever computed them.
+        #: Rows as lines of JSON. The bytes do not depend on the computer or the order of the computation.
         self.lines = lines
-        #: The folder with rows.jsonl and results.csv; None if they were not to be kept.
+        #: Folder with rows.jsonl and results.csv; None if :func:`sweep` was called without ``out``.
         self.folder = folder
-        #: What all rows have in common.
+        #: Data that all rows share.
         self.header = header
 
     def __len__(self) -> int:
@@ -44,7 +44,7 @@ class SweepResults(Strict):
 
     @property
     def table(self) -> Table[dict[str, Cell]]:
-        """A row for each point: point, status, its settings by path, the quantities by name, trace_hash and error."""
+        """A row for each point: point, status, settings by path, quantities by name, trace_hash and error."""
         rows = []
         for line in self.lines:
             row = json.loads(line)
@@ -65,14 +65,15 @@ class SweepResults(Strict):
         title: str = "",
         width_mm: float = 120.0,
     ) -> Drawing:
-        """Draws column ``y`` over column ``x`` as ``pxpl5 plot`` does, with the interval of each mean.
+        """Plots column ``y`` against column ``x`` as ``pxpl5 plot`` does, with the interval of each mean.
 
-        - ``by``: columns whose values have curves of their own; ``band``: columns over which the mean is taken.
-        - ``where``: values of columns that a row must have to be drawn.
+        - ``by``: columns; each combination of their values gives a curve.
+        - ``band``: columns over which the mean is taken.
+        - ``where``: values of columns; only rows with these values are drawn.
         - ``x_scale``, ``y_scale``: ``even``, ``zero`` (from 0) or ``log``.
 
-        A row without a number is left out, never drawn as 0. Raises :class:`SettingError` for an unknown column, for a column that
-        varies and is not named, and when no row has a number.
+        A row without a number is skipped and not drawn as 0. Raises :class:`SettingError` for an unknown column, for a column that varies
+        and is not named, and if no row has a number.
         """
         rows = "\n".join([json.dumps(self.header), *self.lines]) + "\n"
         options = {"by": by, "band": band, "where": where, "x_scale": x_scale, "y_scale": y_scale, "title": title}
@@ -94,17 +95,19 @@ def sweep(
     client: Client | None = None,
     progress: Progress = None,
 ) -> SweepResults:
-    """Runs an experiment at every point; a point that cannot be simulated has a row that says why.
+    """Runs an experiment at every point. If a point cannot be simulated, its row has the reason.
 
-    - ``out``: a folder for rows.jsonl, times.jsonl and results.csv; rows are appended as they come, so that after an interruption
-      ``resume=True`` goes on. Without it nothing is kept but what is returned.
-    - ``threads``: points at a time on this computer; default: one a core.
-    - ``client``: a Dask client: its workers compute the points, in chunks of about half a second by the analytic level's estimate of
-      their cost and by how long points took so far. Rows come as they are finished; what a lost worker had not finished is computed
-      again, however many are lost. Workers need this package, and the files that the space names.
+    - ``out``: folder for rows.jsonl, times.jsonl and results.csv. The function appends each finished row at once. Without ``out``, no
+      files are kept.
+    - ``resume``: True to continue an interrupted sweep in the folder ``out``.
+    - ``threads``: number of points that are computed at the same time on this computer; default: one for each core.
+    - ``client``: Dask client whose workers compute the points. A worker computes a chunk of points, which takes about half a second by the
+      estimate of the analytic level and the times of finished points. If a worker is lost, other workers compute its unfinished points.
+      Workers need this package and the files that the space names.
 
-    The rows are the same bytes, whatever computed them and in whatever order. Raises :class:`SweepError` for a folder that cannot be
-    used and for a point over which worker after worker dies, :class:`SettingError` when no point is an experiment.
+    The bytes of the rows do not depend on the computer or the order of the computation. Raises :class:`SweepError` for a folder that
+    cannot be used, and if many workers die while they compute the same point. Raises :class:`SettingError` if no point has valid settings
+    of an experiment.
     """
     if out is not None:
         return _swept(space, Path(out), resume, threads, client, progress, True)
@@ -122,11 +125,11 @@ def _swept(
     keeps: bool,
 ) -> SweepResults:
     store = _native.Store(space._native, folder, resume)
-    with reporting(progress, "points") as told:
+    with reporting(progress, "points") as reporter:
         if client is None:
-            store.run(optional("threads", threads, 1) or os.cpu_count() or 1, told)
+            store.run(optional("threads", threads, 1) or os.cpu_count() or 1, reporter)
         else:
-            Cluster(space, store, client, told).run()
+            Cluster(space, store, client, reporter).run()
     lines = store.lines()
     store.finish()
     return SweepResults(lines, folder if keeps else None, space.header())

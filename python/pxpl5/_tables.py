@@ -1,4 +1,4 @@
-"""Rows as tables."""
+"""Conversion of rows to tables."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def _cleaned(value: object) -> object:
-    """What is no number becomes null: JSON has no name for it."""
+    """Returns a value for JSON. Infinite numbers and NaN become None, because JSON has no form for them."""
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float):
@@ -33,7 +33,10 @@ def _cleaned(value: object) -> object:
 
 
 def table_of(rows: Sequence[Mapping[str, object]], definitions: Mapping[str, str] | None = None) -> Table[Row]:
-    """A table of dictionaries: nested names with points, lists as JSON; a column has a type where all its values have it."""
+    """Returns a table of dictionaries. Nested names are joined with points, and lists become JSON.
+
+    A column has the type of its values if all values have the same type.
+    """
     for number, row in enumerate(rows):
         if not isinstance(row, Mapping):
             raise SettingError(f"row {number}: expected a dictionary, found {type(row).__name__}")

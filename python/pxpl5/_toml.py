@@ -1,4 +1,4 @@
-"""Values as experiment files (TOML) write them."""
+"""Values in the format of experiment files (TOML)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from os import PathLike, fspath
 
 
 def toml_of(value: object) -> str:
-    """A value as experiment files write it."""
+    """Returns a value in the format of experiment files."""
     if isinstance(value, bool) or isinstance(value, int):
         return json.dumps(value)
     if isinstance(value, float):

@@ -1,4 +1,4 @@
-"""Types of dictionaries that the native module gives."""
+"""Types of the dictionaries that the native module returns."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from typing import TypedDict
 
 
 class PolicyFrame(TypedDict):
-    """A frame as a policy gets it, after TRANSFORM."""
+    """A frame after TRANSFORM, the argument of a policy."""
 
     #: Number of the frame, from 0.
     frame: int
-    #: Simulated seconds.
+    #: Simulated time in seconds.
     time_s: float
-    #: Regions in a row of the screen.
+    #: Number of regions in a row of the screen.
     columns: int
     #: Number of primitives in the bin of each region, row by row.
     primitives: list[int]
@@ -23,7 +23,7 @@ class PolicyFrame(TypedDict):
 class EventState(TypedDict):
     """An event of the simulation."""
 
-    #: Picoseconds of simulated time.
+    #: Simulated time in picoseconds.
     time_ps: int
     #: Board that handles the event.
     board: str
@@ -111,7 +111,7 @@ class RendererData(TypedDict):
 
 
 class RingData(TypedDict):
-    """Share of the ring's channels, and words a second."""
+    """Shares of time of the ring's channels, and words a second."""
 
     channels: SharesData
     words_per_second: float
@@ -119,14 +119,14 @@ class RingData(TypedDict):
 
 
 class PortData(TypedDict):
-    """Share of one port of a display."""
+    """Share of time of one ring port of a display."""
 
     port: str
     busy: float
 
 
 class PortsData(TypedDict):
-    """Shares of the ring ports of displays."""
+    """Shares of time of the ring ports of displays."""
 
     busy: SharesData
     each: list[PortData]
@@ -144,7 +144,7 @@ class UtilisationData(TypedDict):
 
 
 class PathPartData(TypedDict):
-    """Share of a latency in which a picture waits for one resource."""
+    """Part of a latency during which a picture waits for one resource."""
 
     resource: str
     share: float
@@ -163,7 +163,7 @@ class CriticalPathData(TypedDict):
     chain: list[str]
 
 
-#: Effect of more of one resource: values without and with the change.
+#: Effect of 10 % more of one resource: values without and with the change.
 WhatIfData = TypedDict(
     "WhatIfData",
     {
@@ -207,7 +207,7 @@ class RigLatencyData(TypedDict):
 
 
 class RigSideData(TypedDict):
-    """Tracking, rendering and total latency, from outside or from inside."""
+    """Tracking, rendering and total latency, measured from outside or inside the machine."""
 
     tracking: RigLatencyData
     rendering: RigLatencyData

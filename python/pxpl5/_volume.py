@@ -1,4 +1,4 @@
-"""Scenes as the slices of a spinning volumetric display (SpatialGL, Perspecta)."""
+"""Slices of a scene for a spinning volumetric display (SpatialGL, Perspecta)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def _scene(scene: str | PathLike[str] | Scene) -> Scene:
-    """A scene by its name, from its file, or as it is."""
+    """Returns the scene with a name or from a model file. A :class:`Scene` is returned unchanged."""
     if isinstance(scene, Scene):
         return scene
     name = fspath(scene)
@@ -27,9 +27,9 @@ def _scene(scene: str | PathLike[str] | Scene) -> Scene:
 def draw_volume(
     scene: str | PathLike[str] | Scene, settings: Mapping[str, object] | None = None
 ) -> Volume:
-    """Draws a scene as a volume; what ``settings`` do not say, by path of :func:`volume_keys`, is as in the paper.
+    """Draws a scene as a volume. ``settings`` has values by path (:func:`volume_keys`); other settings are those of the paper.
 
-    Raises :class:`SettingError` with the path, what was expected and what was found.
+    Raises :class:`SettingError` with the path, the expected value and the found value.
     """
     assignments = [f"{path}={_text(value)}" for path, value in (settings or {}).items()]
     return Volume.draw(_scene(scene), assignments)
@@ -40,15 +40,15 @@ def _text(value: object) -> str:
 
 
 def volume_keys() -> list[str]:
-    """Paths of everything that decides what a volume is."""
+    """Returns the paths of all settings of a volume."""
     return _native.volume_keys()
 
 
 def volume_figures(scenes: Sequence[str | Scene] = ("mig", "head", "molecules"), *, progress: Progress = None) -> Table[VolumeFigureRow]:
-    """The figures of the SpatialGL paper beside the model's: a row for each with expected and computed value and standing.
+    """Returns a row for each figure of the SpatialGL paper, with expected value, computed value and provenance (``provenance``).
 
     Raises :class:`SettingError` for a scene that cannot be drawn.
     """
-    with reporting(progress, "scenes") as told:
-        found = _native.volume_figures([_scene(scene) for scene in scenes], told)
+    with reporting(progress, "scenes") as reporter:
+        found = _native.volume_figures([_scene(scene) for scene in scenes], reporter)
     return table_of(found["figures"])

@@ -12,7 +12,7 @@ def test_one_latency_figure_is_met() -> None:
     """Figure 9: Slats shows every picture after one field; figure 10: 20 field regions in 11 region times."""
     table = pxpl5.figures(["9", "10"], progress=False)
     row = table.row(0)
-    assert (row["id"], row["published"], row["unit"], row["standing"]) == ("9", 1.0, "fields", "free")
+    assert (row["id"], row["published"], row["unit"], row["provenance"]) == ("9", 1.0, "fields", "free")
     assert row["simulated"] == pytest.approx(1.0) and row["misses"] is False
     assert table.row(1)["published"] == 11 and table.row(1)["misses"] is False
     assert len(pxpl5.figure_ids()) == 26

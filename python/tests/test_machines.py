@@ -9,14 +9,14 @@ def test_the_machine_of_the_papers_has_13_gps_and_5_renderers() -> None:
     machine = pxpl5.Machine("small-hmd")
     assert (machine.n_gps, machine.n_renderers) == (13, 5)
     word = machine["ring.word_ns"]
-    assert (word.value, word.unit, word.standing) == (50, "ns", "published")
+    assert (word.value, word.unit, word.provenance) == (50, "ns", "published")
     assert word.source and word.low <= word.value <= word.high
 
 
-def test_every_parameter_has_a_standing_a_source_and_a_range() -> None:
+def test_every_parameter_has_a_provenance_a_source_and_a_range() -> None:
     for preset in pxpl5.presets():
         for parameter in pxpl5.Machine(preset).parameters:
-            assert parameter.standing in ("published", "derived", "assumed"), parameter
+            assert parameter.provenance in ("published", "derived", "assumed"), parameter
             assert parameter.source and parameter.low <= parameter.high, parameter
 
 

@@ -135,8 +135,8 @@ except KeyboardInterrupt:
 """
 
 
-@pytest.mark.parametrize("head", ["", ", head=pxpl5.Head('pan:100')"], ids=["run", "rehearsal"])
-def test_ctrl_c_ends_a_run_and_its_rehearsal(head: str) -> None:
+@pytest.mark.parametrize("head", ["", ", head=pxpl5.Head('pan:100')"], ids=["run", "dry run"])
+def test_ctrl_c_ends_a_run_and_its_dry_run(head: str) -> None:
     """A million fields would take hours. With a head, the run that tells when views are seen comes first."""
     text = INTERRUPTED.format(head=head).replace("1_000_000", "200_000" if head else "1_000_000")
     process = subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, text=True)

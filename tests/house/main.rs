@@ -13,7 +13,7 @@ use crates::{Crate, workspace};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Layers of the workspace. A crate may depend on crates of the listed layers, and on crates of its own layer only if
-/// that is listed too.
+/// its own layer is listed too.
 const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("ground", &["pxpl5-sim", "pxpl5-wire", "i860"], &["ground"]),
     (
@@ -166,7 +166,7 @@ fn only_the_command_prints() {
     }
 }
 
-/// A hint and not a judge: a person reads the text.
+/// The counts are only hints, because only a person can judge a text.
 #[test]
 fn no_text_becomes_harder_to_read() {
     prose::check(&workspace());

@@ -7,7 +7,7 @@ use std::process::Command;
 /// Keys of a manifest that a registry shows.
 const SHOWN: [&str; 6] = ["description", "documentation", "license", "readme", "repository", "rust_version"];
 
-/// Most keywords and characters of a keyword that crates.io accepts.
+/// Greatest number of keywords, and of characters in a keyword, that crates.io accepts.
 const MAX_KEYWORDS: usize = 5;
 const MAX_KEYWORD: usize = 20;
 

@@ -4,10 +4,10 @@ use crate::crates::Crate;
 use std::fs;
 use std::path::Path;
 
-/// Most hints that the tree may have. Lower a number when the count falls.
+/// Greatest counts of hints that the tree may have. Lower a number when the count falls.
 const LIMITS: Counts = Counts { openers: 0, long_comments: 0, long_sentences: 1, idioms: 4, wide_lines: 96 };
 
-/// Most words of a sentence.
+/// Greatest number of words in a sentence.
 const WORDS: usize = 30;
 
 /// Widest line of a document, in columns.

@@ -26,7 +26,7 @@ pub(crate) fn code(text: &str) -> String {
 }
 
 /// Returns a source without the code of the features `files` and `threads`. A file that belongs to such a feature as a
-/// whole says so in its first line.
+/// whole states this in its first line.
 pub(crate) fn without_host_feature(text: &str) -> String {
     let is_of_the_host =
         ["files", "threads"].iter().any(|name| text.contains(&format!("#![cfg(feature = \"{name}\")]")));

@@ -8,7 +8,7 @@ use crate::timing::ArpTiming;
 pub(crate) struct FaceHit {
     /// The face that the direction hits.
     pub(crate) face: CubeFace,
-    /// Component of the direction along the forward axis of the face. It is greater than zero.
+    /// Component of the direction along the forward axis of the face. The component is greater than zero.
     pub(crate) forward: i64,
     /// Component of the direction to the right. Its magnitude is at most `forward`.
     pub(crate) right: i64,
@@ -35,7 +35,7 @@ pub struct Footprint {
     /// Upper left, upper right, lower left and lower right texel.
     ///
     /// Without guard texels, a texel beyond an edge belongs to the neighbouring face. `None` marks a texel beyond a
-    /// corner. The mean of the other three texels replaces it.
+    /// corner. The mean of the other three texels replaces such a texel.
     pub texels: [Option<TexelAddress>; 4],
     /// Horizontal and vertical distance from the upper left texel, as fractions from 0 to 1 inclusive. The unit is
     /// `2^-weight_bits`.

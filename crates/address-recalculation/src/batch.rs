@@ -2,8 +2,9 @@
 //!
 //! Directions are sums of three products below 2^53, so doubles hold them exactly. Quotients need no correction either:
 //!
-//! - A quotient is a multiple of 1/(2F) and less than 2^q. F is below 2^(v + m - 1), where v and m are the bits of
-//!   vector and matrix.
+//! - A quotient is a multiple of 1/(2F) and less than 2^q. Here q is the number of bits of a quotient, and F is the
+//!   component of the direction along the face's axis. F is below 2^(v + m - 1), where v and m are the numbers of bits
+//!   of vector and matrix.
 //! - A rounded double near the quotient has an error of at most 2^(q - 54).
 //! - With v + m + q <= 53 this error is less than 1/(2F), so rounding never reaches the next integer.
 
@@ -11,7 +12,8 @@ use crate::address::AddressUnit;
 use crate::orientation::MatrixWords;
 use multiversion::multiversion;
 
-/// Number of pixels per group. It is large enough to amortize a call, and small enough for the first-level cache.
+/// Number of pixels per group. The number is large enough to amortize a call, and small enough for the first-level
+/// cache.
 pub(crate) const BATCH: usize = 64;
 
 type Each<T> = [T; BATCH];
@@ -22,17 +24,19 @@ type Each<T> = [T; BATCH];
 pub(crate) struct Batch {
     /// Number of pixels in the group.
     pub(crate) count: usize,
-    /// Index of the upper left texel of each pixel. It is 0 for a footprint with texels on other faces.
+    /// Index of the upper left texel of each pixel. The index is 0 for a footprint with texels on other faces.
     pub(crate) index: Each<u32>,
     right: Each<u32>,
     down: Each<u32>,
-    /// Nonzero for a footprint with texels on other faces. The address unit computes such footprints one by one.
+    /// Nonzero for a footprint (four texels) with texels on other faces. The address unit computes such footprints one
+    /// by one.
     leaves: Each<i32>,
     is_left: bool,
     met: Met,
 }
 
-/// Intermediate values of a group: viewing vectors, rotated vectors, components along the face's axes, and positions.
+/// Intermediate values of a group of pixels: viewing vectors, rotated vectors, components along the face's axes, and
+/// positions.
 #[derive(Clone, Debug)]
 struct Met {
     vectors: [Each<i32>; 3],
@@ -62,17 +66,17 @@ impl Batch {
         Self { count: 0, index: zero, right: zero, down: zero, leaves: [0; BATCH], is_left: false, met }
     }
 
-    /// Returns the upper left texels of those footprints that lie on one face.
+    /// Returns the upper left texels of those footprints (four texels) that lie on one face.
     pub(crate) fn inside(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.count).filter(|i| self.leaves[*i] == 0).map(|i| self.index[i])
     }
 
-    /// Returns true if the footprint of a pixel has texels on other faces.
+    /// Returns true if the footprint of a pixel (its four texels) has texels on other faces.
     pub(crate) const fn leaves(&self, pixel: usize) -> bool {
         self.leaves[pixel] != 0
     }
 
-    /// Returns true if any footprint of the group has texels on other faces.
+    /// Returns true if any footprint (four texels) of the group has texels on other faces.
     pub(crate) const fn is_left(&self) -> bool {
         self.is_left
     }
@@ -182,7 +186,7 @@ fn footprints(batch: &mut Batch, unit: &AddressUnit) {
     batch.is_left = leaves[..*count].iter().fold(0, |any, leaves| any | leaves) != 0;
 }
 
-/// Interpolates the four colours of each footprint in a group.
+/// Interpolates the four colours of each footprint (four texels) in a group.
 ///
 /// `reach` is the distance in texels from a row to the next, or 0 without interpolation.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]

@@ -39,7 +39,7 @@ pub(crate) struct Gathered<'a> {
     /// Background colours of the four texels.
     pub(crate) behind: [u32; 4],
     /// Weights in units of `4^-weight_bits`. `None` marks a texel beyond a corner. The mean of the other three texels
-    /// replaces it.
+    /// replaces such a texel.
     pub(crate) weights: [Option<u32>; 4],
 }
 
@@ -95,7 +95,7 @@ impl Composition {
     }
 }
 
-/// Returns the nearer of two texel words. At equal depth, this is the first word.
+/// Returns the nearer of two texel words. At equal depth, the result is the first word.
 #[inline(always)]
 pub(crate) const fn nearer(first: u64, second: u64) -> u64 {
     // Both words are below 2^56, so signed comparisons work. Vector units have signed comparisons.

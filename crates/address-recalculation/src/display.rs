@@ -36,7 +36,7 @@ impl EyeBoards {
     /// Swaps the buffers of all memories that are ready at a retrace. Returns the index of each swapped memory with its
     /// new buffer.
     ///
-    /// Memories that must swap together do so only if all of them are ready.
+    /// A group of memories that must swap together swaps only if all memories of the group are ready.
     fn retrace(&mut self, now: Time) -> Vec<(usize, u8)> {
         let ready: Vec<Option<u8>> = self.memories.iter().map(|memory| memory.is_ready(now)).collect();
         // A memory that is ready for another set, or alone, does not count as ready for this set.
@@ -47,8 +47,8 @@ impl EyeBoards {
     }
 }
 
-/// An address recalculation pipeline with its display memories, for one or two eyes. It computes the texel of each
-/// pixel at scan-out.
+/// An address recalculation pipeline with its display memories, for one or two eyes. The pipeline computes the texel of
+/// each pixel at scan-out.
 #[derive(Debug)]
 pub struct AddressRecalculationPipeline {
     optics: Optics,

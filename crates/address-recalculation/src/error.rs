@@ -9,7 +9,7 @@ pub enum ArpError {
     /// A parameter is out of range. The text has its path, the expected and the found value.
     #[error("{0}")]
     Number(String),
-    /// The lens folds the picture over itself, or cannot have the requested viewing angle.
+    /// The lens folds the picture over itself, or is not suitable for the requested viewing angle.
     #[error("arp.lens: expected {expected}, found {found}")]
     Lens {
         /// The violated rule.
@@ -20,7 +20,7 @@ pub enum ArpError {
     /// A file of viewing vectors is invalid.
     #[error("arp.lens table, line {line}: expected {expected}, found {found}")]
     Table {
-        /// Line of the file, counted from 1. If data are missing, it is the line after the last one.
+        /// Line of the file, counted from 1. If data are missing, the number is the line after the last line.
         line: usize,
         /// Description of the expected content.
         expected: String,

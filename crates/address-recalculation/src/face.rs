@@ -84,7 +84,7 @@ impl CubeFace {
     }
 }
 
-/// Returns the index of the longest of three lengths. If several are equal, returns the first one.
+/// Returns the index of the longest of three lengths. Of several equal lengths, the first counts as the longest.
 pub(crate) fn longest<T: PartialOrd>([x, y, z]: [T; 3]) -> usize {
     if x >= y && x >= z {
         0
@@ -136,7 +136,7 @@ impl TexelAddress {
 pub struct FaceGeometry {
     /// Texels along an edge, including guard texels.
     pub texels: u32,
-    /// Number of guard texels on each side of the face. They repeat the content of the neighbouring face.
+    /// Number of guard texels on each side of the face. Guard texels repeat the content of the neighbouring face.
     pub guard: u32,
 }
 
@@ -147,7 +147,8 @@ impl FaceGeometry {
         self.texels - 2 * self.guard
     }
 
-    /// Returns the tangent of half the viewing angle with which a renderer draws a face: texels / inner.
+    /// Returns the tangent of half the viewing angle with which a renderer draws a face: `texels` /
+    /// [`inner`](Self::inner).
     #[must_use]
     pub fn tangent(&self) -> f64 {
         f64::from(self.texels) / f64::from(self.inner())
@@ -166,7 +167,7 @@ impl FaceGeometry {
         Some((face, [right, down]))
     }
 
-    /// Returns the texel that a direction hits. It is never a guard texel. Returns `None` for the zero vector.
+    /// Returns the texel that a direction hits. This texel is never a guard texel. Returns `None` for the zero vector.
     #[must_use]
     pub fn texel(&self, direction: Vector) -> Option<TexelAddress> {
         let (face, place) = self.place(direction)?;

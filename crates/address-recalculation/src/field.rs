@@ -1,4 +1,4 @@
-//! A scanned field. Its pixels are computed only when it is read.
+//! A scanned field, whose pixels are computed only when the field is read.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::config::ArpConfig;
@@ -17,7 +17,7 @@ use std::sync::{Arc, OnceLock};
 #[derive(Debug)]
 pub(crate) struct Optics {
     pub(crate) config: ArpConfig,
-    /// Table of viewing vectors, one for each pixel. It is computed when a field is first read.
+    /// Table of viewing vectors, one for each pixel. The table is computed when a field is first read.
     pub(crate) table: OnceLock<LensTable>,
     pub(crate) scan: Scan,
 }
@@ -93,7 +93,7 @@ impl Field<'_> {
         run.y as usize * self.optics.scan.width() as usize + run.x as usize
     }
 
-    /// Returns for each region of the faces true if a pixel of the field reads it.
+    /// Returns a flag for each region of the faces: true if a pixel of the field reads the region.
     fn wanted(&self, runs: &[Run]) -> Vec<bool> {
         let grid = region_grid(self.optics.config.timing.face_texels as u32);
         let mut wanted = vec![false; grid.regions() as usize];

@@ -100,7 +100,8 @@ impl Lens {
     /// The forms in which a lens can be written as text.
     pub const FORMS: &str = "flat, equidistant, radial:K1 or radial:K1:K2";
 
-    /// Checks that no two pixels use the same point of the lens, and that the lens can have the picture's angle.
+    /// Checks that no two pixels use the same point of the lens, and that the lens is suitable for the picture's
+    /// viewing angle.
     ///
     /// # Errors
     ///

@@ -16,13 +16,14 @@
 //!
 //! # Stages, in the order of the signal
 //!
-//! 1. **Table.** The table has a viewing vector of length 1 for each pixel, in signed words. It contains the [`Lens`]:
-//!    flat, radial, equidistant, or from a file. A lens that folds the picture over itself is refused.
+//! 1. **Table.** The table has a viewing vector of length 1 for each pixel, in signed words. The vectors include the
+//!    effect of the [`Lens`]: flat, radial, equidistant, or from a file. A lens that folds the picture over itself is
+//!    refused.
 //! 2. **Latch.** The orientation register ([`OrientationLatch`]) accepts matrices from the host's own port
 //!    ([`AddressRecalculationPipeline::load_orientation`]) or over the ring ([`orientation_message`]). A matrix that is
 //!    not a rotation is refused and counted, and the previous matrix stays valid. The display reads (latches) the
-//!    matrix once per field, per line or per pixel ([`Latch`]). It does so before the first pixel of the field or line
-//!    is displayed, earlier by the duration of all stages.
+//!    matrix once per field, per line or per pixel ([`Latch`]). The matrix is read before the first pixel of the field
+//!    or line is displayed, earlier by the duration of all stages.
 //! 3. **Rotate.** Nine products and six sums rotate the vector. The results keep all bits.
 //! 4. **Face.** The longest component selects the face. On ties, x precedes y, and y precedes z ([`CubeFace`]).
 //! 5. **Divide.** Dividers compute (1 + u) / 2 and (1 + v) / 2, one bit per stage. Results are rounded down, and 1
@@ -31,9 +32,9 @@
 //!    select the texel. The next bits, rounded, are the fractions. The four texels around the position lie in four
 //!    banks, so one access reads all of them. Without guard texels, a texel beyond an edge belongs to the neighbouring
 //!    face. A texel beyond a corner is the mean of the other three ([`Footprint`]).
-//! 7. **Compose.** For each texel, the memory with the nearest depth is selected. At equal depths, it is the memory
-//!    with the lowest index. A texel with the farthest depth is empty. If all memories are empty, the background memory
-//!    or the background colour is visible ([`Composition`]).
+//! 7. **Compose.** For each texel, the memory with the nearest depth is selected. At equal depths, the memory with the
+//!    lowest index is selected. A texel with the farthest depth is empty. If all memories are empty, the background
+//!    memory or the background colour is visible ([`Composition`]).
 //! 8. **Interpolate.** The weights are products of the two fractions. Halves are rounded up.
 //!
 //! # Updates
@@ -56,14 +57,14 @@
 //! | instant | time |
 //! |---|---|
 //! | a pixel is displayed | as in the NTSC frame buffer |
-//! | its texels are read | 2 + ceil(log2 n) stages before, n memories |
-//! | its orientation is read (latched) | 8 + 16 + ceil(log2 n) stages before it, its line's or its field's first pixel: 650 ns for n = 4 |
+//! | its texels are read | 2 + ceil(log2 n) stages before its display, for n memories |
+//! | its orientation is read (latched) | 8 + 16 + ceil(log2 n) stages before the display of the pixel, or of the first pixel of its line or field: 650 ns for n = 4 |
 //!
 //! # Reference model and fast model
 //!
-//! [`literal`] is the reference model. It has registers of every stage, clock by clock, partial products, restoring
-//! dividers and banks. [`Lookup`] is the fast model. It processes 64 pixels at a time in doubles, which are exact for
-//! these word lengths. tests/equal.rs checks that both give identical bits.
+//! [`literal`] is the reference model. This model simulates, clock by clock, the registers of every stage, partial
+//! products, restoring dividers and banks. [`Lookup`] is the fast model. This model processes 64 pixels at a time in
+//! doubles, which are exact for these word lengths. tests/equal.rs checks that both give identical bits.
 //!
 //! # Not modelled
 //!

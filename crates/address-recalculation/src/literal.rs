@@ -4,8 +4,9 @@
 //! table - multiply - add - add - face - divide x q - address - memory - compare x log2 n - interpolate -> light
 //! ```
 //!
-//! A pixel enters at each clock and is displayed after as many clocks as there are stages. Products are sums of partial
-//! products. Quotients are computed bit by bit. Texels come from banks. A tree of comparators finds the nearest texel.
+//! A pixel enters at each clock. Each stage takes one clock, and the pixel is displayed after the last stage. Products
+//! are sums of partial products. Quotients are computed bit by bit. Texels come from banks. A tree of comparators finds
+//! the nearest texel.
 //!
 //! The reference model shares with the fast model only the names of faces and the format of words.
 
@@ -98,8 +99,8 @@ impl ReferencePipeline {
 
     /// Simulates one clock. All pixels advance by one stage, and the pixel that leaves the last stage is returned.
     ///
-    /// `entering` is the new pixel with the orientation that was read for it. `memories` and `background` are the
-    /// buffers that are visible at this clock.
+    /// `entering` is the new pixel with the orientation that was read for this pixel. `memories` and `background` are
+    /// the buffers that are visible at this clock.
     pub fn clock(
         &mut self,
         entering: Option<([u32; 2], MatrixWords)>,
@@ -145,7 +146,7 @@ impl ReferencePipeline {
         }
     }
 
-    /// Returns the number of bits in a sum of three products. It is one more than in a product.
+    /// Returns the number of bits in a sum of three products: one more than the bits of a product.
     const fn sum_bits(&self) -> u64 {
         self.vector_bits + self.matrix_bits + 1
     }
@@ -194,7 +195,7 @@ impl ReferencePipeline {
     }
 
     /// Multiplies the quotients by the size of the face. The bits above the binary point select the texel. The bits
-    /// below it are the fractions.
+    /// below this point are the fractions.
     fn address(&self, registers: &Registers) -> Footprint {
         let q = self.unit.quotient_bits;
         // Offset of the first position: guard texels and rounding, minus half a texel for interpolation.

@@ -1,10 +1,12 @@
-//! The fast model of pixel computation. It processes groups of pixels and gives the same bits as the reference model.
+//! The fast model of pixel computation, which processes groups of pixels and gives the same bits as the reference
+//! model.
 //!
 //! A picture reads each texel several times. The depths of a texel in all memories are compared only once, when a pixel
 //! first needs the texel ([`Composed`]). Addresses and weights are computed for a group of pixels together
 //! ([`crate::batch`]).
 //!
-//! The address unit handles two cases pixel by pixel: wider words, and pixels whose four texels do not lie on one face.
+//! The address unit handles two cases pixel by pixel: words too wide for exact doubles, and pixels whose four texels do
+//! not lie on one face.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::batch::{BATCH, Batch, addresses, mixed};
@@ -22,7 +24,8 @@ use std::cell::Cell;
 pub struct LookStats {
     /// Number of pixels whose footprint (its four texels) has a texel on another face.
     pub split: u64,
-    /// Number of pixels whose footprint has two texels in one bank and therefore needs a second access.
+    /// Number of pixels whose footprint (its four texels) has two texels in one bank and therefore needs a second
+    /// access.
     pub conflicts: u64,
 }
 
@@ -168,8 +171,8 @@ impl<'a> Lookup<'a> {
         stats
     }
 
-    /// Finds for each pixel the memory that is shown at its texel with the largest weight. A pixel gets `None` if all
-    /// memories are empty there.
+    /// Finds for each pixel the memory whose colour is shown at the texel with the largest weight among the pixel's
+    /// four texels. A pixel gets `None` if all memories are empty at this texel.
     ///
     /// # Panics
     ///
@@ -253,7 +256,7 @@ impl<'a> Lookup<'a> {
     }
 }
 
-/// Number of consecutive texels for which the nearest memory is selected at once. It divides 128.
+/// Number of consecutive texels for which the nearest memory is selected in one step. The number is a divisor of 128.
 const PIECE: usize = 32;
 
 /// For each texel, the colour of the nearest memory, computed when a pixel first needs it.

@@ -14,7 +14,7 @@ const REGION_TEXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 /// Number of words in a message that contains pixels.
 const MESSAGE_WORDS: u32 = 1_024;
 
-/// A region that has arrived. Its texels are computed only when it is read.
+/// A region that has arrived. Its texels are computed only when the region is read.
 #[derive(Debug)]
 pub(crate) struct StoredRegion {
     source: Arc<dyn PixelSource>,
@@ -29,8 +29,8 @@ pub(crate) type Regions = BTreeMap<u16, Arc<StoredRegion>>;
 pub(crate) struct MemoryKind {
     pub(crate) face_texels: u32,
     pub(crate) format: TexelFormat,
-    /// True if the memory stores depth. The background memory does not: it lies behind all other memories and covers
-    /// empty texels.
+    /// True if the memory stores depth. The background memory stores no depth, because it lies behind all other
+    /// memories and is visible at empty texels.
     pub(crate) has_depth: bool,
 }
 
@@ -94,7 +94,7 @@ struct Buffer {
 struct SwapRequest {
     asked_at: Time,
     buffer: u8,
-    /// Bit mask of the memories that must swap at the same retrace. It is 0 if this memory swaps alone.
+    /// Bit mask of the memories that must swap at the same retrace. The mask is 0 if this memory swaps alone.
     together: u8,
 }
 
@@ -114,8 +114,8 @@ pub struct MemoryStats {
 
 /// A display memory: the six faces of a cube with depth, in two buffers.
 ///
-/// An update begins with a map of the regions that will arrive. It becomes visible at the first requested retrace at
-/// which all regions are present.
+/// An update begins with a map of the regions that will arrive. The update becomes visible at the first requested
+/// retrace at which all regions are present.
 #[derive(Clone, Debug)]
 pub struct DisplayMemory {
     kind: MemoryKind,
@@ -189,7 +189,7 @@ impl DisplayMemory {
         Ok(())
     }
 
-    /// Requests to show a buffer. The buffer becomes visible at the next retrace at which it is complete.
+    /// Requests to show a buffer. The buffer becomes visible at the next retrace at which all its regions are complete.
     pub(crate) fn ask(&mut self, buffer: u8, together: u8, now: Time) {
         self.request = Some(SwapRequest { asked_at: now, buffer, together });
     }
@@ -238,15 +238,16 @@ impl DisplayMemory {
         arriving.first_part_at
     }
 
-    /// Returns the bit mask of the memories that must swap together with this one. Returns `None` if no request
-    /// precedes this retrace, or if the requested update is incomplete.
+    /// Returns `None` if this memory cannot swap at a retrace at `now`, because no request precedes the retrace or the
+    /// requested update is incomplete. Otherwise returns the bit mask of the memories that must swap at the same
+    /// retrace, or 0 if this memory swaps alone.
     pub(crate) fn is_ready(&self, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
         self.buffers[usize::from(request.buffer)].missing.is_empty().then_some(request.together)
     }
 
-    /// Shows the requested buffer at a retrace if `may_swap` is true, and returns this buffer. Otherwise counts a
-    /// missed retrace.
+    /// Shows the requested buffer at a retrace if `may_swap` is true, and returns this buffer. Otherwise, the function
+    /// counts a missed retrace if the request came before this retrace.
     pub(crate) fn retrace(&mut self, may_swap: bool, now: Time) -> Option<u8> {
         let request = self.request.filter(|request| request.asked_at < now)?;
         // Remember since when the update is late.

@@ -29,7 +29,7 @@ impl Orientation {
         if let Some(component) = rows.iter().flatten().find(|component| !component.is_finite()) {
             return refused(format!("a component of {component}"));
         }
-        // The products of rows must be those of an orthonormal matrix.
+        // The products of rows must equal the products of an orthonormal matrix.
         for i in 0..3 {
             for j in 0..=i {
                 let product = dot(rows[i], rows[j]);
@@ -70,8 +70,8 @@ impl Orientation {
         self.rows.map(|row| dot(row, vector))
     }
 
-    /// Returns the nine words of the matrix register. They are signed and have `matrix_bits` bits. The largest word
-    /// represents 1, and halves are rounded to even.
+    /// Returns the nine words of the matrix register. The words are signed and have `matrix_bits` bits. The largest
+    /// word represents 1, and halves are rounded to even.
     #[must_use]
     pub fn words(&self, matrix_bits: u64) -> MatrixWords {
         MatrixWords(self.rows.map(|row| row.map(|component| signed_word(component, matrix_bits))))
@@ -127,7 +127,7 @@ impl OrientationLatch {
     /// # Errors
     ///
     /// Fails in the same cases as [`Orientation::new`]. A refused matrix is counted and does not replace the previous
-    /// one.
+    /// matrix.
     pub fn load(&mut self, rows: [Vector; 3], now: Time) -> Result<(), ArpError> {
         match Orientation::new(rows) {
             Ok(orientation) => {
@@ -142,7 +142,7 @@ impl OrientationLatch {
         }
     }
 
-    /// Returns the words that the display reads at `time`: those of the last matrix that had arrived.
+    /// Returns the words that the display reads at `time`: the words of the last matrix that had arrived.
     #[must_use]
     pub fn at(&self, time: Time) -> MatrixWords {
         let after = self.loaded.partition_point(|(arrived, _)| *arrived <= time);

@@ -13,14 +13,14 @@
 //!
 //! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than a given
 //!   angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or sphere), is
-//!   animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight need not be
-//!   drawn at once ([`time_until_visible_s`]).
+//!   animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight can be drawn
+//!   later ([`time_until_visible_s`]).
 //! - **Objects** ([`Objects`]): each object is in the slowest memory that keeps its image right. Memory k is drawn
 //!   every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are shown
 //!   together.
 //! - **Cells** ([`Cells`]): the floor of the world is divided into square cells. The ring of a cell around the home
 //!   cell determines the cell's memory. Memory 0 holds the inner rings, and memory 1 holds one ring. Each further
-//!   memory holds `ring_growth` times as many rings as the previous one.
+//!   memory holds `ring_growth` times as many rings as the previous memory.
 //! - **Due memories**: a memory must be drawn again when the eye has moved too far since the memory's last update. The
 //!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is searched among all
 //!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a
@@ -33,12 +33,12 @@
 //! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of the two
 //!   eye positions. The vertex then has the same direction and depth in both memories.
 //!
-//! Units are metres, seconds and radians unless a name says degrees. Axes are right-handed with y up. Results are
-//! bit-identical on every host.
+//! Units are metres, seconds and radians, except in names that contain `deg`. Axes are right-handed with y up. Results
+//! are bit-identical on every host.
 //!
 //! # Not here
 //!
-//! The faces, their source, and the treatment of late updates belong to the pipeline that draws.
+//! The pipeline that draws supplies the pixels of the faces and handles late updates.
 //!
 //! # Sources
 //!

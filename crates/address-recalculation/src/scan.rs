@@ -26,10 +26,10 @@ impl Latch {
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 
-/// Times of retraces, of displayed pixels and of reading the orientation. All are computed from time zero. Field `n`
-/// scans the even lines if `n` is even.
+/// Times of retraces, of displayed pixels and of reading the orientation. All times are computed from time zero. Field
+/// `n` scans the even lines if `n` is even.
 ///
-/// The times equal those of the Pixel-Planes 5 frame buffer with the same parameters. The code is separate because
+/// The times equal the times of the Pixel-Planes 5 frame buffer with the same parameters. The code is separate because
 /// crates of boards do not depend on each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Scan {

@@ -154,8 +154,8 @@ pub(crate) const fn word(format: TexelFormat, colour: u32, depth: u32) -> u64 {
     if nearness == 0 { 0 } else { (nearness as u64) << 32 | format.kept_colour(colour) as u64 }
 }
 
-/// Returns the nearness stored in a texel's word: the farthest depth minus the texel's depth. It is 0 for an empty
-/// texel.
+/// Returns the nearness stored in a texel's word: the farthest depth minus the texel's depth. The nearness is 0 for an
+/// empty texel.
 #[inline(always)]
 pub(crate) const fn nearness(word: u64) -> u32 {
     (word >> 32) as u32

@@ -9,7 +9,7 @@ pxpl5_sim::parameters::parameter_table! {
     pub struct ArpTiming {
         /// Number of display memories per eye. Each memory has two buffers of six faces with depth.
         display_memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2: memories 0 to 3";
-        /// Number of texels along an edge of a face, including guard texels. It must be a multiple of 128.
+        /// Number of texels along an edge of a face, including guard texels. The number must be a multiple of 128.
         face_texels: 256, "texels", Assumed, 128..=2048, "not printed; a port of the ring can fill faces of 256 texels 25 times a second; 512 for ideal faces";
         /// Number of texels on each side of a face that repeat the content of the neighbouring face.
         guard_texels: 1, "texels", Assumed, 0..=8, "not printed; with 1, every footprint lies on its face";
@@ -76,8 +76,8 @@ impl ArpTiming {
         FIXED_STAGES + self.quotient_bits + self.compare_stages()
     }
 
-    /// Returns the duration of all stages. The orientation for a pixel must be known this long before the pixel is
-    /// displayed.
+    /// Returns the duration of all stages. The orientation for a pixel must arrive at least this time before the pixel
+    /// is displayed.
     #[must_use]
     pub const fn depth(&self) -> Span {
         Span(self.stages() * self.stage_ps)

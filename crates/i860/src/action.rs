@@ -1,12 +1,12 @@
-//! Effects of instructions and pairs. Each effect is chosen once, at decoding, so execution does not look at
+//! Effects of instructions and pairs. Each effect is chosen once, at decoding, so execution does not need the
 //! instruction bits again.
 
 use crate::decoded::Decoded;
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
-/// The effect of a core instruction: load, store or integer operation. Branches and control-register moves are executed
-/// from the instruction itself.
+/// The effect of a core instruction: load, store or integer operation. Branches and control-register moves have no
+/// special effect, so the processor executes them from the decoded instruction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CoreAction {
     pub(crate) does: Core,
@@ -17,7 +17,8 @@ pub(crate) struct CoreAction {
     pub(crate) second: u8,
     /// Number of the register that receives the address of an access, or r0 without auto-increment.
     pub(crate) increments: u8,
-    /// Immediate operand or address displacement, which is added to the first source register. 0 if there is none.
+    /// Immediate operand or address displacement, which is added to the first source register. The value is 0 if the
+    /// instruction has neither.
     pub(crate) immediate: u32,
 }
 
@@ -45,8 +46,8 @@ pub(crate) enum Core {
     PipelinedLoadSingle,
     PipelinedLoadDouble,
     StorePixels,
-    /// All other core operations, such as control-register moves, `flush`, `trap` and `lock`. They are executed from
-    /// the instruction itself.
+    /// All other core operations, such as control-register moves, `flush`, `trap` and `lock`. The processor executes
+    /// them from the decoded instruction.
     System,
     Branch,
 }
@@ -106,7 +107,8 @@ pub(crate) struct FloatingAction {
 }
 
 /// The kinds of effect that a floating-point instruction can have. Kinds that read singles come first, then kinds that
-/// read doubles. Specialized kinds apply only if no result that leaves a pipe is a source of the same instruction.
+/// read doubles. Specialized kinds do not apply if an instruction uses the result that leaves a pipe in the same clock
+/// as a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Floating {
     /// Pipelined multiplication of two single-precision operands.
@@ -129,7 +131,7 @@ pub(crate) enum Floating {
     SubtractDoubles,
     /// Any other operation that reads two double-precision operands.
     Doubles,
-    /// Any operation with mixed precisions, or with a source that may be the result leaving the pipe.
+    /// Any operation with mixed precisions, or with a source that can be the result that leaves the pipe.
     Any,
     Nothing,
 }
@@ -147,7 +149,7 @@ impl Floating {
     fn of(d: &Decoded, i: &Instruction) -> Floating {
         const PIPELINED: bool = true;
         const DOUBLES: bool = true;
-        // A source may be the result that leaves the pipe, which the specialized kinds do not look for.
+        // A source can be the result that leaves the pipe. The specialized kinds do not support such a source.
         if d.may_bypass() {
             return Floating::Any;
         }
@@ -186,7 +188,7 @@ pub(crate) struct Action {
 }
 
 impl Action {
-    /// Chooses the effects of a single instruction, or of a pair if there is a core half (`second`).
+    /// Chooses the effects of a single instruction, or of a pair if `second` has the core half.
     pub(crate) fn new(number: u8, first: &Decoded, second: Option<&Decoded>) -> Action {
         // Instructions without any effect get no action.
         let floating = Some(first).filter(|first| first.is_floating() && !first.is_idle());

@@ -1,8 +1,9 @@
-//! IEEE arithmetic on bit patterns: round to nearest even, the same bits on every host.
+//! IEEE arithmetic on bit patterns, rounded to nearest even. The results have the same bits on every host.
 //!
 //! Host `f32` and `f64` addition, subtraction, multiplication, division and square root are exact IEEE operations on
-//! every host. Only the bits of NaN results differ between hosts. A NaN result is therefore replaced by the first NaN
-//! operand made quiet. If no operand is NaN, it is replaced by the default NaN (sign set, as on Intel's other parts).
+//! every host. Only the bits of NaN results differ between hosts. The model therefore replaces a NaN result by the
+//! first NaN operand, made quiet. If no operand is NaN, the model uses the default NaN (sign set, as on Intel's other
+//! parts).
 
 use crate::state::PipeStage;
 
@@ -89,8 +90,8 @@ pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
     if flush && result.is_subnormal() { result.to_bits() & 0x8000_0000 } else { result.to_bits() }
 }
 
-/// Computes one floating-point operation. `source` and `result` are the S and R bits, which select double precision for
-/// the operands and the result.
+/// Computes one floating-point operation. `source` is the S bit, which selects double precision for the operands.
+/// `result` is the R bit, which selects double precision for the result.
 #[inline]
 pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result: bool, flush: bool) -> PipeStage {
     if !source && !result {
@@ -112,7 +113,8 @@ pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     }
 }
 
-/// Rounds to an integer as `mode`, the field fsr.RM, selects: to nearest even, down, up, or towards zero.
+/// Rounds to an integer. `mode` is the field fsr.RM, which selects the rounding: to nearest even, down, up, or towards
+/// zero.
 pub(crate) fn round(value: f64, mode: u32) -> f64 {
     match mode {
         0 => value.round_ties_even(),
@@ -122,13 +124,13 @@ pub(crate) fn round(value: f64, mode: u32) -> f64 {
     }
 }
 
-/// Returns the low word of the result of `fix` or `ftrunc`. The real chip traps on values out of range. This model
-/// returns the nearest representable value, and 0 for NaN.
+/// Returns the low word of the result of `fix` or `ftrunc`. The real chip traps if a value is out of range. In this
+/// case, the model returns the nearest representable value, and 0 for NaN.
 pub(crate) fn to_integer(rounded: f64) -> u32 {
     rounded as i32 as u32
 }
 
-/// Returns the low 53 bits of the product of two significands, as `fmlow` does.
+/// Returns the low 53 bits of the product of two significands, like `fmlow`.
 pub(crate) fn multiply_low(a: u64, b: u64) -> u64 {
     const FRACTION: u64 = (1 << 53) - 1;
     (a & FRACTION).wrapping_mul(b & FRACTION) & FRACTION

@@ -45,7 +45,7 @@ pub struct Program {
     pub bytes: Vec<u8>,
     /// Addresses of labels and values of constants, for each name.
     pub symbols: BTreeMap<String, u32>,
-    /// Names of labels with their addresses, sorted by address.
+    /// The name and the address of each label, sorted by address.
     pub labels: Vec<(String, u32)>,
     /// Address and source line number of every instruction, sorted by address. After [`link`], line numbers start again
     /// at 1 in each source.
@@ -110,7 +110,7 @@ impl Program {
 }
 
 /// Assembles independent sources one after the other into one program. Each source begins at a multiple of 32 bytes. If
-/// several sources define the same label, the first definition is kept.
+/// several sources define the same label, the program keeps the first definition.
 ///
 /// # Errors
 /// Returns the errors of [`assemble`] for the first source that has errors.
@@ -127,7 +127,7 @@ pub fn link(base: u32, sources: &[(&str, &str)]) -> Result<Program, AssemblyErro
         all.bytes.resize(all.bytes.len().next_multiple_of(32), 0);
         let next = assemble(file, base + all.bytes.len() as u32, source)?;
         all.bytes.extend(next.bytes);
-        // Keep the first definition of each symbol.
+        // Keep only the first definition of each symbol.
         next.symbols.into_iter().for_each(|(name, value)| {
             all.symbols.entry(name).or_insert(value);
         });
@@ -151,8 +151,8 @@ enum Item {
         template: Instruction,
         operands: String,
     },
-    /// Integer values, stored as the text of their source line. One string for each value would take several times as
-    /// much memory.
+    /// Integer values, stored as the text of their source line. A separate string for each value would need several
+    /// times as much memory.
     Integers {
         size: u32,
         values: String,
@@ -228,7 +228,7 @@ pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, Assembly
         placed: Vec::new(),
         errors: Vec::new(),
     };
-    // An error in one line does not stop the pass, so that all errors are reported.
+    // An error in one line does not stop the pass, so that the assembler reports all errors.
     for line in &lines {
         if let Err(reason) = assembler.place(line) {
             assembler.fault(line.number, reason);
@@ -237,8 +237,8 @@ pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, Assembly
     assembler.finish()
 }
 
-/// Assembles one instruction at an address and returns its word. Checks that need the neighbouring instructions are
-/// left out.
+/// Assembles one instruction at an address and returns its word. The function omits checks that need the neighbouring
+/// instructions.
 ///
 /// # Errors
 ///
@@ -289,7 +289,7 @@ fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
         ("fmov.ss" | "fmov.dd", [from, to]) => {
             Some(one(&format!("{prefix}{pipe}fiadd{}", &name[4..]), &format!("{from}, f0, {to}")))
         }
-        // Moves with conversion go through the adder.
+        // Moves with a conversion of precision use the adder.
         ("fmov.sd" | "fmov.ds", [from, to]) => {
             Some(one(&format!("{prefix}{pipe}famov{}", &name[4..]), &format!("{from}, {to}")))
         }
@@ -339,7 +339,7 @@ impl Assembler<'_> {
             self.define(label, i64::from(self.here))?;
             self.labels.push((label.to_owned(), self.here));
         }
-        // Constants are evaluated at once, so they may use only earlier names.
+        // Constants are evaluated immediately, so they can use only earlier names.
         if let Some((name, value)) = statement.split_once('=').filter(|(name, _)| is_name(name.trim())) {
             let value = evaluate(value, &self.symbols)?;
             return self.define(name.trim(), value);
@@ -375,7 +375,7 @@ impl Assembler<'_> {
     }
 
     fn directive(&mut self, word: &str, rest: &str, line: usize) -> Result<(), String> {
-        // The number of values gives the size; their values follow in the second pass.
+        // The number of values gives the size. The values are evaluated in the second pass.
         let count = operand::split(rest).len() as u32;
         let values = rest.to_owned();
         match word {
@@ -409,7 +409,7 @@ impl Assembler<'_> {
         self.push(line, Item::Gap { end }, end - self.here)
     }
 
-    // Second pass: all symbols are known now, so instructions can be encoded and checked.
+    // Second pass. All symbols have values now, so instructions can be encoded and checked.
     fn finish(mut self) -> Result<Program, AssemblyErrors> {
         let mut bytes = Vec::new();
         let mut instructions = Vec::new();
@@ -452,7 +452,7 @@ impl Assembler<'_> {
         let mut bytes = Vec::new();
         match &placed.item {
             Item::Instruction { template, operands } => {
-                // Labels are known now, so the operands can be evaluated.
+                // Labels have addresses now, so the operands can be evaluated.
                 let filler = Filler { i: *template, pc: placed.address, symbols: &self.symbols };
                 let i = filler.fill(&operand::split(operands))?;
                 return Ok((encode(&i).to_le_bytes().to_vec(), Some(i)));

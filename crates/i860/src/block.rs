@@ -1,4 +1,5 @@
-//! Basic blocks of decoded code. A block goes from an address to the next branch, with the branch's delay slot.
+//! Basic blocks of decoded code. A block extends from an address to the next branch, and includes the branch's delay
+//! slot.
 
 use crate::action::Action;
 use crate::bus::Bus;
@@ -80,8 +81,8 @@ impl Unit {
         1 + u64::from(self.second.is_some())
     }
 
-    /// Returns true if the block must end after this instruction. This is the case for `st.c`, which can change the
-    /// code or the way in which code is fetched.
+    /// Returns true if the block must end after this instruction. This is true for `st.c`, which can change the code or
+    /// the way in which code is fetched.
     fn ends_block(&self) -> bool {
         self.core().instruction.op == Op::StC
     }
@@ -103,30 +104,30 @@ const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 /// Initial value of [`Block::held_in`]. No state of the instruction cache has this number.
 const NEVER: u64 = u64::MAX;
 
-/// A basic block: instructions and pairs up to a branch, an instruction that cannot be executed, or the greatest
-/// length.
+/// A basic block of instructions and pairs. A block ends at a branch, at an instruction that cannot be executed, or at
+/// the greatest length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Address at which the block begins. `mode` is the pairing mode at this address.
+    /// Address at which the block begins. The next field, `mode`, is the pairing mode at this address.
     pub(crate) pc: u32,
     mode: Mode,
     /// Pairing mode (single instructions or pairs) after the delay slot.
     pub(crate) after_slot: Mode,
-    /// Pairing mode and address of the code that follows the block.
+    /// Pairing mode of the code that follows the block. The next field is the address of this code.
     pub(crate) after: Mode,
     pub(crate) next: u32,
-    /// Number of instructions or pairs. A pair counts as one. The delay slot is left out.
+    /// Number of instructions or pairs. A pair counts as one. The delay slot does not count.
     pub(crate) count: usize,
-    /// Number of instructions. A pair counts as two. The delay slot is included.
+    /// Number of instructions. A pair counts as two. The delay slot counts as well.
     pub(crate) instructions: u64,
-    /// Number of the instruction-cache state in which the cache last held the whole block.
+    /// Number of the latest state of the instruction cache in which the cache held the whole block.
     held_in: u64,
     /// Effects of the instructions and pairs, in order. The effects of the delay slot come last.
     pub(crate) actions: Box<[Action]>,
     /// Instructions and pairs of the block that load or store data, in order.
     pub(crate) accessing: Box<[AccessingUnit]>,
     pub(crate) remembered: BlockMemory,
-    /// All instructions and pairs of the block, in order. The delay slot is the last one.
+    /// All instructions and pairs of the block, in order. The delay slot is the last element.
     units: Box<[Unit]>,
     /// For each cache line of the block, the index of the first instruction or pair on the line.
     lines: Box<[u8]>,
@@ -134,7 +135,7 @@ pub(crate) struct Block {
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 
-/// A load or store as the timing model uses it, without its address and value.
+/// A load or store in the form for the timing model, without its address and value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Access {
     pub(crate) op: Op,
@@ -197,7 +198,7 @@ impl Block {
         }
         let count = units.len();
         let mut wrong_slot = None;
-        // A delayed branch also needs its slot, in which no branch may stand.
+        // A delayed branch also needs its delay slot, which must not be a branch.
         if last.core().instruction.is_delayed_branch() {
             match Unit::read(last.next(), last.after, code, bus) {
                 Ok(unit) if unit.core().is_branch() => wrong_slot = Some(TrapCause::BranchInSlot),
@@ -246,8 +247,8 @@ impl Block {
         &self.units[number]
     }
 
-    /// Returns an address on the cache line of instruction or pair `number`. Also returns the index of the first
-    /// instruction or pair after this line.
+    /// Returns an address on the cache line of instruction or pair `number`, and the index of the first instruction or
+    /// pair after this line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         // Find the last line that begins at or before this instruction.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The failure of an access to an address at which no memory or device answers.
+/// An error: an access to an address at which no memory or device answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no memory and no device answers")]
 pub struct Unmapped;
@@ -12,7 +12,7 @@ pub struct Unmapped;
 /// The processor checks the alignment first, so an address is always a multiple of the access size. A 16-byte access
 /// arrives as two accesses of 8 bytes.
 pub trait Bus {
-    /// Reads `size` bytes (1, 2, 4 or 8) at `address`. The result is extended with zeros.
+    /// Reads `size` bytes (1, 2, 4 or 8) at `address`. The result is zero-extended.
     ///
     /// # Errors
     /// Returns [`Unmapped`] if no memory or device answers. The processor then takes a data or instruction access trap.
@@ -24,8 +24,8 @@ pub trait Bus {
     /// Returns [`Unmapped`] if no memory or device answers. The processor then takes a data access trap.
     fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped>;
 
-    /// Returns true if the caches can hold the line of `address` (the KEN# pin). Must be false for addresses of
-    /// devices.
+    /// Returns true if the caches can hold the line of `address` (the KEN# pin). The result must be false for addresses
+    /// of devices.
     fn is_cacheable(&self, _address: u32) -> bool {
         true
     }
@@ -54,7 +54,7 @@ impl Ram {
     /// Copies `bytes` to memory at `address`.
     ///
     /// # Errors
-    /// Returns [`Unmapped`] if the bytes do not fit. Nothing is written then.
+    /// Returns [`Unmapped`] if the bytes do not fit. In this case, nothing is written.
     pub fn load(&mut self, address: u32, bytes: &[u8]) -> Result<(), Unmapped> {
         let at = self.offset(address, bytes.len())?;
         self.bytes[at..at + bytes.len()].copy_from_slice(bytes);
@@ -64,7 +64,7 @@ impl Ram {
     /// Copies 32-bit words to memory at `address`.
     ///
     /// # Errors
-    /// Returns [`Unmapped`] if the words do not fit. Nothing is written then.
+    /// Returns [`Unmapped`] if the words do not fit. In this case, nothing is written.
     pub fn load_words(&mut self, address: u32, words: &[u32]) -> Result<(), Unmapped> {
         let at = self.offset(address, size_of_val(words))?;
         for (place, word) in self.bytes[at..].as_chunks_mut::<4>().0.iter_mut().zip(words) {

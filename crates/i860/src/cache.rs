@@ -1,4 +1,4 @@
-//! Tag arrays of the caches and the TLB. Data always come from memory; the tag arrays only decide between hit, miss and
+//! Tag arrays of the caches and the TLB. Data always come from memory. The tag arrays only decide between hit, miss and
 //! write-back.
 
 use crate::timing::ChipSizes;
@@ -77,8 +77,8 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         false
     }
 
-    /// Adds the line of an address. The line goes into an empty way, or else into the way chosen by `random`. Returns
-    /// the address of a dirty line that was replaced.
+    /// Adds the line of an address. The line goes into an empty way, or into the way that `random` selects if no way is
+    /// empty. Returns the address of a dirty line that was replaced.
     pub(crate) fn fill(&mut self, address: u32, random: u32) -> Option<u32> {
         self.changes += 1;
         let ways = &mut self.sets[Self::set(address)];

@@ -30,14 +30,14 @@ pub(crate) struct Accesses {
 }
 
 impl Accesses {
-    /// Capacity in accesses: a power of two that is greater than the length of a block.
+    /// Capacity in accesses. The number is a power of two that is greater than the length of a block.
     const MOST: usize = 64;
 
     pub(crate) fn new() -> Accesses {
         Accesses { all: [0; Accesses::MOST], count: 0, all_held: false }
     }
 
-    /// Forgets the accesses of the previous block. If `looks_up` is false, the next accesses are not looked up in the
+    /// Discards the accesses of the previous block. If `looks_up` is false, the next accesses are not looked up in the
     /// cache.
     #[inline]
     pub(crate) fn begin(&mut self, looks_up: bool) {
@@ -68,7 +68,7 @@ pub(crate) struct Clock {
     pub(crate) data: DataCache,
     stores: StorePipe,
     loads: LoadPipe,
-    /// Remembered clocks of blocks, or `None` if memoization is off.
+    /// Memoized clocks of blocks, or `None` if memoization is off.
     pub(crate) memo: Option<Memo>,
 }
 
@@ -120,7 +120,7 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the numbering of scoreboard states with `numbers`, which several processors share.
+    /// Exchanges the numbering of scoreboard states with `numbers`. Several processors share `numbers`.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -128,15 +128,16 @@ impl Clock {
         }
     }
 
-    /// Turns address translation on with the page directory at an address, or off with `None`.
+    /// Turns address translation on, with the page directory at the given address. With `None`, turns address
+    /// translation off.
     pub(crate) fn set_translation(&mut self, directory: Option<u32>) {
         self.translation.set_directory(directory);
     }
 
     // ---- blocks
 
-    /// Returns true if remembered clocks can be reused. Address translation and profiles by address must count every
-    /// instruction.
+    /// Returns true if memoized clocks can be reused. With address translation or with a profile by address, every
+    /// instruction must be counted.
     #[inline]
     pub(crate) fn repeats(&self) -> bool {
         self.on && self.memo.is_some() && !self.translation.is_on() && self.sampler.is_none()
@@ -150,7 +151,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a block if its whole execution is not remembered as one run.
+    /// Counts the clocks of a block whose whole execution is not memoized as one run.
     #[inline(never)]
     fn count_block<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
@@ -162,14 +163,14 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a block, one instruction or pair after the other, without remembered clocks.
+    /// Counts the clocks of a block, one instruction or pair after the other, without memoized clocks.
     fn count<B: Bus>(&mut self, block: &Block, execution: Execution, accesses: &Accesses, bus: &B) {
         self.write_board();
         let mut accesses = accesses.addresses().iter();
         let last = execution.units + usize::from(execution.slot) - 1;
         block.executed(execution).iter().enumerate().for_each(|(n, unit)| {
             let before = self.common.now;
-            // Each instruction or pair is fetched, issued and completed, unless it trapped.
+            // Each instruction or pair is fetched and issued. An instruction or pair without a trap is also completed.
             self.fetch(unit, bus);
             self.issue(unit);
             if !(execution.trapped && n == last) {
@@ -243,7 +244,8 @@ impl Clock {
         self.common.now += 1;
     }
 
-    /// Counts the freeze of a pair, then the clock of its issue. The longer freeze of the two halves counts.
+    /// Counts the freeze of a pair, then the clock of its issue. The freeze of a pair is the longer freeze of its two
+    /// halves.
     #[inline]
     fn issue_pair(&mut self, floating: &Decoded, core: &Decoded) {
         // Find the longest wait of both halves.
@@ -304,7 +306,7 @@ impl Clock {
     fn load<B: Bus>(&mut self, address: u32, size: u32, bus: &B) -> Option<Transfer> {
         self.translation.translate(address, &mut self.common);
         let transfer = self.data.load(address, size, &mut self.stores, &mut self.common, bus)?;
-        // Some instructions wait for the first word of the miss, others for its last.
+        // Some instructions wait for the first word of the miss, and others for the last word.
         self.delay_hazard(hazard::TRANSFER_IN_MISS, transfer.first, Freeze::TransferDuringMiss);
         self.delay_hazard(hazard::ACCESS_IN_MISS, transfer.last, Freeze::AccessDuringMiss);
         Some(transfer)
@@ -317,12 +319,12 @@ impl Clock {
         }
     }
 
-    /// Counts a store. A hit changes the cache line. A miss goes through the store pipe to the bus and allocates no
-    /// line.
+    /// Counts a store. A hit changes the cache line. A miss sends the data through the store pipe to the bus, and
+    /// allocates no cache line.
     #[inline]
     fn store(&mut self, address: u32, size: u32) {
         self.translation.translate(address, &mut self.common);
-        // A store that hits delays only a load right after it.
+        // A store that hits the cache delays only a load directly after the store.
         if self.data.access(address, true) {
             self.board.set_hazard(hazard::STORE_HIT, Freeze::LoadAfterStoreHit, self.common.now);
         } else {

@@ -5,7 +5,8 @@ use crate::block::Block;
 use crate::code_map::CodeMap;
 use crate::state::Mode;
 
-/// Number of entries in the host's table of decoded blocks. The processor's instruction cache has another size.
+/// Number of entries in the host's table of decoded blocks. This number has no relation to the size of the processor's
+/// instruction cache.
 const BLOCKS: usize = 1 << 12;
 
 fn place(pc: u32) -> usize {

@@ -50,7 +50,7 @@ impl CodeMap {
     }
 
     fn note_near(&mut self, first: u32, last: u32) -> bool {
-        // A change of the program stays recorded, also where no word was decoded.
+        // Record every change of the program, also of words that were not decoded.
         self.is_stored_to |= last >= self.program.start && first < self.program.end;
         [first, last].into_iter().any(|address| {
             let (at, bit) = CodeMap::bit(address);

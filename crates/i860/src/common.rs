@@ -12,7 +12,8 @@ pub(crate) struct Common {
     pub(crate) now: u64,
     /// Clock at which the profile was started. Every clock since then is either a freeze or an issue.
     profile_start: u64,
-    /// All counts of the profile except issue clocks. [`Common::profile`] computes these from the other clocks.
+    /// All counts of the profile except issue clocks. [`Common::profile`] computes the issue clocks from the other
+    /// clocks.
     pub(crate) profile: Profile,
     pub(crate) costs: Costs,
     pub(crate) bus: Dram,
@@ -57,8 +58,8 @@ impl Common {
         self.bus.page_misses = 0;
     }
 
-    /// Freezes the processor until clock `until`. If an instruction-cache line is arriving, the freeze also lasts until
-    /// its end (row 1).
+    /// Freezes the processor until clock `until`. If an instruction-cache line is arriving, the freeze lasts at least
+    /// until the end of the line's arrival (row 1).
     #[inline]
     pub(crate) fn freeze_until(&mut self, until: u64, why: Freeze) {
         if until > self.now {
@@ -70,7 +71,7 @@ impl Common {
         }
     }
 
-    /// Freezes the processor until an instruction arrives at clock `until`. Only row 1a is charged.
+    /// Freezes the processor until an instruction arrives at clock `until`. The clocks count only for row 1a.
     #[inline]
     pub(crate) fn await_instruction(&mut self, until: u64) {
         self.stand_still(until, Freeze::InstructionMiss);
@@ -108,7 +109,7 @@ impl Common {
         self.bus.read(self.now, address, beats)
     }
 
-    /// Freezes the processor as long as three bus requests are outstanding.
+    /// Freezes the processor while three bus requests are outstanding.
     pub(crate) fn await_address_pipe(&mut self) {
         if self.costs.applies(Freeze::AddressPipeFull) {
             self.freeze_until(self.bus.accepts_at(), Freeze::AddressPipeFull);

@@ -77,7 +77,7 @@ impl Cpu {
 
     fn call_indirect(&mut self, i: &Instruction, unit: &Unit) -> Flow {
         let target = self.state.r(i.src1);
-        // r1 may be the target register, so the target was read first.
+        // r1 can be the target register, so the target was read before this write.
         self.state.set_r(1, after_slot_address(unit));
         Flow::Delayed(target & !3)
     }
@@ -110,7 +110,8 @@ impl Cpu {
         immediate(equal == (i.op == Op::Bte), target)
     }
 
-    /// Executes `bla`: branches if LCC was set. Then LCC is set if the sum of the operands is not negative.
+    /// Executes `bla`, which branches if LCC was set. Afterwards, LCC is set if the sum of the operands is not
+    /// negative.
     fn branch_on_loop(&mut self, i: &Instruction, target: u32) -> Flow {
         let a = self.state.r(i.src1);
         let b = self.state.r(i.src2);
@@ -134,10 +135,10 @@ impl Cpu {
     fn return_from_trap(&mut self) {
         let old = self.state.psr;
         self.state.psr = old & !(psr::TRAPS | psr::DIM | psr::DS);
-        // Restore the user and interrupt bits of before the trap.
+        // Restore the user and interrupt bits from before the trap.
         self.state.set_psr_bit(psr::U, old & psr::PU != 0);
         self.state.set_psr_bit(psr::IM, old & psr::PIM != 0);
-        // The old mode of pairing returns after the delay slot.
+        // The old pairing mode is restored after the delay slot.
         self.mode_after_slot = Some(match (old & psr::DIM != 0, old & psr::DS != 0) {
             (true, true) => Mode::DualOnce,
             (true, false) => Mode::Dual,

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// An i860 XR with its caches and its clock. The caller passes the memory to every run.
 pub struct Cpu {
-    /// Registers, pipes and pairing mode, as far as a program can read them.
+    /// Registers, pipes and pairing mode: the complete state that a program can see.
     pub state: State,
     pub(crate) time: Clock,
     pub(crate) seeds: SeedTable,
@@ -115,7 +115,7 @@ impl Cpu {
         self.time.empty_caches();
     }
 
-    /// Starts to count clocks for each code address in `addresses`. `None` stops the counting.
+    /// Starts to count clocks for each code address in `addresses`. With `None`, the processor stops to count.
     pub fn watch(&mut self, addresses: Option<AddressProfile>) {
         self.time.sampler = addresses;
     }
@@ -127,16 +127,16 @@ impl Cpu {
     }
 
     /// Discards all decoded instructions. The processor decodes instructions ahead, up to the next branch. Call this
-    /// function after another device has written to code in memory. The processor's own stores into code take effect at
-    /// once (the real part would need a flush and dirbase.ITI).
+    /// function after another device has written to code in memory. The processor's own stores into code take effect
+    /// immediately (the real chip would need a flush and dirbase.ITI).
     pub fn invalidate_code(&mut self) {
         self.code.clear();
         self.code_changed = false;
     }
 
     /// Takes the decoded code of `program` from `shelf`, the shared store of decoded programs. The processor uses the
-    /// code until [`Cpu::close`]. Memory must hold `program` as assembled. With `None` the processor decodes all code
-    /// anew. The number of clocks does not depend on this call.
+    /// code until [`Cpu::close`]. Memory must hold `program` as assembled. With `None`, the processor decodes all code
+    /// again. The number of clocks does not depend on this call.
     ///
     /// All processors that share the store must have the same [`Config::freezes`].
     pub fn open(&mut self, shelf: &mut DecodedPrograms, program: Option<&Arc<Program>>) {
@@ -146,8 +146,8 @@ impl Cpu {
         self.time.fetch.number_states_from(shelf.cache_states);
     }
 
-    /// Moves the decoded program and its remembered clocks back to `shelf`. Returns true if other processors can use
-    /// this program. If a store has changed the program in memory, drops the decoded code and returns false.
+    /// Moves the decoded program and its memoized clocks back to `shelf`. Returns true if other processors can use this
+    /// program. If a store has changed the program in memory, the function discards the decoded code and returns false.
     pub fn close(&mut self, shelf: &mut DecodedPrograms, program: Option<&Arc<Program>>) -> bool {
         self.time.exchange_numbers(&mut shelf.numbers);
         shelf.cache_states = self.time.fetch.states();
@@ -183,7 +183,7 @@ impl Cpu {
         self.advance(bus, None, 1)
     }
 
-    /// Executes the block that begins at `pc`. If the block goes past `stop` or has more than `most` instructions, only
+    /// Executes the block that begins at `pc`. If the block contains `stop` or has more than `most` instructions, only
     /// its first instruction or pair is executed.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
         let pc = self.state.pc;
@@ -196,11 +196,11 @@ impl Cpu {
                 Err(cause) => return Err(self.take_trap(cause)),
             },
         };
-        // Execute the whole block where stop and budget allow, else its first instruction or pair.
+        // Execute the whole block if `stop` and the budget permit, else its first instruction or pair.
         let whole = block.instructions <= most && stop.is_none_or(|stop| !block.passes(stop));
         let units = if whole { block.count } else { 1 };
         self.execute(&mut block, units, bus);
-        // Changes of dirbase take effect after the instruction that wrote them.
+        // Changes of dirbase take effect after the instruction that wrote the register.
         if let Some(value) = self.directory_base.take() {
             self.apply_directory_base(value);
         }
@@ -215,8 +215,8 @@ impl Cpu {
         }
     }
 
-    /// Executes up to `most` instructions or pairs of a block, and the delay slot of its branch. Then counts their
-    /// clocks.
+    /// Executes up to `most` instructions or pairs of a block, and the delay slot of its branch. Then counts the clocks
+    /// of all executed instructions.
     #[inline]
     fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) {
         self.accesses.begin(self.time.repeats());
@@ -230,7 +230,7 @@ impl Cpu {
     /// delay slot is executed first.
     #[inline]
     fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, execution: &mut Execution, bus: &mut B) {
-        // Begin with the address right after the executed code; a jump or trap overrides it below.
+        // Begin with the address directly after the executed code. A jump or trap overrides this address below.
         let (next, after) = match execution.units == block.count {
             true => (block.next, block.after),
             false => {
@@ -289,7 +289,7 @@ impl Cpu {
     }
 
     /// Executes instructions and pairs of a block until one of them branches or traps. Returns the number of executed
-    /// instructions or pairs, and the control flow after the last one.
+    /// instructions or pairs, and the control flow after the last of them.
     fn units<B: Bus>(&mut self, block: &Block, range: Range<usize>, bus: &mut B) -> (usize, Flow) {
         let actions = &block.actions[range];
         for action in actions {
@@ -314,7 +314,7 @@ impl Cpu {
         flow
     }
 
-    /// Raises the interrupt pin for a moment. Returns false if interrupts are disabled because psr.IM is clear.
+    /// Sends a pulse to the interrupt pin. Returns false if interrupts are disabled because psr.IM is clear.
     pub fn interrupt(&mut self) -> bool {
         let enabled = self.state.psr & psr::IM != 0;
         if enabled {

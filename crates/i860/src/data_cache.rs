@@ -30,8 +30,8 @@ impl DataCache {
     }
 
     /// Finds the first access that is not a cache hit, from access `from` on, before instruction or pair `limit`.
-    /// Returns the index of this access, together with the index of its instruction or pair. If there is no such
-    /// access, returns the index of the first access that was not examined. Stores that hit mark their lines dirty.
+    /// Returns the index of this access and the index of its instruction or pair. If all examined accesses hit, the
+    /// function returns the index of the first access that was not examined. Stores that hit mark their lines dirty.
     #[inline]
     pub(crate) fn held(
         &mut self,
@@ -43,7 +43,7 @@ impl DataCache {
         let count = addresses.len().min(accessing.len());
         let (addresses, accessing) = (&addresses[..count], &accessing[..count]);
         let mut next = from;
-        // Go on while the accesses hit.
+        // Continue while the accesses hit.
         while next < count {
             let unit = accessing[next];
             let number = usize::from(unit.number);
@@ -89,12 +89,12 @@ impl DataCache {
         Some(transfer)
     }
 
-    /// Fills a cache line, the requested bytes first. If the fill replaces a dirty line, this line is written back
-    /// afterwards.
+    /// Fills a cache line. The requested bytes arrive first. If the fill replaces a dirty line, this line is written
+    /// back after the fill.
     fn fill_line(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) -> Transfer {
         common.profile.data_misses += 1;
         let transfer = common.read_data(address, BEATS);
-        // Every fill takes a random number, also if a way is empty.
+        // Every fill uses a random number, even if a way is empty.
         let random = common.chance.next();
         if let Some(victim) = self.0.fill(address, random) {
             stores.write_back(transfer.last, victim, common);

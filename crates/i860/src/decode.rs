@@ -3,7 +3,7 @@
 use crate::instruction::{FNOP, Flags, Instruction, Op};
 use crate::syntax::register_mask;
 
-/// The error for a word that encodes no instruction of the i860 XR.
+/// An error for a word that does not encode an instruction of the i860 XR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:08x} is not an i860 XR instruction")]
 pub struct IllegalWord(
@@ -12,7 +12,8 @@ pub struct IllegalWord(
 );
 
 const D_BIT: u32 = 1 << 9;
-/// Number of epsr, the last control register of the XR. The later XP has more: bear, ccr and p0 to p3.
+/// Number of epsr, the last control register of the XR. The later i860 XP has more control registers: bear, ccr and p0
+/// to p3.
 const LAST_XR_CONTROL_REGISTER: u8 = 5;
 
 fn field(word: u32, low: u32) -> u8 {
@@ -79,7 +80,7 @@ fn memory(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {
         0x18 | 0x19 => Op::Pfld,
         _ => return None,
     };
-    // The offsets of stores are split over two fields; the low bits of others encode sizes.
+    // The offsets of stores are split over two fields. The low bits of other offsets encode sizes.
     let immediate = (op & 1 == 1 && op != 0x03) || matches!(op, 0x03 | 0x07);
     i.flags = i.flags.with(Flags::IMMEDIATE, immediate);
     match i.op {
@@ -170,7 +171,7 @@ fn integer(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {
         0x3F => Op::Xorh,
         _ => return None,
     };
-    // Odd operation codes have an immediate; it is unsigned for logical operations.
+    // Odd operation codes have an immediate. The immediate is unsigned for logical operations.
     if op & 1 == 1 {
         i.flags = i.flags.with(Flags::IMMEDIATE, true);
         i.imm = if op >= 0x30 { (word & 0xFFFF) as i32 } else { signed16(word) };

@@ -102,13 +102,14 @@ impl Decoded {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 
-    /// Returns two booleans. They are true if the first source, or the second source, is a pair of registers.
+    /// Returns two booleans. The first is true if the first source is a pair of registers, and the second is true if
+    /// the second source is a pair.
     #[inline]
     pub(crate) fn source_widths(&self) -> (bool, bool) {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
     }
 
-    /// Returns true if the destination of a pipelined operation can be one of its own sources.
+    /// Returns true if the destination of a pipelined operation can also be one of its sources.
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
         self.marks & mark::MAY_BYPASS != 0
@@ -123,7 +124,7 @@ fn marks(i: &Instruction) -> u8 {
     let floating = i.is_floating();
     let (first, second) = source_widths(i);
     let pipelined = i.op == Op::DualOp || i.has(Flags::PIPELINED);
-    // Compare register pairs, because doubles occupy two registers.
+    // Compare the numbers of register pairs, because doubles occupy two registers.
     let overlaps = i.dest >= 2 && [i.src1, i.src2].iter().any(|n| n & 30 == i.dest & 30);
     on(mark::FLOATING, floating)
         | on(mark::BRANCH, i.is_branch())
@@ -251,7 +252,7 @@ fn floating_arms(i: &Instruction) -> u16 {
 /// Returns the register for the field [`Decoded::multiplier_source`]. For four of the sixteen data paths of a dual
 /// operation, the first source goes to the multiplier.
 fn multiplier_source(i: &Instruction) -> u8 {
-    // Only operations whose first source goes to the multiplier matter to row 9.
+    // Row 9 applies only to operations whose first source goes to the multiplier.
     let reads_first = match i.op {
         Op::Fmul | Op::Fmul3 | Op::Fmlow => true,
         Op::DualOp => matches!(i.imm & 15, 9 | 11 | 13 | 15),

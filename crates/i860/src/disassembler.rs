@@ -7,8 +7,8 @@ use crate::instruction::{Flags, Instruction, Op};
 use crate::mnemonic::mnemonic;
 use crate::syntax::{CONTROL_REGISTERS, Syntax};
 
-/// Returns the assembler text of an instruction word at an address. Returns a `.long` directive if no instruction
-/// assembles to the same word.
+/// Returns the assembler text of an instruction word at an address. Returns a `.long` directive if the assembly of the
+/// text would give another word.
 #[must_use]
 pub fn disassemble(word: u32, pc: u32) -> String {
     let text = decode(word).ok().map(|i| text(&i, pc));

@@ -9,7 +9,7 @@ const BUS_DEPTH: usize = ChipSizes::PAPERS.bus_depth as usize;
 /// The clocks at which the 8-byte transfers of a request arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Transfer {
-    /// Clock at which the first 8 bytes arrive; these contain the requested data.
+    /// Clock at which the first 8 bytes arrive. These bytes contain the requested data.
     pub(crate) first: u64,
     /// Clock at which the last 8 bytes arrive.
     pub(crate) last: u64,
@@ -31,7 +31,7 @@ pub(crate) struct Dram {
     /// First clock at which a read of the open DRAM row can start. Such a read overlaps with the data of the previous
     /// read.
     free: u64,
-    /// Clock at which the data of all requests have been transferred. A write, or a request to another DRAM row, starts
+    /// Clock at which the transfer of the data of all requests ends. A write, or a request to another DRAM row, starts
     /// at this clock or later.
     data_end: u64,
     open_page: u64,
@@ -65,7 +65,7 @@ impl Dram {
         self.outstanding[0]
     }
 
-    /// Returns the clock at which all requests made so far are complete.
+    /// Returns the clock at which all earlier requests are complete.
     pub(crate) fn idle_at(&self) -> u64 {
         self.data_end.max(self.free)
     }
@@ -80,7 +80,8 @@ impl Dram {
             if interval == 0 || clocks == 0 || *due > now {
                 continue;
             }
-            // If several interruptions fell due since the last request, only the latest one costs time (assumed).
+            // If several interruptions were due since the last request, only the latest interruption takes time
+            // (assumed).
             let missed = (now - *due) / interval;
             let latest = *due + missed * interval;
             self.free = self.free.max(latest) + clocks;
@@ -109,8 +110,8 @@ impl Dram {
 
     /// Reads `beats` transfers of 8 bytes. The requested 8 bytes come first.
     ///
-    /// Requests to the open DRAM row overlap: the first data of the next request follow `next` clocks after the last
-    /// data of this request. A DRAM row is closed after its last data were transferred.
+    /// Requests to the open DRAM row overlap. The first data of the next request follow `next` clocks after the last
+    /// data of this request. A DRAM row is closed after the transfer of its last data.
     pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);
@@ -118,13 +119,13 @@ impl Dram {
         let t = self.timing;
         let first = start + if hit { t.first_hit } else { t.first_miss };
         let last = first + u64::from(beats - 1) * t.next;
-        // Opening a row delays later requests too.
+        // The opening of a row also delays later requests.
         let opening = if hit { 0 } else { t.first_miss.saturating_sub(t.first_hit) };
         self.free = start + opening + u64::from(beats) * t.next;
         self.finish(Transfer { first, last, step: t.next })
     }
 
-    /// Writes `beats` transfers of 8 bytes within one DRAM row, after the data of all reads were transferred.
+    /// Writes `beats` transfers of 8 bytes within one DRAM row. The write begins after the transfers of all reads.
     pub(crate) fn write(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);

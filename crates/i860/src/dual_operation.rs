@@ -29,7 +29,7 @@ const fn route(multiplier: [Source; 2], adder: [Source; 2], loads_t: bool, loads
 }
 
 /// The sixteen data paths of pfam and pfsm, by the field DPC (data-path control). For pfmam and pfmsm,
-/// [`MULTIPLIER_ROUTES`] has `M` for every `A`.
+/// [`MULTIPLIER_ROUTES`] has `M` in place of every `A`.
 pub(crate) const ROUTES: [Route; 16] = {
     use Source::{A, Ki, Kr, M, S1, S2, T};
     [
@@ -52,7 +52,8 @@ pub(crate) const ROUTES: [Route; 16] = {
     ]
 };
 
-/// The sixteen data paths of pfmam and pfmsm. They equal [`ROUTES`], with `M` (the multiplier's result) instead of `A`.
+/// The sixteen data paths of pfmam and pfmsm. The table equals [`ROUTES`], with `M` (the multiplier's result) instead
+/// of `A`.
 pub(crate) const MULTIPLIER_ROUTES: [Route; 16] = {
     let mut routes = ROUTES;
     let mut n = 0;
@@ -72,7 +73,8 @@ const fn multiplier_for_adder(source: Source) -> Source {
     }
 }
 
-/// Returns two booleans. They are true if the first source, or the second source, is a pair of registers.
+/// Returns two booleans. The first is true if the first source is a pair of registers, and the second is true if the
+/// second source is a pair.
 pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     let s = i.has(Flags::SOURCE_DOUBLE);
     let r = i.has(Flags::RESULT_DOUBLE);

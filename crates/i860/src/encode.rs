@@ -11,7 +11,7 @@ fn join16(imm: i32) -> u32 {
 /// Encodes an instruction. All fields must be in range, as [`decode`](crate::decode()) and the assembler ensure.
 #[must_use]
 pub fn encode(i: &Instruction) -> u32 {
-    // Registers have fixed fields; unused ones stay zero.
+    // Registers have fixed fields. Unused fields stay zero.
     let registers = u32::from(i.src2) << 21 | u32::from(i.dest) << 16 | u32::from(i.src1) << 11;
     if i.op == Op::Fnop {
         return FNOP | u32::from(i.has(Flags::DUAL)) << 9;

@@ -1,6 +1,6 @@
 //! The part of a basic block that was executed.
 
-/// The part of a basic block that was executed, and how it ended.
+/// The part of a basic block that was executed, and the way in which the execution ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Execution {
     /// Number of instructions or pairs that were executed, without the delay slot.

@@ -36,7 +36,7 @@ impl Fetch {
         self.line
     }
 
-    /// Records `line` as the cache line of the last fetch, because the clocks of a remembered run were reused.
+    /// Records `line` as the cache line of the last fetch. This call follows the reuse of a run's memoized clocks.
     #[inline]
     pub(crate) fn continue_in(&mut self, line: u32) {
         self.line = line;
@@ -61,7 +61,8 @@ impl Fetch {
         ArrivingLine { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
-    /// Numbers the next cache states from `latest` on, so that states of different processors have different numbers.
+    /// Makes the numbers of the next cache states start after `latest`, so that states of different processors have
+    /// different numbers.
     pub(crate) fn number_states_from(&mut self, latest: u64) {
         self.cache.number_changes_from(latest);
     }
@@ -94,7 +95,7 @@ impl Fetch {
         if !common.costs.applies(Freeze::InstructionMiss) {
             return;
         }
-        // A later word of an arriving line waits for its own transfer.
+        // A word of the line that is still arriving waits for its own transfer.
         if pc / LINE_BYTES == self.line {
             let arrival = self.arrivals[(pc / 8 % BEATS) as usize];
             return common.await_instruction(arrival);
@@ -109,7 +110,7 @@ impl Fetch {
     }
 
     fn miss<B: Bus>(&mut self, pc: u32, common: &mut Common, bus: &B) {
-        // Row 1b applies if a data fill runs when the miss begins.
+        // Row 1b applies if a fill of the data cache is running at the start of the miss.
         common.profile.instruction_misses += 1;
         let is_behind_data = common.now < common.data_fill_end;
         common.await_address_pipe();
@@ -129,7 +130,7 @@ impl Fetch {
         let random = common.chance.next();
         self.cache.fill(pc, random);
         let line = common.bus.read(common.now, pc, BEATS);
-        // The needed word arrives first, the others follow in cyclic order.
+        // The needed word arrives first. The other words follow in cyclic order.
         for beat in 0..BEATS {
             self.arrivals[((pc / 8 + beat) % BEATS) as usize] = line.arrival(beat);
         }

@@ -38,7 +38,7 @@ impl Cpu {
     #[inline(always)]
     fn pipelined_single(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
         let result = PipeStage { bits: u64::from(self.single(operation, from)), double: false };
-        // The destination receives the oldest result, and the new one enters the pipe.
+        // The destination receives the oldest result, and the new result enters the pipe.
         let leaving = push(self.pipe_of(operation), 2, result);
         self.state.set_f(action.dest, leaving);
     }
@@ -46,7 +46,7 @@ impl Cpu {
     #[inline(always)]
     fn pipelined_double(&mut self, operation: Operation, action: &FloatingAction, from: Operands) {
         let bits = self.double(operation, from);
-        // The multiplier has two stages for doubles, the adder three.
+        // For doubles, the multiplier has two stages, and the adder has three stages.
         let last = if operation == Operation::Multiply { 1 } else { 2 };
         let leaving = push(self.pipe_of(operation), last, PipeStage { bits, double: true });
         self.state.set_f(action.dest, leaving);
@@ -76,7 +76,7 @@ impl Cpu {
         single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), self.flush_to_zero())
     }
 
-    /// Returns the pipe that an operation uses: the adder's or the multiplier's.
+    /// Returns the pipe that an operation uses: the pipe of the adder or of the multiplier.
     #[inline(always)]
     fn pipe_of(&mut self, operation: Operation) -> &mut [PipeStage; 3] {
         let State { multiplier, adder, .. } = &mut self.state;
@@ -140,7 +140,7 @@ impl Cpu {
         push(&mut self.state.adder, 2, sum);
     }
 
-    /// Stores a result of the adder. A scalar result goes to its register; a pipelined result enters the adder's pipe.
+    /// Stores a result of the adder. A scalar result goes to its register. A pipelined result enters the adder's pipe.
     #[inline]
     fn adder_result(&mut self, i: &Instruction, result: PipeStage) {
         if i.has(Flags::PIPELINED) {
@@ -160,7 +160,7 @@ impl Cpu {
         self.adder_result(i, sum);
     }
 
-    /// Sets the condition code CC by a comparison. The real chip pushes an undefined value into the pipe; this model
+    /// Sets the condition code CC by a comparison. The real chip pushes an undefined value into the pipe. This model
     /// pushes zero.
     fn compare(&mut self, i: &Instruction, Operands { a, b }: Operands) {
         let double = i.has(Flags::SOURCE_DOUBLE);
@@ -190,7 +190,7 @@ impl Cpu {
     }
 
     /// Converts a floating-point value to an integer. On the real chip the high word of the result is undefined. In
-    /// this model `fix` clears the high word, and scalar `ftrunc` keeps it.
+    /// this model, `fix` clears the high word, and scalar `ftrunc` keeps the old high word.
     fn integer_part(&mut self, i: &Instruction, x: u64) {
         let wide = if i.has(Flags::SOURCE_DOUBLE) { x } else { widen(x as u32) };
         let mode = if i.op == Op::Fix { self.state.fsr >> fsr::RM_SHIFT & 3 } else { 3 };
@@ -215,7 +215,7 @@ impl Cpu {
         let leaving_product = last_product(&self.state, s);
         let leaving_sum = self.state.adder[2];
         let flush = self.flush_to_zero();
-        // All values in single precision: the fast path.
+        // If all values are in single precision, use the fast path.
         if !(s || r || leaving_product.double || leaving_sum.double) {
             return self.single_dual_operation(i, route, from, [leaving_product, leaving_sum]);
         }
@@ -227,7 +227,7 @@ impl Cpu {
         let product = operate(Operation::Multiply, m1, m2, s, r, flush);
         let operation = if i.imm & 16 != 0 { Operation::Subtract } else { Operation::Add };
         let sum = operate(operation, a1, a2, r, r, flush);
-        // The destination receives the result that leaves a pipe; T and K are reloaded after their use.
+        // The destination receives the result that leaves a pipe. T and K are reloaded after their use.
         self.state.set_f(i.dest, if pipelined { leaving_sum } else { leaving_product });
         if route.loads_t {
             self.state.t = convert(leaving_product, r, flush);
@@ -299,7 +299,7 @@ fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage 
     leaving
 }
 
-/// Replaces all results in a pipe by NaN, because a scalar operation destroys the pipe of its unit.
+/// Replaces all results in a pipe by NaN, because a scalar operation destroys the results in the pipe of its unit.
 #[inline(always)]
 fn lose(pipe: &mut [PipeStage; 3]) {
     for stage in pipe {

@@ -7,11 +7,11 @@ pub(crate) enum Flow {
     Next,
     /// Continue with the instruction that follows in memory, which a store may have changed.
     NextOfChangedCode,
-    /// Jump to the target address at once.
+    /// Jump to the target address immediately.
     Jump(u32),
     /// Jump to the target address after the delay slot.
     Delayed(u32),
-    /// Skip the next instruction or pair, the delay slot of a branch that is not taken.
+    /// Skip the next instruction or pair, which is the delay slot of a branch that is not taken.
     Skip,
     Trapped,
 }

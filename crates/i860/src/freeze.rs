@@ -1,5 +1,5 @@
-//! Freezes: hazards for which the processor stops issuing instructions. This module has the rules; [`FreezeClocks`] has
-//! their costs in clocks.
+//! Freezes: hazards for which the processor stops issuing instructions. This module has the rules, and [`FreezeClocks`]
+//! has their costs in clocks.
 
 use crate::timing::FreezeClocks;
 use pxpl5_sim::parameters::{ParameterInfo, ParameterTable};
@@ -34,10 +34,11 @@ macro_rules! freezes {
         /// Number of rows of [`FREEZES`].
         pub const N_FREEZES: usize = [$($number),*].len();
 
-        /// The freeze rules. Of several simultaneous freezes only the longest one counts, but cache misses add up.
+        /// The freeze rules. Of several simultaneous freezes, only the longest freeze counts, but the clocks of cache
+        /// misses are added.
         ///
-        /// The word "since" counts clocks. If an instruction in between was frozen itself, its delay shortens the wait
-        /// by the same number of clocks.
+        /// In the conditions, the word "since" refers to clocks. If an intermediate instruction was frozen, its delay
+        /// shortens the wait by the same number of clocks.
         pub const FREEZES: [FreezeRow; N_FREEZES] = [$(FreezeRow {
             id: Freeze::$id,
             number: $number,
@@ -88,7 +89,8 @@ pub struct FreezeRules {
     enabled: u32,
     /// Constant parts of the costs of all rows, including disabled rows.
     pub clocks: FreezeClocks,
-    /// True if row 8 also applies after and, andnot, or and xor. Intel's list leaves this open; the default is false.
+    /// True if row 8 also applies after and, andnot, or and xor. Intel's list does not decide this question. The
+    /// default is false.
     pub logicals_delay_branches: bool,
 }
 
@@ -120,7 +122,8 @@ impl FreezeRules {
         self
     }
 
-    /// Returns the numbers of the enabled rows in order. If row 8 also applies after logical operations, this is added.
+    /// Returns the numbers of the enabled rows in order. If row 8 also applies after logical operations, the list
+    /// states this fact.
     pub(crate) fn names(&self) -> String {
         let applying = FREEZES.iter().filter(|row| self.applies(row.id)).map(|row| row.number);
         let logicals = self.logicals_delay_branches.then_some("logicals delay branches");

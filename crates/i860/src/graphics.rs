@@ -1,17 +1,17 @@
-//! Execution in the graphics unit: integer arithmetic, merging of pixels and depths, comparison of depths.
+//! Execution in the graphics unit: integer arithmetic, merging of pixels and depths, and comparison of depths.
 
 use crate::cpu::Cpu;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::Operands;
 use crate::state::PipeStage;
 
-/// For each pixel size psr.PS: the mask of the bits that faddp copies into MERGE, and the number of bits by which faddp
-/// first shifts MERGE.
+/// Two numbers for each pixel size psr.PS. The first is the mask of the bits that faddp copies into MERGE. The second
+/// is the number of bits by which faddp first shifts MERGE.
 const PIXEL_MERGE: [(u64, u32); 3] =
     [(0xFF00_FF00_FF00_FF00, 8), (0xFC00_FC00_FC00_FC00, 6), (0xFF00_0000_FF00_0000, 8)];
 
-/// Returns the smaller field of each pair of fields in `a` and `b`. Also returns one bit for each field, which is set
-/// if `b` is not greater than `a`.
+/// Returns the smaller field of each pair of fields in `a` and `b`. Also returns one bit for each pair. The bit is set
+/// if the field of `b` is not greater than the field of `a`.
 fn z_check(a: u64, b: u64, width: u32) -> (u64, u32) {
     let field = (1u64 << width) - 1;
     let mut result = (0, 0);
@@ -36,7 +36,7 @@ impl Cpu {
             Op::Fzchks => self.check_z(a, b, 16),
             _ => std::mem::take(&mut self.state.merge) | a,
         };
-        // All results except of fiadd.ss and fisub.ss are doubles.
+        // All results are doubles, except the results of fiadd.ss and fisub.ss.
         let double = !matches!(i.op, Op::Fiadd | Op::Fisub) || i.has(Flags::RESULT_DOUBLE);
         self.graphics_result(i, PipeStage { bits, double });
     }
@@ -67,7 +67,7 @@ impl Cpu {
     fn check_z(&mut self, a: u64, b: u64, width: u32) -> u64 {
         let fields = 64 / width;
         let (smaller, passed) = z_check(a, b, width);
-        // The new bits enter psr.PM from above, for several checks in a row.
+        // The new bits enter psr.PM at the upper end, so that PM can collect the bits of several checks.
         let mask = self.state.pixel_mask() >> fields | passed << (8 - fields);
         self.state.set_pixel_mask(mask);
         self.state.merge = 0;

@@ -1,12 +1,12 @@
 //! The instruction set: operations, instruction fields, and the units and registers that an operation uses.
 
-/// Every operation of the i860 XR. [`Flags`] tells precision, addressing form and pipelining.
+/// Every operation of the i860 XR. The precision, the addressing form and pipelining are in [`Flags`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Op {
-    /// `ld.b`: loads a byte and extends its sign to 32 bits.
+    /// `ld.b`: loads a byte and sign-extends it to 32 bits.
     LdB,
-    /// `ld.s`: loads 16 bits and extends their sign to 32 bits.
+    /// `ld.s`: loads 16 bits and sign-extends them to 32 bits.
     LdS,
     /// `ld.l`: loads 32 bits.
     LdL,
@@ -20,7 +20,7 @@ pub enum Op {
     Fld,
     /// `fst`: stores one, two or four floating-point registers.
     Fst,
-    /// `pfld`: pipelined load. Its destination register receives the data that the third `pfld` before it has loaded.
+    /// `pfld`: pipelined load. The destination register receives the data of the third previous `pfld`.
     Pfld,
     /// `pst`: stores the pixels whose bits in psr.PM are set.
     Pst,
@@ -50,27 +50,27 @@ pub enum Op {
     Btne,
     /// `br`: branches unconditionally after the delay slot.
     Br,
-    /// `call`: calls after the delay slot; r1 receives the return address.
+    /// `call`: calls after the delay slot. Register r1 receives the return address.
     Call,
     /// `bc`: branches if the condition code CC is set, without a delay slot.
     Bc,
-    /// `bc.t`: branches if the condition code CC is set, after the delay slot. If the branch is not taken, the slot is
-    /// skipped.
+    /// `bc.t`: branches if the condition code CC is set, after the delay slot. If the branch is not taken, the delay
+    /// slot is skipped.
     BcT,
     /// `bnc`: branches if the condition code CC is clear, without a delay slot.
     Bnc,
-    /// `bnc.t`: branches if the condition code CC is clear, after the delay slot. If the branch is not taken, the slot
-    /// is skipped.
+    /// `bnc.t`: branches if the condition code CC is clear, after the delay slot. If the branch is not taken, the delay
+    /// slot is skipped.
     BncT,
     /// `bla`: adds two registers, and branches after the delay slot if the loop condition code LCC was set before.
     Bla,
     /// `addu`: unsigned add. The flags OF and CC receive the carry.
     Addu,
-    /// `subu`: src1 - src2, unsigned; sets CC if src2 <= src1.
+    /// `subu`: src1 - src2, unsigned. Sets CC if src2 <= src1.
     Subu,
-    /// `adds`: signed add; sets CC if src2 < -src1.
+    /// `adds`: signed add. Sets CC if src2 < -src1.
     Adds,
-    /// `subs`: src1 - src2, signed; sets CC if src2 > src1.
+    /// `subs`: src1 - src2, signed. Sets CC if src2 > src1.
     Subs,
     /// `shl`: shifts left. `nop` is a `shl` whose three registers are all r0.
     Shl,
@@ -80,7 +80,7 @@ pub enum Op {
     Shrd,
     /// `shra`: shifts right and fills with the sign bit.
     Shra,
-    /// `and`: bitwise and; sets CC if the result is 0.
+    /// `and`: bitwise and. Sets CC if the result is 0.
     And,
     /// `andh`: bitwise and with the immediate in the high half.
     Andh,
@@ -88,15 +88,15 @@ pub enum Op {
     Andnot,
     /// `andnoth`: bitwise and with the complement of the immediate in the high half.
     Andnoth,
-    /// `or`: bitwise or; sets CC if the result is 0.
+    /// `or`: bitwise or. Sets CC if the result is 0.
     Or,
     /// `orh`: bitwise or with the immediate in the high half.
     Orh,
-    /// `xor`: bitwise exclusive or; sets CC if the result is 0.
+    /// `xor`: bitwise exclusive or. Sets CC if the result is 0.
     Xor,
     /// `xorh`: bitwise exclusive or with the immediate in the high half.
     Xorh,
-    /// `fnop`: no operation; fills the floating-point half of a pair.
+    /// `fnop`: no operation, for the floating-point half of a pair.
     Fnop,
     /// `fmul`, `pfmul`: floating-point multiply.
     Fmul,
@@ -136,7 +136,7 @@ pub enum Op {
     Faddz,
     /// `fzchkl`: compares pairs of 32-bit depths and keeps the smaller depth of each pair.
     Fzchkl,
-    /// `form`: bitwise or with the register MERGE, which becomes 0.
+    /// `form`: bitwise or with the register MERGE. Afterwards, MERGE is 0.
     Form,
     /// `fzchks`: compares pairs of 16-bit depths and keeps the smaller depth of each pair.
     Fzchks,
@@ -179,15 +179,16 @@ impl Flags {
 
 /// One decoded instruction.
 ///
-/// `dest`, `src1` and `src2` are register numbers 0..=31 as encoded; `op` decides the register file. A store of an
-/// integer register stores register `src1`; `fst` and `pst` store register `dest`. `imm` holds the immediate, the
+/// `dest`, `src1` and `src2` are register numbers 0..=31 as encoded. `op` determines the register file. A store of an
+/// integer register stores register `src1`, and `fst` and `pst` store register `dest`. `imm` holds the immediate, the
 /// displacement in bytes, or the branch offset in words. `size` is the operand size in bytes of fld, fst, pfld and pst,
 /// and 0 for other operations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
     /// Operation, without its precision and addressing form.
     pub op: Op,
-    /// Number of the destination register. The operation decides if this is an integer or a floating-point register.
+    /// Number of the destination register. The operation determines whether this is an integer or a floating-point
+    /// register.
     pub dest: u8,
     /// Number of the first source register. (For ld.c and st.c, `src2` selects the control register.)
     pub src1: u8,
@@ -220,8 +221,8 @@ impl Instruction {
         self.op >= Op::Fnop
     }
 
-    /// Returns true if the operation is a branch with a delay slot: control is transferred after the next instruction
-    /// or pair.
+    /// Returns true if the operation is a branch with a delay slot. Such a branch takes effect after the next
+    /// instruction or pair.
     #[must_use]
     pub fn is_delayed_branch(&self) -> bool {
         use Op::{BcT, Bla, BncT, Br, Bri, Call, Calli};

@@ -1,4 +1,4 @@
-//! Execution of integer instructions: arithmetic, logical operations, shifts, writes of control registers.
+//! Execution of integer instructions: arithmetic, logical operations, shifts, and writes of control registers.
 
 use crate::action::CoreAction;
 use crate::cpu::Cpu;
@@ -97,7 +97,7 @@ impl Cpu {
 
     /// Writes a control register. In user mode only fsr, epsr.OF and the user bits of psr can change.
     pub(crate) fn write_control(&mut self, register: u8, value: u32) {
-        // User mode may change only a part of the bits.
+        // In user mode, a program can change only a part of the bits.
         let user = self.state.psr & psr::U != 0;
         match register {
             1 => self.state.psr = merge(self.state.psr, value, if user { psr::USER } else { !0 }),

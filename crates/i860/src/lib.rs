@@ -6,7 +6,7 @@
 //!            | integer | memory | floating | graphics         |<---->| impl Bus  |
 //!            | State: r, f, psr .. , pipes, KR KI T MERGE     |      +-----------+
 //!            | Clock: freezes, caches, TLB, store pipe, DRAM, |
-//!            |        blocks that repeat                      |
+//!            |        memoized blocks                         |
 //!            +------------------------------------------------+
 //!  text -> assemble -> Program       word -> disassemble -> text
 //!  linear code -> linear::schedule -> text in dual-instruction mode
@@ -31,12 +31,14 @@
 //!
 //! # Behaviour
 //!
-//! - All XR instructions: integer core, loads and stores with auto-increment, scalar and pipelined arithmetic, the 62
-//!   dual operations, pipelined loads, graphics unit, delay slots, `bla`, dual-instruction mode, control registers.
+//! - All XR instructions are modelled: integer core, loads and stores with auto-increment, scalar and pipelined
+//!   arithmetic, the 62 dual operations, pipelined loads, graphics unit, delay slots, `bla`, dual-instruction mode, and
+//!   control registers.
 //! - Arithmetic is IEEE, rounded to nearest even, with the same bits on every host. fsr.FZ flushes results to zero.
 //!   Without traps a NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
-//! - A scalar operation, also `frcp` or `frsqr`, destroys the contents of its unit's pipe. In this model the contents
-//!   become NaN. The assembler warns of code that reads a result from a pipe after a scalar operation.
+//! - A scalar operation (including `frcp` and `frsqr`) destroys the contents of its unit's pipe. In this model, the
+//!   contents become NaN. The assembler prints a warning for code that reads a result from a pipe after a scalar
+//!   operation.
 //! - The results of the approximations `frcp` and `frsqr` come from a [`SeedTable`], because the chip's table is not
 //!   public.
 //! - After a trap, the processor is at the first instruction of the trap handler, and [`Cpu::step`] returns the cause.
@@ -53,29 +55,29 @@
 //! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte lines
 //! and pseudo-random replacement. A write miss allocates no line. The TLB has 64 entries.
 //!
-//! All rows are *assumed*: recollections of Intel's list of instruction timings. Tests compare them with published
-//! figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, about 48 clocks for a square root.
-//! One published figure is a tree-traversal loop of 117 instructions in 106 clocks. The description of this loop does
-//! not suffice to write the same code. The test runs a loop of the same shape (pairs, odd entry, taken `bnc.t`). It
-//! therefore checks the issue rules, but not the published program.
+//! All rows are *assumed*. Their numbers are quoted from memory from Intel's list of instruction timings. Tests compare
+//! them with published figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, about 48 clocks
+//! for a square root. One published figure is a tree-traversal loop of 117 instructions in 106 clocks. The published
+//! description is not sufficient to write the same code. The test runs a loop of the same shape (pairs, odd entry,
+//! taken `bnc.t`). The test therefore checks the issue rules, but not the published program.
 //!
 //! # Speed
 //!
-//! Code is decoded once, as basic blocks: a block goes from an address to the next branch with its delay slot. The
-//! processor executes a block, and the clock then counts its time.
+//! Code is decoded once, as basic blocks. A block extends from an address to the next branch, and includes its delay
+//! slot. The processor executes a block, and the clock then counts its time.
 //!
 //! A *run* is a part of a block whose instructions and data are all in the caches. A run uses neither the bus nor the
-//! queues nor the replacement sequence. Its clocks depend only on the waits left by earlier instructions, on the rest
-//! of an arriving instruction line and on taken branches and traps. The model remembers these clocks and reuses them,
-//! as FastSim does (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization on.
+//! queues nor the replacement sequence. The clocks of a run depend only on the remaining waits of earlier instructions,
+//! on the rest of an arriving instruction line, and on taken branches and traps. The model memoizes these clocks and
+//! reuses them, like FastSim (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization on.
 //!
 //! A block is one run, or several runs separated by accesses that leave the cache. The model counts these accesses, and
 //! instructions after a wait of more than 15 clocks, one by one. A block that is not entirely in the instruction cache
 //! is also split at cache lines.
 //!
-//! Counted and reused clocks give the same state, clocks and profile. `tests/memo.rs` checks random programs, also
-//! larger than the caches. `crates/pphigs/tests/memo.rs` checks the triangle kernels with every row switched. The
-//! benchmarks of `crates/pphigs` measure the gain for these kernels.
+//! Counted and reused clocks give the same state, clocks and profile. `tests/memo.rs` checks random programs, including
+//! programs larger than the caches. `crates/pphigs/tests/memo.rs` checks the triangle kernels with changes of every
+//! row. The benchmarks of `crates/pphigs` measure the gain for these kernels.
 //!
 //! A [`DecodedPrograms`] keeps decoded programs and their clocks for all processors that run them. Profiles by address
 //! ([`Cpu::watch`]) and address translation always count every instruction.
@@ -91,16 +93,17 @@
 //! - Address translation: ATE charges the time of TLB misses, but addresses stay unchanged. There is no page
 //!   protection.
 //! - Big-endian data (epsr.BE), breakpoints (db), floating-point traps (FTE), kill-next (KNF), the 8-bit boot mode.
-//! - Rounding modes other than to nearest, except in `fix`. Status bits of fsr.
-//! - Undefined register choices.
-//! - Contents of the caches. The caches are always coherent and only cost time. A processor executes its own stores
-//!   into code at once.
+//! - Rounding modes other than to nearest, except in `fix`. The status bits of fsr are not modelled either.
+//! - Results of instructions with undefined choices of registers.
+//! - Contents of the caches. The caches are always coherent and affect only the time. A store of the processor into its
+//!   own code takes effect immediately.
 //! - XP additions: `pfld.q`, `pfmul3`, registers bear, ccr, p0 to p3.
 //!
 //! # Sources
 //!
-//! Intel, *i860 Microprocessor Programmer's Reference Manual*, from memory; encodings of public assemblers; kernels of
-//! the period with clock comments. [`timing::FREEZES`] and [`timing::FreezeClocks`] name the source of each row.
+//! Intel, *i860 Microprocessor Programmer's Reference Manual*, from memory. Encodings of public assemblers. Kernels of
+//! the period with comments about clocks. [`timing::FREEZES`] and [`timing::FreezeClocks`] state the source of each
+//! row.
 
 mod action;
 mod arithmetic;

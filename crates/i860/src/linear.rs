@@ -1,11 +1,11 @@
-//! A scheduler that turns straight-line code into pairs for dual-instruction mode. The source of the code names no
-//! registers and gives no order.
+//! A scheduler that converts straight-line code to pairs for dual-instruction mode. The source of the code contains no
+//! registers and no order of instructions.
 //!
 //! A *linear stretch* is the part of an assembler source between `.linear` and `.endlinear`. Each line of a stretch
-//! computes a value from other values. The line names an operation, but not the pipe that executes it. [`schedule`]
-//! replaces the stretch by pairs of a floating-point and a core instruction. The scheduler chooses the order, fills and
-//! drains the pipes of adder and multiplier, and assigns registers. The operations and their operands stay as written,
-//! so results do not depend on the order.
+//! computes a value from other values. The line states an operation, but not the pipe that executes the operation.
+//! [`schedule`] replaces the stretch by pairs of a floating-point and a core instruction. The scheduler chooses the
+//! order, fills and drains the pipes of adder and multiplier, and assigns registers. The operations and their operands
+//! stay as written, so results do not depend on the order.
 //!
 //! ```text
 //!         .linear                       or with numbers: window, eagerness, reserve, slope, shake
@@ -24,11 +24,11 @@
 //! |---|---|
 //! | `add` `sub` `.ss .sd .dd`, `mov` `.sd .ds` | adder, pipelined |
 //! | `mul` `.ss .sd .dd` | multiplier, pipelined |
-//! | `rcp` `.ss .dd` | first approximation of a reciprocal; the multiplier's pipe is drained before it |
+//! | `rcp` `.ss .dd` | first approximation of a reciprocal; the multiplier's pipe is drained first |
 //! | `isub.ss` `iadd.ss` `zmin.dd` | graphics unit (fisub, fiadd, fzchkl) |
 //! | `fld.l .d .q`, `ld.l`, `fst.l .d`, `st.l`, `ixfr` | core |
 //! | `adds subs and andnot or xor shl shr shra orh` | core; the first source may be a constant |
-//! | `prefetch` | core: a load whose data is not used; no other memory access is placed while it is under way |
+//! | `prefetch` | core: a load whose data is not used; no other memory access is placed until the load ends |
 //!
 //! Each value has one name. `r0` to `r31` and `f0` are registers that the stretch does not change. A `.pool` line of
 //! the source lists the integer registers that [`schedule`] can use: `.pool r4 r5 r6`. Loads and stores can be placed
@@ -37,21 +37,21 @@
 //!
 //! # Method
 //!
-//! The method is list scheduling, clock by clock. In each clock the scheduler looks at a *window*: a number of lines
-//! that begins with the first line not issued yet. Of the operations that can be issued, the scheduler takes the one
-//! with the longest path to the end.
+//! The method is list scheduling, clock by clock. In each clock, the scheduler considers a *window*: a number of lines
+//! that begins with the first unissued line. Of the operations in the window that can be issued, the scheduler selects
+//! the operation with the longest path to the end.
 //!
 //! The first line in the window can take the last free registers. Later lines must leave a *reserve* of free registers.
-//! The reserve grows for each 64 lines of distance from the first line (*slope*). No schedule thus runs out of
-//! registers.
+//! For each 64 lines of distance from the first line, the reserve increases (*slope*). With this reserve, no schedule
+//! lacks registers.
 //!
 //! An operation without operands pushes a pipe (a *drain*) in two cases. In the first case, no operation can be issued.
 //! In the second case, a value in the pipe is more urgent than the best operation by more than the *eagerness*. An
 //! operation that can be a dual operation also pushes the other pipe, if no result is lost.
 //!
-//! The scheduler obeys the rows of the freeze table, so the scheduled code runs without freezes if it hits the caches.
-//! A *shake* other than 0 changes the priorities a little. Schedules of the same text then differ by some per cent. A
-//! search can try many values and keep the shortest schedule.
+//! The scheduler applies the rows of the freeze table, so the scheduled code runs without freezes if all accesses hit
+//! the caches. A *shake* other than 0 changes the priorities a little. The lengths of schedules of the same text then
+//! differ by some per cent. A search can try many values and keep the shortest schedule.
 
 mod machine;
 mod parse;
@@ -71,14 +71,15 @@ pub struct LinearError {
     pub reason: String,
 }
 
-/// The number of operations in a stretch of linear code, for each half of a pair, and the length of the schedule in
-/// clocks (without freezes).
+/// The numbers of floating-point and core operations in a stretch of linear code, and the number of pairs in its
+/// schedule. Without freezes, each pair takes one clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slots {
     /// Number of floating-point operations. A multiply with double-precision sources counts twice, because the
-    /// multiplier accepts one every second clock.
+    /// multiplier accepts one such multiply every second clock.
     pub floating: usize,
-    /// Number of core operations. A schedule has at least as many pairs as the greater of `floating` and `core`.
+    /// Number of core operations. The number of pairs in a schedule is at least the greater number of `floating` and
+    /// `core`.
     pub core: usize,
     /// Number of pairs in the schedule.
     pub pairs: usize,
@@ -87,7 +88,7 @@ pub struct Slots {
 /// Returns the operation counts of each stretch of linear code in a source, in order.
 ///
 /// # Errors
-/// The errors of [`schedule`].
+/// Returns the errors of [`schedule`].
 pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
     let mut found = Vec::new();
     stretches(
@@ -129,7 +130,7 @@ pub fn schedule(source: &str) -> Result<String, LinearError> {
 }
 
 /// Passes the operations of each stretch of linear code, with their pairs, to `linear`. Passes every other line to
-/// `other`. The order of the source is kept.
+/// `other`. The calls have the order of the source.
 fn stretches(
     source: &str,
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),
@@ -141,11 +142,11 @@ fn stretches(
     while let Some((line, text)) = lines.next() {
         let words: Vec<&str> = text.split_whitespace().collect();
         match words.as_slice() {
-            // A pool applies to all stretches after it.
+            // A pool applies to all following stretches.
             [".pool", registers @ ..] => pool = parse::pool(line, registers)?,
             [".linear", parameters @ ..] => {
                 let settings = parse::settings(line, parameters)?;
-                // A stretch goes up to the end directive.
+                // A stretch extends to the end directive.
                 let block: Vec<(usize, &str)> = lines.by_ref().take_while(|(_, t)| t.trim() != ".endlinear").collect();
                 let operations = parse::operations(&block)?;
                 let pairs =

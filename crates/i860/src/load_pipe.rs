@@ -1,4 +1,5 @@
-//! The pipe of pipelined loads (`pfld`). Their data bypass the cache and reach a register three loads later.
+//! The pipe of pipelined loads (`pfld`). The data of such loads bypass the cache and reach a register three loads
+//! later.
 
 use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
@@ -13,7 +14,7 @@ pub(crate) struct LoadPipe {
 }
 
 impl LoadPipe {
-    /// Starts a pipelined load after the data of the oldest one have arrived.
+    /// Starts a pipelined load after the data of the oldest load have arrived.
     pub(crate) fn load(&mut self, address: u32, size: u32, is_in_cache: bool, common: &mut Common) {
         // The pipe has three stages, so the fourth load waits for the first.
         let oldest = self.arrivals[0];
@@ -29,7 +30,7 @@ impl LoadPipe {
     }
 }
 
-/// Returns the clock at which data from the cache arrive: after all earlier bus cycles have ended.
+/// Returns the clock at which data from the cache arrive. The data arrive after the end of all earlier bus cycles.
 fn from_cache(common: &mut Common) -> u64 {
     if common.costs.applies(Freeze::PipelinedLoadHit) {
         let until = common.bus.idle_at().max(common.now) + common.costs.clocks(Freeze::PipelinedLoadHit);

@@ -1,12 +1,12 @@
-//! Memoization: the clocks of repeated code are remembered and reused instead of counted again.
+//! Memoization: the clocks of repeated code are stored and reused instead of counted again.
 //!
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
 //! 1998). A run is a part of a basic block whose instructions and data are all in the caches. A run leaves the bus, the
-//! queues and the replacement sequence unchanged. Its clocks depend on three things: the scoreboard before it, the rest
-//! of an arriving instruction line, and the branches and traps of its execution.
+//! queues and the replacement sequence unchanged. The clocks of a run depend on three things: the scoreboard before the
+//! run, the rest of an arriving instruction line, and branches and traps.
 //!
-//! Each distinct scoreboard has a number, so a run is found by a comparison of integers. Between two runs, accesses
-//! that need the bus are counted with the full scoreboard.
+//! Each distinct scoreboard has a number, so a comparison of integers finds a run. Between two runs, accesses that need
+//! the bus are counted with the full scoreboard.
 
 use crate::profile::Profile;
 use crate::scoreboard::{PendingWaits, Scoreboard};
@@ -45,7 +45,7 @@ pub(crate) struct Numbers {
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard state after a remembered run. `None` means that the [`Scoreboard`] itself holds
+    /// Number of the current scoreboard state after a memoized run. `None` means that the [`Scoreboard`] itself holds
     /// the state.
     present: Option<Number>,
     /// Number of executed instructions whose clocks were reused.
@@ -68,7 +68,7 @@ impl Memo {
         if fill.clocks > u64::from(MOST_CLOCKS) {
             return None;
         }
-        // The state must fit into a few bits; otherwise it gets no number.
+        // The state must fit into a few bits. Otherwise, it gets no number.
         let left = written.leftover(now, MOST_CLOCKS, [fill.clocks as u8, fill.first])?;
         let Numbers { numbers, leftovers } = &mut *self.numbers;
         if let Some(number) = numbers.get(&left) {
@@ -85,7 +85,7 @@ impl Memo {
         Some(number)
     }
 
-    /// Makes the state after a remembered run the current scoreboard state.
+    /// Makes the state after a memoized run the current scoreboard state.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
@@ -117,9 +117,9 @@ pub(crate) struct ArrivingLine {
 pub(crate) struct Run(u64);
 
 impl Run {
-    /// Makes the key of a run from the scoreboard before it and from its first and last position in the block. The
-    /// flags are: the branch was taken, the last instruction trapped, the first fetch is from a cache line that is
-    /// still arriving.
+    /// Makes the key of a run. `entry` is the number of the scoreboard before the run. `from` and `to` are the first
+    /// and the last position in the block. The flags are true if the branch was taken, if the last instruction trapped,
+    /// and if the first fetch is from a cache line that is still arriving.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
         let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;
@@ -139,8 +139,8 @@ impl Run {
     }
 }
 
-/// Clocks of delay, by cause. Each entry has the cause in its lower five bits and the clocks above. Entries after the
-/// last one are zero.
+/// Clocks of delay, by cause. Each entry has the cause in its lower five bits and the clocks above. Unused entries at
+/// the end are zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WaitedClocks([u16; WaitedClocks::MOST]);
 
@@ -149,8 +149,8 @@ impl WaitedClocks {
     /// Greatest number of causes of delay in one run.
     const MOST: usize = 6;
 
-    /// Returns the clocks of delay, by cause, that profile `after` has in addition to `before`. Returns `None` if there
-    /// are too many causes, or if the clocks of a cause exceed the size of an entry.
+    /// Returns the clocks of delay between the profiles `before` and `after`, by cause. Returns `None` if there are too
+    /// many causes, or if the clocks of a cause exceed the size of an entry.
     fn between(before: &Profile, after: &Profile) -> Option<WaitedClocks> {
         let clocks = FREEZES.iter().map(|row| (row.id, after.frozen_by(row.id) - before.frozen_by(row.id)));
         let mut all = WaitedClocks::default();
@@ -174,7 +174,7 @@ impl WaitedClocks {
     }
 }
 
-/// The remembered clocks of a run. The entry fills half a cache line of most host computers.
+/// The memoized clocks of a run. The entry fills half a cache line of most host computers.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct RememberedClocks {
@@ -208,8 +208,8 @@ impl RememberedClocks {
     }
 }
 
-/// The remembered runs of a block, as a hash table. Each run lies within [`BlockMemory::REACH`] entries of the position
-/// given by its hash.
+/// The memoized runs of a block, as a hash table. Each run lies within [`BlockMemory::REACH`] entries of the position
+/// that its hash gives.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMemory(Box<[RememberedClocks]>);
 
@@ -217,7 +217,7 @@ impl BlockMemory {
     /// Smallest size of the hash table, in entries.
     const LEAST: usize = 8;
     const MOST: usize = 1 << 11;
-    /// Number of successive entries that are searched for a run.
+    /// Number of successive entries in which a run is searched.
     const REACH: usize = 4;
 
     #[inline]
@@ -229,7 +229,8 @@ impl BlockMemory {
         })
     }
 
-    /// Adds a run that is new to the table. If a table of the greatest size has no free entry, another run is replaced.
+    /// Adds a run that the table does not contain. If a table of the greatest size has no free entry, the run replaces
+    /// another run.
     pub(crate) fn add(&mut self, remembered: RememberedClocks) {
         while !self.put(remembered) {
             if self.0.len() >= BlockMemory::MOST {
@@ -241,7 +242,7 @@ impl BlockMemory {
         }
     }
 
-    /// Puts a run into a free entry near the position given by its hash. Returns false if no entry is free.
+    /// Puts a run into a free entry near the position that its hash gives. Returns false if no entry is free.
     fn put(&mut self, remembered: RememberedClocks) -> bool {
         let length = self.0.len();
         let mut places = (0..BlockMemory::REACH.min(length)).map(|n| (remembered.run.hash() + n) & (length - 1));
@@ -249,7 +250,7 @@ impl BlockMemory {
         free.map(|place| self.0[place] = remembered).is_some()
     }
 
-    /// Doubles the size of the hash table. Runs that find no free entry in the new table are dropped.
+    /// Doubles the size of the hash table. Runs without a free entry in the new table are discarded.
     fn grow(&mut self) {
         let larger = vec![RememberedClocks::NOTHING; (2 * self.0.len()).max(BlockMemory::LEAST)];
         let all = std::mem::replace(&mut self.0, larger.into_boxed_slice());

@@ -38,7 +38,7 @@ impl Cpu {
         Ok(())
     }
 
-    /// Returns the control flow after a store, which depends on whether the store has changed decoded code.
+    /// Returns the control flow after a store. The flow is different if the store has changed decoded code.
     #[inline(always)]
     fn after_store(&self) -> Flow {
         if self.code_changed { Flow::NextOfChangedCode } else { Flow::Next }
@@ -136,7 +136,7 @@ impl Cpu {
     ) -> Result<Flow, TrapCause> {
         let address = self.effective_address(a, SIZE)?;
         let bits = self.read(bus, address, SIZE)?;
-        // The destination receives the oldest load, and the new one enters the pipe.
+        // The destination receives the data of the oldest load, and the new data enter the pipe.
         let [first, second, leaving] = self.state.load;
         self.state.set_f(a.dest, leaving);
         self.state.load = [PipeStage { bits, double: SIZE == 8 }, first, second];
@@ -146,17 +146,17 @@ impl Cpu {
         Ok(Flow::Next)
     }
 
-    /// Writes the pixels whose PM bits are set. Bit 0 belongs to the pixel at the lowest address. Then shifts PM by the
-    /// number of pixels.
+    /// Writes the pixels whose PM bits are set. Bit 0 belongs to the pixel at the lowest address. Afterwards, PM is
+    /// shifted by the number of pixels.
     pub(crate) fn store_pixels<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<Flow, TrapCause> {
         let address = self.effective_address(a, 8)?;
-        // Trap before any pixel is written if the address is not mapped.
+        // If the address is not mapped, trap before the first write of a pixel.
         self.read(bus, address, 8)?;
         let size = 1 << self.state.pixel_size();
         let pixels = 8 / size;
         let mask = self.state.pixel_mask();
         let value = self.state.f64_bits(a.dest);
-        // Each pixel whose mask bit is set is one write.
+        // Each pixel whose mask bit is set needs one write.
         for n in (0..pixels).filter(|n| mask >> n & 1 != 0) {
             self.write(bus, address + n * size, size, value >> (8 * n * size))?;
         }
@@ -165,7 +165,8 @@ impl Cpu {
         Ok(self.after_store())
     }
 
-    /// Executes `flush`. The alignment of the address is not checked, and memory need not exist there.
+    /// Executes `flush`. The function does not check the alignment of the address, and the address need not have
+    /// memory.
     pub(crate) fn flush_line(&mut self, i: &Instruction) {
         let offset = if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) };
         let address = offset.wrapping_add(self.state.r(i.src2));

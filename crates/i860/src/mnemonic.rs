@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// Names of the data paths of the dual operations, in the order of the DPC field. The character `_` stands for p (plus)
-/// or s (minus). The first row is for pfam and pfsm, the second for pfmam and pfmsm.
+/// or s (minus). The first row is for pfam and pfsm, and the second row is for pfmam and pfmsm.
 const PATHS: [[&str; 16]; 2] = [
     [
         "r2_1", "r2_t", "r2a_1", "r2a_t", "i2_1", "i2_t", "i2a_1", "i2a_t", "rat1_2", "m12a_m", "ra1_2", "m12tt_a",
@@ -136,7 +136,7 @@ pub fn mnemonic(i: &Instruction) -> String {
     format!("{dual}{pipelined}{}{}", base_name(i.op), suffix(i))
 }
 
-/// Returns true if the bits that the operation ignores have the values that Intel's assembler gives them.
+/// Returns true if all bits that the operation ignores have the values of Intel's assembler.
 fn is_canonical(i: &Instruction) -> bool {
     let double = Flags(Flags::SOURCE_DOUBLE.0 | Flags::RESULT_DOUBLE.0);
     match i.op {
@@ -147,13 +147,13 @@ fn is_canonical(i: &Instruction) -> bool {
     }
 }
 
-/// Returns all mnemonics without the prefix `d.`. Each one has its instruction, in which registers and immediates are
-/// zero.
+/// Returns all mnemonics without the prefix `d.`, each with its instruction. The registers and immediates of the
+/// instructions are zero.
 pub(crate) fn templates() -> &'static BTreeMap<String, Instruction> {
     static TABLE: OnceLock<BTreeMap<String, Instruction>> = OnceLock::new();
     TABLE.get_or_init(|| {
         let mut table = BTreeMap::new();
-        // The first word of each name decides its fields.
+        // If several words have the same name, the first word determines the fields.
         for i in every_word().filter_map(|word| decode(word).ok()).filter(is_canonical) {
             let name = mnemonic(&i);
             let plain = Flags(i.flags.0 & !(Flags::IMMEDIATE.0 | Flags::AUTOINCREMENT.0));
@@ -191,7 +191,8 @@ mod tests {
     #[test]
     fn the_mnemonics_of_the_xr_part_are_all_there() {
         let names: Vec<&str> = templates().keys().map(String::as_str).collect();
-        // 4 families of dual operations, 16 + 16 + 15 + 15 data paths in the three precisions .ss .sd .dd.
+        // The 4 families of dual operations have 16 + 16 + 15 + 15 data paths, each in the three precisions .ss, .sd
+        // and .dd.
         let paths = names.iter().filter(|n| n.starts_with(['r', 'i', 'm']) && !["ixfr", "intovr"].contains(n));
         assert_eq!(paths.count(), 62 * 3);
         for name in ["ld.c", "pst.d", "fst.q", "pfmul.dd", "famov.ds", "pfle.dd", "m12apm.ss", "mim1s2.dd", "bla"] {

@@ -1,4 +1,4 @@
-//! Operands of floating-point instructions. An operand can be a result that is just leaving a pipe.
+//! Operands of floating-point instructions. An operand can be a result that leaves a pipe in the same clock.
 
 use crate::action::{Floating, FloatingAction};
 use crate::block::Unit;
@@ -9,7 +9,7 @@ use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{PipeStage, State};
 
 /// Source operands of a floating-point instruction. Both operands are read before either half of a pair writes a
-/// result. A result that is just leaving the pipe is already readable.
+/// result. A result that leaves a pipe in this clock can already be read.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Operands {
     pub(crate) a: u64,
@@ -42,7 +42,7 @@ fn read_any(state: &State, d: &Decoded) -> Operands {
 }
 
 fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Operands {
-    // A scalar instruction has no result in the pipe to pass on.
+    // A scalar instruction does not move a result out of a pipe.
     let Some(out) = leaving(state, i) else {
         return Operands { a: state.f_bits(i.src1, first), b: state.f_bits(i.src2, second) };
     };
@@ -54,8 +54,8 @@ fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Op
     Operands { a, b }
 }
 
-/// Returns the contents of the multiplier's last stage. This is the second stage for double-precision sources, and the
-/// third stage for single-precision sources.
+/// Returns the contents of the multiplier's last stage. The last stage is the second stage for double-precision
+/// sources, and the third stage for single-precision sources.
 pub(crate) fn last_product(state: &State, source_double: bool) -> PipeStage {
     state.multiplier[if source_double { 1 } else { 2 }]
 }
@@ -78,13 +78,13 @@ fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     })
 }
 
-/// Reads register `n` as if the result leaving the pipe had already been written to register `dest`.
+/// Reads register `n`. The result that leaves the pipe counts as already written to register `dest`.
 fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: PipeStage) -> u64 {
     if dest & 30 != n & 30 || dest < 2 {
         return state.f_bits(n, double);
     }
     let low = usize::from(dest & 30);
-    // Put the leaving result over the old value of its register or pair.
+    // Replace the old value of the register or pair by the leaving result.
     let mut pair = [state.f[low], state.f[low + 1]];
     if leaving.double {
         pair = [leaving.bits as u32, (leaving.bits >> 32) as u32];

@@ -6,7 +6,7 @@ use std::fmt;
 /// Clocks since reset or the last [`Cpu::clear_profile`](crate::Cpu::clear_profile), by cause.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Profile {
-    /// Number of executed instructions. A pair counts as two; `fnop` and `nop` are included.
+    /// Number of executed instructions. A pair counts as two. `fnop` and `nop` also count.
     pub instructions: u64,
     /// Number of clocks in which an instruction or a pair was issued.
     pub issue: u64,
@@ -91,12 +91,12 @@ impl AddressProfile {
         self.rows.get(at).copied().unwrap_or_default()
     }
 
-    /// Returns the clocks of the code between each label and the next one. `labels` must be sorted by address. Clocks
+    /// Returns the clocks of the code from each label to the next label. `labels` must be sorted by address. Clocks
     /// before the first label are left out.
     #[must_use]
     pub fn by_label<'a>(&self, labels: &[(&'a str, u32)]) -> Vec<(&'a str, u64)> {
         let end = self.base.wrapping_add(4 * self.rows.len() as u32);
-        // A label ends where the next one begins.
+        // The code of a label ends at the next label.
         let ends = labels.iter().skip(1).map(|next| next.1).chain([end]);
         labels.iter().zip(ends).map(|((name, begin), end)| (*name, self.clocks_between(*begin, end))).collect()
     }

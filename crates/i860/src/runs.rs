@@ -1,10 +1,10 @@
 //! The clocks of a basic block, counted run by run. A *run* is a part of a block whose instructions and data are all in
-//! the caches. The remembered clocks of a run are reused. Between runs, accesses that need the bus are counted.
+//! the caches. The memoized clocks of a run are reused. Between runs, accesses that need the bus are counted.
 //!
-//! A *place* is a position in a block. It is three times the index of an instruction or pair, plus 1 after its fetch
-//! and plus 2 after its issue. A run ends before an access that needs the bus, or before a line that the instruction
-//! cache does not hold. Otherwise it ends with the executed code. After an access that needs the bus, the next run
-//! begins with the scoreboard after this access.
+//! A *place* is a position in a block. The place is three times the index of an instruction or pair, plus 1 after its
+//! fetch or plus 2 after its issue. A run ends before an access that needs the bus, or before a line that the
+//! instruction cache does not hold. Otherwise, the run ends at the end of the executed code. After an access that needs
+//! the bus, the next run begins with the scoreboard after this access.
 
 use crate::block::{AccessingUnit, Block};
 use crate::bus::Bus;
@@ -25,7 +25,8 @@ struct Course<'a> {
     units: usize,
     /// Index of the block's last instruction or pair.
     last: usize,
-    /// Addresses of all data accesses of the block. `accessed` is the number of accesses that were counted so far.
+    /// Addresses of all data accesses of the block. The next field, `accessed`, is the number of accesses counted so
+    /// far.
     accesses: &'a [u32],
     accessed: usize,
     /// Position in the block up to which clocks are counted, in thirds of an instruction or pair.
@@ -33,8 +34,8 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Returns the flags in the key of a run that ends at position `to`. The flags tell whether the branch was taken,
-    /// the last instruction trapped, and the first fetch is from a cache line that is still arriving.
+    /// Returns the flags in the key of a run that ends at position `to`. The flags are true if the branch was taken, if
+    /// the last instruction trapped, and if the first fetch is from a cache line that is still arriving.
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;
@@ -44,7 +45,7 @@ impl Course<'_> {
 
 impl Clock {
     /// Reuses the clocks of a whole block whose data accesses all hit the cache. Returns false if the instruction cache
-    /// does not hold the block, or if the block is not remembered as one run.
+    /// does not hold the block, or if the block is not memoized as one run.
     #[inline]
     pub(crate) fn reuse_block_clocks(&mut self, block: &mut Block, execution: Execution) -> bool {
         let Some(entry) = self.memo.as_ref().and_then(Memo::present) else { return false };
@@ -60,13 +61,15 @@ impl Clock {
         true
     }
 
-    /// Returns true if no fetch from the block adds clocks: the instruction cache holds the block, or fetches are free.
+    /// Returns true if no fetch from the block adds clocks. In this case, the instruction cache holds the block, or
+    /// fetches take no time.
     #[inline]
     fn holds(&self, block: &mut Block) -> bool {
         !self.common.costs.applies(Freeze::InstructionMiss) || self.fetch.holds(block)
     }
 
-    /// Counts the clocks of a block. The block is split at accesses that need the bus; the runs in between are reused.
+    /// Counts the clocks of a block. The block is split at accesses that need the bus. The clocks of the runs between
+    /// these accesses are reused.
     #[inline]
     pub(crate) fn go<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &[u32], bus: &B) {
         let units = execution.units + usize::from(execution.slot);
@@ -75,7 +78,7 @@ impl Clock {
         let whole = self.holds(block);
         while course.at < PLACES * units {
             match self.number() {
-                // With a number the next run can be remembered, else one instruction or pair is counted.
+                // With a number, the next run can be memoized. Without a number, one instruction or pair is counted.
                 Some(entry) => self.next_run(block, &mut course, entry, whole, bus),
                 None => {
                     let to = (course.at / PLACES + 1) * PLACES;
@@ -85,16 +88,16 @@ impl Clock {
         }
     }
 
-    /// Returns the number of the current scoreboard state. A new state gets a new number, or `None` if there is no
-    /// room.
+    /// Returns the number of the current scoreboard state. A new state gets a new number, or `None` if no number is
+    /// free.
     #[inline]
     fn number(&mut self) -> Option<Number> {
         let memo = self.memo.as_mut()?;
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Writes the state of the last remembered run into the scoreboard. Remembered runs themselves change only the
-    /// number of this state.
+    /// Writes the state after the last memoized run into the scoreboard. Memoized runs change only the number of this
+    /// state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
@@ -102,13 +105,13 @@ impl Clock {
         }
     }
 
-    /// Counts clocks to the end of the current run, and also the access or cache miss that ends the run.
+    /// Counts the clocks to the end of the current run, and the clocks of the access or cache miss that ends the run.
     #[inline]
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;
         let is_unfetched = course.at.is_multiple_of(PLACES);
-        // If the cache holds the whole block, the line matters only to a run that begins with a fetch while another
-        // line is arriving.
+        // If the cache holds the whole block, cache lines matter only if the run begins with a fetch while another line
+        // is arriving.
         let (line, end) = match whole && !(entry.is_filling() && is_unfetched) {
             true => (0, usize::MAX),
             false => block.line(number),
@@ -130,7 +133,7 @@ impl Clock {
             }
             None => self.learn(block, course, run, bus),
         }
-        // The access that ended the run leaves the cache and is counted.
+        // The access that ended the run needs the bus, so its clocks are counted.
         if missing.is_some() {
             let address = course.accesses[course.accessed];
             self.count_cache_exit(&block.accessing[course.accessed], address, bus);
@@ -145,7 +148,8 @@ impl Clock {
             self.write_board();
             return self.access(unit.access, address, bus);
         }
-        // A store that misses leaves nothing on the scoreboard. If it does not wait, the scoreboard stays the same.
+        // A store that misses the cache adds no wait to the scoreboard. If the store does not wait, the scoreboard
+        // stays the same.
         let before = self.common.now;
         self.access(unit.access, address, bus);
         if self.common.now != before
@@ -162,7 +166,7 @@ impl Clock {
         self.fetch(unit, bus);
         course.at += FETCHED;
         if !self.fetch.is_in_line(unit.pc) {
-            // Memory that is not cacheable leaves no line, so this instruction or pair is counted alone.
+            // Memory that is not cacheable fills no cache line, so this instruction or pair is counted alone.
             let to = (course.at / PLACES + 1) * PLACES;
             self.advance(block, course, to, bus);
         }
@@ -205,7 +209,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a run and remembers them for later executions of the same run.
+    /// Counts the clocks of a run and memoizes them for later executions of the same run.
     #[cold]
     fn learn<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, run: Run, bus: &B) {
         // Count the run with the full rules and compare the profiles before and after.

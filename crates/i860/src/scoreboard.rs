@@ -1,5 +1,5 @@
-//! Scoreboard: the registers that are not ready and the execution units that are busy. The end of every wait is a known
-//! clock.
+//! Scoreboard: the registers that are not ready and the execution units that are busy. The clock at which a wait ends
+//! is computed when the wait begins.
 
 use crate::decoded::{Decoded, arm, float_mask, hazard};
 use crate::freeze::Costs;
@@ -24,8 +24,8 @@ pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
-/// A remaining wait, packed into 16 bits. The upper seven bits tell what is not ready. The next four bits hold the
-/// remaining clocks, and the lower five bits the freeze row.
+/// A remaining wait, packed into 16 bits. The upper seven bits are the place: the register or hazard that is not ready.
+/// The next four bits hold the remaining clocks, and the lower five bits the freeze row.
 struct Left {
     place: u8,
     clocks: u8,
@@ -67,7 +67,8 @@ pub(crate) struct PendingWaits {
     stored: u64,
     last_result: u8,
     scalar_double: bool,
-    /// The instruction-cache line that is still arriving: its remaining clocks, and the transfer that arrives first.
+    /// Two numbers of the instruction-cache line that is still arriving: the remaining clocks, and the transfer that
+    /// arrives first.
     beside: [u8; 2],
 }
 
@@ -88,7 +89,7 @@ pub(crate) struct Scoreboard {
     scalar_double: bool,
     graphics_result: u64,
     stored: u64,
-    /// A clock at which, or before which, all waits end.
+    /// A clock at which all waits have ended.
     latest: u64,
 }
 
@@ -200,7 +201,7 @@ impl Scoreboard {
         self.pending &= !(1 << dest);
     }
 
-    /// Returns true if an instruction can be delayed, so that [`Scoreboard::wait`] must be called.
+    /// Returns true if an instruction can be delayed. In this case, the caller must call [`Scoreboard::wait`].
     #[inline]
     pub(crate) fn may_wait(&self, d: &Decoded) -> bool {
         d.reads & self.pending != 0 || d.sensitive & self.armed != 0 || d.multiplier_source == self.last_result
@@ -210,7 +211,7 @@ impl Scoreboard {
     pub(crate) fn wait(&mut self, d: &Decoded, now: u64) -> Wait {
         let mut longest = self.wait_for_registers(d.reads, now);
         let mut bits = d.sensitive & self.armed;
-        // Find the longest wait among the hazards that the instruction is sensitive to.
+        // Find the longest wait among the hazards that can delay the instruction.
         while bits != 0 {
             let n = bits.trailing_zeros() as usize;
             bits &= bits - 1;
@@ -302,7 +303,7 @@ impl Scoreboard {
 
     fn arm(&mut self, d: &Decoded, now: u64) {
         let i = &d.instruction;
-        // Row 9 needs the result of the last floating-point instruction only.
+        // Row 9 needs only the result of the last floating-point instruction.
         if d.arms & arm::FLOATING_RESULT != 0 {
             self.note_result(i, now);
         } else if d.is_floating() && i.op != Op::Fnop {
@@ -340,7 +341,7 @@ impl Scoreboard {
         }
     }
 
-    // Marks the destination of a load or seed as not ready. A miss that takes longer stays in force.
+    // Marks the destination of a load or seed as not ready. A longer wait because of a cache miss is kept.
     fn arm_destination(&mut self, d: &Decoded, now: u64) {
         let i = &d.instruction;
         // The row depends on the kind of the result.
@@ -354,7 +355,7 @@ impl Scoreboard {
             _ => (float_mask(i.dest, i.size.max(4)), Freeze::FloatingLoadUse),
         };
         let until = now + self.costs.clocks(why);
-        // A load that missed is ready later than row 6 says.
+        // The data of a load that missed the cache are ready later than row 6 requires.
         let missed = mask & self.pending != 0 && self.ready[mask.trailing_zeros() as usize].until > until;
         if !(missed && why == Freeze::LoadUse) {
             self.set_ready(mask, until, why);
@@ -376,8 +377,8 @@ impl Scoreboard {
         if d.arms & arm::DOUBLE_MULTIPLY != 0 {
             self.set_hazard(hazard::DOUBLE_MULTIPLY, Freeze::DoubleMultiply, now);
         }
-        // The result of the graphics unit is not ready for floating-point units one clock later. f0 and f1 hold no
-        // results.
+        // In the next clock, floating-point units cannot use the result of the graphics unit yet. Registers f0 and f1
+        // hold no results.
         if d.arms & arm::GRAPHICS != 0 {
             self.graphics_result = float_mask(d.instruction.dest, 8) & !(3 << 32);
             self.set_hazard_until(hazard::GRAPHICS, now + 1, Freeze::GraphicsToFloating);

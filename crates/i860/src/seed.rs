@@ -1,8 +1,9 @@
-//! First approximations that frcp (reciprocal) and frsqr (reciprocal square root) return, the *seeds* of Newton steps.
+//! The first approximations that frcp (reciprocal) and frsqr (reciprocal square root) return. These results are the
+//! *seeds* of Newton steps.
 //!
-//! The chip's table is not public. The error of the fraction is known to stay below 2^-7, so the user chooses a table.
-//! Programs that refine the seeds by Newton steps differ between tables by the last bit or two. Their clocks are the
-//! same.
+//! The chip's table is not public. Only a limit of the error is known: the error of the fraction is below 2^-7. The
+//! user therefore chooses a table. With another table, the results of programs that refine the seeds by Newton steps
+//! differ in the last bit or two. The number of clocks stays the same.
 
 use crate::arithmetic::{narrow, widen};
 
@@ -10,14 +11,14 @@ use crate::arithmetic::{narrow, widen};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SeedTable {
-    /// The correctly rounded double, whose fraction is cut to 8 bits. The relative error is below 2^-8, and the
-    /// magnitude is never too great. Assumed; the usual choice of functional emulators.
+    /// The correctly rounded double, with its fraction cut to 8 bits. The relative error is below 2^-8, and the
+    /// magnitude is never too great. This choice is assumed. Functional emulators usually have this table.
     Truncated8,
-    /// The result for the middle of the interval that contains the operand, rounded to 8 fraction bits. Intervals are
-    /// given by 8 fraction bits. A 256-entry ROM would hold these values (512 entries for frsqr, by the parity of the
-    /// exponent). Assumed.
+    /// The result for the middle of the interval that contains the operand, rounded to 8 fraction bits. The first 8
+    /// fraction bits of the operand determine the interval. A ROM of 256 entries can hold these values (512 entries for
+    /// frsqr, because of the parity of the exponent). This choice is assumed.
     Midpoint8,
-    /// The correctly rounded result. With this choice the table adds no error.
+    /// The correctly rounded result. With this choice, the table adds no error.
     Exact,
 }
 
@@ -64,7 +65,7 @@ impl SeedTable {
 
     fn apply(self, x: f64, exact: impl Fn(f64) -> f64) -> u64 {
         let value = exact(x);
-        // Zero, infinity, NaN and denormal results are returned without a cut.
+        // Zero, infinity, NaN and denormal results are returned unchanged.
         if !is_finite_nonzero(value) || value.to_bits() & !(1 << 63) <= FRACTION {
             return value.to_bits();
         }

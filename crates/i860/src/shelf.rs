@@ -1,4 +1,4 @@
-//! Decoded programs with their remembered clocks, shared by processors with the same configuration.
+//! Decoded programs with their memoized clocks, shared by processors with the same configuration.
 
 use crate::assembler::Program;
 use crate::code::Code;
@@ -6,7 +6,7 @@ use crate::memo::Numbers;
 use std::fmt;
 use std::sync::Arc;
 
-/// A shared store of decoded programs with their remembered clocks, for processors with the same freeze rules.
+/// A shared store of decoded programs with their memoized clocks, for processors with the same freeze rules.
 ///
 /// Several processors can use one store in turn, because decoded code and clocks do not depend on the processor. If one
 /// processor has decoded a program and counted its clocks, the others reuse both ([`Cpu::open`](crate::Cpu::open),
@@ -34,7 +34,7 @@ impl DecodedPrograms {
     }
 
     fn place(&mut self, program: &Arc<Program>) -> &mut Option<Code> {
-        // Programs are compared by address, since one program is shared by all processors.
+        // Programs are compared by address, because all processors share one copy of a program.
         let known = self.codes.iter().position(|(known, _)| Arc::ptr_eq(known, program));
         let at = known.unwrap_or_else(|| {
             self.codes.push((Arc::clone(program), None));
@@ -43,7 +43,8 @@ impl DecodedPrograms {
         &mut self.codes[at].1
     }
 
-    /// Takes the decoded code of a program out of the store. If the store has none, an empty code is made.
+    /// Takes the decoded code of a program out of the store. If the store has no code of this program, the function
+    /// makes an empty code.
     pub(crate) fn take(&mut self, program: &Arc<Program>) -> Code {
         self.place(program).take().unwrap_or_else(|| Code::of(program))
     }

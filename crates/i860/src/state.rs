@@ -46,7 +46,7 @@ pub mod psr {
     pub const PM_SHIFT: u32 = 24;
     /// PM: pixel mask, eight bits. `pst` stores only pixels whose bits are set.
     pub const PM: u32 = 0xFF << PM_SHIFT;
-    /// All bits that tell the cause of a trap.
+    /// All bits that state the cause of a trap.
     pub const TRAPS: u32 = IT | IN | IAT | DAT | FT;
     /// Bits that a program can write in user mode.
     pub const USER: u32 = CC | LCC | SC | PS | PM;
@@ -93,14 +93,14 @@ pub struct PipeStage {
     pub double: bool,
 }
 
-/// Pairing mode: how the next instructions form pairs in dual-instruction mode.
+/// Pairing mode: the way in which the next instructions form pairs in dual-instruction mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Mode {
     /// Instructions execute one at a time.
     #[default]
     Single,
-    /// One more instruction executes alone, and pairs begin after it. The instruction is the upper half of an aligned 8
-    /// bytes whose lower half had its D bit set.
+    /// One more instruction executes alone, and pairs begin after this instruction. The instruction is the upper half
+    /// of 8 aligned bytes. The D bit of the lower half was set.
     Entering,
     /// The next two instructions form a pair. This pair is the first or the last of dual-instruction mode. Another pair
     /// follows only if this pair has its D bit set.

@@ -21,7 +21,7 @@ impl StorePipe {
         if common.costs.applies(Freeze::StorePipeFull) {
             self.wait_for_room(common);
         }
-        // The store takes its turn on the bus, and the pipe keeps its end.
+        // The store waits for its turn on the bus, and the pipe records the end of the store.
         common.await_address_pipe();
         let end = common.bus.write(common.now, address, size.div_ceil(BUS_BYTES)).last;
         self.ends.rotate_left(1);

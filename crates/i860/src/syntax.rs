@@ -25,7 +25,7 @@ pub(crate) enum Syntax {
     ToFloating,
     /// `fsrc1, dest`: copies a floating-point register to an integer register.
     ToInteger,
-    /// Operand `address`, the only one of `flush`. The address can have auto-increment, `++`.
+    /// `address`: the only operand of `flush`. The address can have auto-increment, `++`.
     Flush,
     /// `src1, src2, dest`, or no operands.
     Trap,

@@ -1,16 +1,16 @@
 //! All constants of the timing model.
 //!
-//! Clocks are processor clocks: 25 ns at 40 MHz. The name *Intel's list* stands for the table of instruction timings in
-//! the programmer's manual, quoted from memory.
+//! Clocks are processor clocks: 25 ns at 40 MHz. *Intel's list* means the table of instruction timings in the
+//! programmer's manual, quoted from memory.
 
 pub use crate::freeze::{FREEZES, Freeze, FreezeRow, FreezeRules, N_FREEZES};
 use pxpl5_sim::parameters::ParameterTable;
 
 pxpl5_sim::parameters::parameter_table! {
-    /// The constant part of the delay of each row of [`FREEZES`], in the same order. If no published figure narrows a
-    /// value, its range is one clock less to one clock more. The reason is that Intel's list is quoted from memory.
+    /// The constant part of the delay of each row of [`FREEZES`], in the same order. Intel's list is quoted from
+    /// memory. Unless a published figure narrows a value, its range is therefore one clock less to one clock more.
     pub struct FreezeClocks {
-        /// Cost of freeze row 1a: the instruction cache misses.
+        /// Cost of freeze row 1a: a miss of the instruction cache.
         instruction_miss: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
         /// Cost of freeze row 1b: instruction-cache miss while a line fill of the data cache is running.
         instruction_miss_behind_data: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
@@ -22,8 +22,8 @@ pxpl5_sim::parameters::parameter_table! {
         transfer_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 5: load, store or pfld while a line fill of the data cache is running.
         access_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 6: an instruction uses the destination of the ld, ld.c, call, calli or fxfr right before
-        /// it.
+        /// Cost of freeze row 6: an instruction uses the destination of the previous instruction, which is ld, ld.c,
+        /// call, calli or fxfr.
         load_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 7: one of the next two instructions uses the destination of an fld, pfld or ixfr.
         floating_load_use: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected; period matrix code issues an extra operation because loads need time";
@@ -44,7 +44,7 @@ pxpl5_sim::parameters::parameter_table! {
         double_multiply: 1, "clocks", Assumed, 1..=1 in 0..=1_000_000, "Intel's list, recollected; the published peak of 60 MFLOPS double at 40 MHz needs it";
         /// Cost of freeze row 12: TLB miss. This row applies only while address translation is on.
         tlb_miss: 5, "clocks", Assumed, 4..=6 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 13: a pfld is issued while three earlier ones are outstanding.
+        /// Cost of freeze row 13: a pfld is issued while three earlier pfld are outstanding.
         load_pipe_full: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 14: a pfld hits the data cache.
         pipelined_load_hit: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
@@ -70,10 +70,10 @@ pxpl5_sim::parameters::parameter_table! {
         graphics_to_graphics: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Cost of freeze row 23: a flush right after another flush.
         flush_after_flush: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 24: a pipelined operation overwrites the register that an fst or pst right before it
-        /// stores.
+        /// Cost of freeze row 24: a pipelined operation overwrites the register that the previous instruction, fst or
+        /// pst, stores.
         store_then_overwrite: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 25: an instruction uses the result of the frcp or frsqr right before it.
+        /// Cost of freeze row 25: an instruction uses the result of the previous instruction, which is frcp or frsqr.
         seed_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list leaves the seeds out of row 10; a three-way root of 39 clocks allows 0 to 2";
     }
 }
@@ -95,13 +95,13 @@ pxpl5_sim::parameters::parameter_table! {
         write_miss: 9, "clocks", Assumed, 6..=12 in 0..=1_000_000, "6 to 8 clocks more than in the open row";
         /// Size of a DRAM row. The NENE# pin of the processor reports that two successive addresses share a DRAM row.
         page_bytes: 4096, "bytes", Assumed, 1024..=16384 in 8..=MAX, "64 bits of 1M x 1 or 256K x 4 parts: 512 to 1,024 columns";
-        /// Time between DRAM refreshes; 0 for no refresh.
+        /// Time between DRAM refreshes. 0 means no refresh.
         refresh_interval: 625, "clocks", Assumed, 0..=625 in 0..=MAX, "15.6 us at 40 MHz";
-        /// Time for which a refresh blocks the memory. A refresh also closes the open DRAM row.
+        /// Time during which a refresh blocks the memory. A refresh also closes the open DRAM row.
         refresh_clocks: 8, "clocks", Assumed, 0..=12 in 0..=1_000_000, "one row cycle";
         /// Time between 8-byte transfers of other bus masters, such as the ring interface. 0 means no transfers.
         dma_interval: 0, "clocks", Assumed, 0..=80 in 0..=MAX, "a ring channel at full rate moves 8 bytes every 4 clocks; default: ring idle";
-        /// Time for which a transfer of another bus master blocks the memory. The transfer also closes the open DRAM
+        /// Time during which a transfer of another bus master blocks the memory. The transfer also closes the open DRAM
         /// row.
         dma_clocks: 3, "clocks", Assumed, 0..=6 in 0..=1_000_000, "one page-mode write";
     }
@@ -155,9 +155,9 @@ pub struct Config {
     pub seeds: crate::SeedTable,
     /// Seed of the pseudo-random sequence that chooses the cache line to replace.
     pub replacement_seed: u16,
-    /// True if the clocks of repeated code are reused instead of counted again. The code and its data must hit the
-    /// caches. The method comes from FastSim (Schnarr and Larus, 1998). This optimization changes only the host's time
-    /// and is on by default.
+    /// True if the clocks of repeated code are reused instead of counted again. The reuse requires that the code and
+    /// its data hit the caches. The method comes from FastSim (Schnarr and Larus, 1998). This optimization changes only
+    /// the host's time, and is on by default.
     pub memoise: bool,
 }
 
@@ -186,12 +186,12 @@ impl Config {
         [(FREEZES_PATH, &mut self.freezes.clocks), (DRAM_PATH, &mut self.dram)]
     }
 
-    /// Returns the settings that differ from [`Config::cycle`], as keys and values. The list covers settings that
-    /// change results and stand outside the parameter tables. Names of experiments include these settings. Memoization
-    /// changes no result and is left out.
+    /// Returns the settings that differ from [`Config::cycle`], as keys and values. The list has settings that change
+    /// results and are not in the parameter tables. Names of experiments include these settings. Memoization changes no
+    /// result and is left out.
     #[must_use]
     pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
-        // The pattern names every field, so that a new one cannot be forgotten.
+        // The pattern lists every field, so that the compiler reports a new field that is not handled here.
         let Config { timing, freezes, dram: _, seeds, replacement_seed, memoise: _ } = self;
         let usual = Config::cycle();
         let all = [
@@ -203,7 +203,7 @@ impl Config {
         all.into_iter().filter(|(_, differs, _)| *differs).map(|(key, _, value)| (key, value)).collect()
     }
 
-    /// Returns a configuration that counts no clocks. Programs compute the same results as under [`Config::cycle`].
+    /// Returns a configuration that counts no clocks. Programs compute the same results as with [`Config::cycle`].
     #[must_use]
     pub fn functional() -> Config {
         Config { timing: false, ..Config::cycle() }

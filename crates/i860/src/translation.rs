@@ -26,7 +26,8 @@ impl Translation {
         self.directory.is_some()
     }
 
-    /// Turns address translation on with the page directory at an address, or off with `None`.
+    /// Turns address translation on, with the page directory at the given address. With `None`, turns address
+    /// translation off.
     pub(crate) fn set_directory(&mut self, directory: Option<u32>) {
         self.directory = directory;
     }
@@ -51,7 +52,7 @@ impl Translation {
         let random = common.chance.next();
         self.tlb.fill(address, random);
         common.charge(Freeze::TlbMiss);
-        // The address of the page table is assumed; only its DRAM row matters for the time.
+        // The address of the page table is assumed. Only its DRAM row affects the time.
         let table = directory.wrapping_add((1 + (address >> 22)) * PAGE_BYTES);
         let first = common.bus.read(common.now, directory + (address >> 20 & 0xFFC), 1).first;
         let second = common.bus.read(first, table.wrapping_add(address >> 10 & 0xFFC), 1).first;

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrapCause {
-    /// A word that encodes no XR instruction.
+    /// A word that does not encode an XR instruction.
     #[error("{word:08x} is not an i860 XR instruction")]
     Illegal {
         /// The instruction word that was fetched.
@@ -47,14 +47,14 @@ pub enum TrapCause {
     Interrupt,
 }
 
-/// A trap that was taken. The next instruction is the first one of the trap handler. Register fir holds `pc`. Register
-/// psr has the trap bit, PU, PIM, DIM and DS. The next pc is [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
+/// A trap that was taken. The next instruction is the first instruction of the trap handler. Register fir holds `pc`.
+/// Register psr has the trap bit, PU, PIM, DIM and DS. The next pc is [`TRAP_VECTOR`](crate::state::TRAP_VECTOR).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("trap at {pc:#010x}: {cause}")]
 pub struct Trap {
     pub cause: TrapCause,
     /// Address of the instruction or pair that has trapped and had no effect. If the instruction was in a delay slot,
-    /// the branch before it has changed r1, LCC and its counter, as on the real chip.
+    /// the branch has already changed r1, LCC and its counter, as on the real chip.
     pub pc: u32,
 }
 

@@ -1,11 +1,12 @@
-//! Conformance vectors: a program, its memory before and the expected state after it. One JSON object per line.
+//! Conformance vectors. A vector is a program with the memory before its run and the expected state after its run. The
+//! file has one JSON object per line.
 //!
 //! ```text
 //! {"id","group","what","load","code":["hex32",...],"entry","stop",
 //!  "mem":[[address,"hex32"],...],"expect":{"r":[32 hex],"f":[32 hex],"mem":[[address,"hex32"],...]}}
 //! ```
 //!
-//! Every register starts at zero, pc at `entry`. The run ends when pc is `stop` in single-instruction mode.
+//! Every register starts at zero, and pc starts at `entry`. The run ends when pc is `stop` in single-instruction mode.
 
 use crate::{Bus, Config, Cpu, RunEnd, Trap, Unmapped};
 use serde::{Deserialize, Deserializer};
@@ -15,7 +16,7 @@ use std::fmt;
 /// Instruction budget of a vector. A longer run fails. The vectors execute fewer than 1,000 instructions.
 pub const BUDGET: u64 = 10_000;
 
-/// One vector: a program, the state before it and the state expected after it.
+/// One vector: a program, the state before its run and the state expected after its run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Vector {
     /// Identifier, unique in its file.
@@ -76,7 +77,7 @@ fn registers<'de, D: Deserializer<'de>>(from: D) -> Result<[u32; 32], D::Error> 
     list.try_into().map_err(|_| serde::de::Error::custom(format_args!("expected 32 registers, found {found}")))
 }
 
-/// Memory that exists at every address and is zero until written.
+/// Memory that exists at every address. Words without a write are zero.
 #[derive(Clone, Debug, Default)]
 struct Sparse(BTreeMap<u32, u32>);
 
@@ -162,7 +163,7 @@ impl fmt::Display for Failure {
     }
 }
 
-/// The error for a line that does not contain a valid vector.
+/// An error for a line that does not contain a valid vector.
 #[derive(Debug, thiserror::Error)]
 #[error("line {line}: not a vector: {reason}")]
 pub struct MalformedLine {
@@ -215,10 +216,10 @@ impl Vector {
     /// Resets a processor, runs the vector on it and compares the state after the run.
     ///
     /// # Errors
-    /// The same as for [`Vector::check`].
+    /// Returns the same errors as [`Vector::check`].
     pub fn check_on(&self, cpu: &mut Cpu) -> Result<(), Failure> {
         cpu.reset();
-        // Registers are zero after the reset; only the start address is set.
+        // Registers are zero after the reset. Only the start address is set here.
         cpu.state.pc = self.entry;
         let mut memory = self.memory();
         match cpu.run(&mut memory, Some(self.stop), BUDGET) {
@@ -258,7 +259,7 @@ impl VectorSummary {
     }
 }
 
-/// Runs all vectors on one processor, which is reset before each of them.
+/// Runs all vectors on one processor. The processor is reset before each vector.
 #[must_use]
 pub fn run(vectors: &[Vector], config: Config) -> VectorSummary {
     let mut cpu = Cpu::new(config);

@@ -1,5 +1,6 @@
-//! Tests against published clock counts of hand-written code, rewritten from their descriptions. No number is tuned to
-//! one of them. All tests run with the full freeze table and the default memory; code and data are in the caches.
+//! Tests against published clock counts of hand-written code. The code is rewritten from its descriptions. No number of
+//! the model is fitted to one of the counts. All tests use the full freeze table and the default memory. Code and data
+//! are in the caches.
 
 use i860::{Config, Cpu, Ram, RunEnd, assemble};
 
@@ -34,7 +35,7 @@ fn measure(source: &str, floats: &[f32]) -> Measured {
     Measured { clocks: cpu.clocks() - start.0, instructions: cpu.instructions() - start.1, cpu }
 }
 
-/// 80 MFLOPS at 40 MHz: every m12apm is a multiplication and an addition, one in every clock.
+/// 80 MFLOPS at 40 MHz: every m12apm is a multiplication and an addition, and one m12apm is issued in every clock.
 #[test]
 fn single_precision_peak_is_two_operations_per_clock() {
     let body = "m12apm.ss f8, f9, f0\n".repeat(64);
@@ -48,15 +49,16 @@ fn double_precision_peak_is_one_and_a_half() {
     let body = "m12apm.dd f8, f10, f0\npfadd.dd f12, f14, f0\n".repeat(32);
     let m = measure(&format!("begin: {body}end: nop"), &[]);
     assert_eq!((32 * 3, m.clocks), (96, 64));
-    // 32 issue at 0, 2, 4 ... 62, and the run ends one clock after the last.
+    // 32 instructions are issued at clocks 0, 2, 4 ... 62, and the run ends one clock after the last issue.
     let multiply_only = measure(&format!("nop\nnop\nbegin: {}end: nop", "m12apm.dd f8, f10, f0\n".repeat(32)), &[]);
     assert_eq!(multiply_only.clocks, 63, "two operations every second clock");
 }
 
-/// The square root of a library of the period, as described: frsqr, two Newton steps y = y(1.5 - 0.5 x y^2), times x,
-/// called in a loop.
-/// Measured on a real chip: 1.21 us, 48.4 clocks. A test for zero is assumed, because it is needed (the seed of zero is
-/// infinite). It is not known how the original loaded its constants.
+/// The square root function of a library of the period, as described: frsqr, two Newton steps y = y(1.5 - 0.5 x y^2),
+/// and a multiplication by x. The function is called in a loop.
+///
+/// Measured on a real chip: 1.21 us, 48.4 clocks. A test for zero is assumed, because the function needs it (the seed
+/// of zero is infinite). The way in which the original loaded its constants is not known.
 #[test]
 fn a_scalar_square_root_with_call_and_return_takes_about_48_clocks() {
     let m = measure(ROOT, &[10.0, 0.0, 0.5, 1.5]);
@@ -100,9 +102,10 @@ zero:    bri     r1
 
 /// Three reciprocal square roots through the pipes, two Newton steps each: "39 clocks" in code of the period.
 ///
-/// The schedule is our own, from the formula y(1.5 - 0.5 x y^2): thirteen groups of three instructions, one seed group
-/// and six groups for each step. The groups of a step are y^2, times x, times 0.5, from 1.5, times y, and one in which
-/// y leaves the pipe. The code has 39 instructions, and the test claims that none of them waits.
+/// This project made the schedule from the formula y(1.5 - 0.5 x y^2). The schedule has thirteen groups of three
+/// instructions: one seed group and six groups for each step. The groups of a step compute y^2, times x, times 0.5, 1.5
+/// minus the product, and times y. In the last group, y leaves the pipe. The code has 39 instructions, and the test
+/// checks that none of them waits.
 #[test]
 fn three_reciprocal_square_roots_at_once_take_39_clocks() {
     let m = measure(THREE_ROOTS, &[2.0, 10.0, 0.3]);
@@ -117,12 +120,12 @@ fn singles(n: usize) -> String {
     "pfmul.ss f9, f10, f11\n".repeat(n)
 }
 
-/// A loop with the shape of a tree code of the period, 117 instructions in 106 clocks, must take 106 clocks a turn.
-/// The original code cannot be rewritten from its description. Only its shape is known: 11 pairs, 95 single
-/// instructions, a taken bnc.t, its label at 4 mod 8, no freeze.
+/// A loop with the shape of a tree code of the period must take 106 clocks per turn. The original has 117 instructions,
+/// but cannot be rewritten from its description. Only its shape is known: 11 pairs, 95 single instructions, a taken
+/// bnc.t, a label at 4 mod 8, and no freeze.
 #[test]
 fn a_loop_of_the_shape_of_the_tree_code_takes_106_clocks_a_turn() {
-    // The entry word is two single instructions, then 11 pairs, the last two with D clear.
+    // The entry word has two single instructions. Then 11 pairs follow, and the D bit of the last two pairs is clear.
     let pairs =
         "d.m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(9) + &"m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(2);
     let turn =
@@ -130,7 +133,8 @@ fn a_loop_of_the_shape_of_the_tree_code_takes_106_clocks_a_turn() {
     let source = format!("begin: mov 0, r6\nmov 54, r7\nnop\n.align 8\nnop\nturn: {turn}end: nop\nnop");
     let m = measure(&source, &[]);
     assert_eq!(m.cpu.state.r[6], 55, "five turns of eleven pairs");
-    // Five instructions come before the loop. The last bnc.t is not taken, which costs a clock and skips its slot.
+    // Five instructions come before the loop. The last bnc.t is not taken, which takes one clock more and skips the
+    // delay slot.
     assert_eq!((m.instructions, m.clocks), (117 * 5 + 5 - 1, 106 * 5 + 5));
 }
 

@@ -1,4 +1,4 @@
-//! Tests of assembler and disassembler: round trips, and every check with its line and reason.
+//! Tests of the assembler and the disassembler. The tests check round trips, and the line and reason of every error.
 
 use i860::{Rule, assemble, decode, disassemble, encode, instruction_word};
 use proptest::prelude::*;
@@ -200,7 +200,7 @@ fn rules_that_programs_break_are_warned_of() {
     }
 }
 
-/// The manual: a scalar operation goes through the pipe of its unit and destroys the results in the pipe.
+/// According to the manual, a scalar operation uses the pipe of its unit and destroys the results in the pipe.
 #[test]
 fn a_result_taken_out_behind_a_scalar_operation_is_warned_of() {
     let fault = |source: &str| {
@@ -264,7 +264,8 @@ proptest! {
     }
 }
 
-/// Endless expansion is rejected quickly, with little memory and at the source line that causes it.
+/// The assembler rejects endless expansion quickly and with little memory. The error states the source line that causes
+/// the expansion.
 #[test]
 fn what_spends_the_budget_is_refused_at_its_line() {
     let spent = "written out to more than";
@@ -293,7 +294,7 @@ fn repetitions_lie_in_each_other_only_so_deep() {
     assert_eq!(assemble("t.s", 0, &nested(32)).expect("allowed").words().len(), 1);
 }
 
-/// A million repetitions of a word assemble to a million words, a fourth of the longest program.
+/// A million repetitions of a word give a program of a million words, a fourth of the longest program.
 #[test]
 fn a_million_words_are_written_out() {
     let program = assemble("t.s", 0, ".rept 1000000\n.long 7\n.endr").expect("within the budget");

@@ -1,9 +1,10 @@
 //! Tests of a busy memory: fills of instruction lines during freezes, stores and reads of other rows, loads of 16
-//! bytes, the address pipe. Each program is short enough to be counted by hand; comments have the counts.
+//! bytes, and the address pipe. Each program is short enough to count its clocks by hand. The comments have these
+//! counts.
 //!
-//! Memory of the tests: 11 clocks to the first 8 bytes if a row is opened, 8 clocks in the open row, 2 clocks for each
-//! further 8 bytes. A write takes 9 or 3 clocks. The words of a line of 8 instructions that is requested at clock 0
-//! arrive in pairs at 11, 13, 15 and 17.
+//! Memory of the tests: the first 8 bytes take 11 clocks if a row is opened, and 8 clocks in the open row. Each further
+//! 8 bytes take 2 clocks. A write takes 9 or 3 clocks. The words of a line of 8 instructions that is requested at clock
+//! 0 arrive in pairs at 11, 13, 15 and 17.
 
 use i860::timing::{DramTiming, Freeze, FreezeRules};
 use i860::{Config, Cpu, Ram, RunEnd, assemble};
@@ -38,33 +39,36 @@ fn clocks(rows: &[Freeze], source: &str) -> u64 {
     cpu.clocks()
 }
 
-/// The list, 1: "+ remaining READY#s of the block if a jump or another freeze occurs meanwhile".
+/// Intel's list, row 1: "+ remaining READY#s of the block if a jump or another freeze occurs meanwhile".
 #[test]
 fn row_1_another_freeze_while_a_line_comes_in_waits_for_the_rest_of_it() {
     let source = "adds 1, r5, r5\nbc end\nnop\nnop\nnop\nnop\nnop\nnop";
-    // The first word at 11, adds 12; bc would wait until 13, so it waits for the line, 17; bc 18; six more 24.
+    // The first word arrives at clock 11, and adds ends at 12. bc would wait until 13, so it waits for the line until
+    // 17 and ends at 18. Six more instructions end at 24.
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::ConditionUse], source), 24);
-    // Without the freeze: adds 12, bc 13, then the words of 13, 15 and 17: 15, 17, 19.
+    // Without the freeze, adds ends at 12 and bc at 13. The words that arrive at 13, 15 and 17 end at 15, 17 and 19.
     assert_eq!(clocks(&[Freeze::InstructionMiss], source), 19);
-    // Behind the line's last word the freeze is what it always is: six nops until 17, adds 18, bc waits until 19: 20.
+    // After the line's last word, the freeze has its normal length. Six nops end at 17, and adds ends at 18. bc waits
+    // until 19 and ends at 20.
     let late = "nop\nnop\nnop\nnop\nnop\nnop\nadds 1, r5, r5\nbc end";
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::ConditionUse], late), 20);
 }
 
-/// The constant part of a freeze row at the end of an instruction is also such a freeze.
+/// The constant part of a freeze row at the end of an instruction also waits for the rest of the line.
 #[test]
 fn row_1_a_branch_within_the_line_waits_for_the_rest_of_it() {
     let source = "bnc on\nnop\nnop\non: nop\nnop\nnop\nnop\nnop";
-    // The first word at 11, bnc 12, taken 13: waits until 17; five nops more.
+    // The first word arrives at clock 11, bnc ends at 12, and the taken branch at 13 waits until 17. Five nops follow.
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::BranchTaken], source), 22);
 }
 
-/// The data of a read occupy the bus up to the last transfer, so a write comes after them.
+/// The data of a read occupy the bus up to the last transfer, so a write follows after these data.
 #[test]
 fn a_store_waits_for_the_last_word_of_a_fill() {
     let source = "st.l r5, 0(r4)\nst.l r5, 8(r4)\nst.l r5, 16(r4)\nst.l r5, 24(r4)\nnop\nnop\nnop\nnop";
-    // The first store is requested at 12 and begins behind the line, 17; it opens a row: 26. The fourth issues at 15
-    // and waits for it to leave and one more, 27; four nops.
+    // The first store is requested at clock 12 and begins after the line, at 17. The first store opens a row and ends
+    // at 26. The fourth store is issued at 15. It waits until one clock after the first store has left the pipe, at 27.
+    // Four nops follow.
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::StorePipeFull], source), 31);
 }
 
@@ -72,23 +76,24 @@ fn a_store_waits_for_the_last_word_of_a_fill() {
 #[test]
 fn a_read_of_another_row_waits_for_the_last_word_of_a_fill() {
     let source = "ld.l 0(r4), r5\nadds r5, r0, r6\nnop\nnop\nnop\nnop\nnop\nnop";
-    // Requested at 12, begun at 17, there at 28; its user waits one more, 29, and issues: 30. Six nops.
+    // The load is requested at clock 12, begins at 17, and its data arrive at 28. The next instruction waits one more
+    // clock, until 29, and ends at 30. Six nops follow.
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::LoadMissUse], source), 36);
 }
 
-/// The list, 3: the wait is for the data, and a bus of 64 bits brings 16 bytes in two transfers.
+/// Intel's list, row 3: the instruction waits for the data. A bus of 64 bits needs two transfers for 16 bytes.
 #[test]
 fn row_3_a_miss_of_16_bytes_waits_for_both_transfers() {
-    // Issue 1, first 8 bytes 12, next 14, one more by the list.
+    // The load is issued at clock 1. The first 8 bytes arrive at 12 and the next at 14. The list adds one clock.
     assert_eq!(clocks(&[Freeze::FloatingLoadMiss], "fld.q 0(r4), f8"), 15);
     assert_eq!(clocks(&[Freeze::FloatingLoadMiss], "fld.d 0(r4), f8"), 13);
 }
 
-/// The list, 16, address pipe full: "until next address can issue", for any instruction that issues it.
+/// Intel's list, row 16, address pipe full: "until next address can issue", for any instruction that issues an address.
 #[test]
 fn row_16_holds_a_store_behind_three_requests() {
     let source = "pfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\nst.l r5, 0(r4)";
-    // Requests at 1, 2, 3; the first is there at 12. The store has issued at 4.
+    // The requests are at clocks 1, 2 and 3, and the data of the first arrive at 12. The store is issued at 4.
     assert_eq!(clocks(&[Freeze::AddressPipeFull], source), 12);
 }
 
@@ -96,8 +101,9 @@ fn row_16_holds_a_store_behind_three_requests() {
 fn row_16_holds_an_instruction_fill_behind_three_requests() {
     let loads = "pfld.d 8(r7)++, f8\n".repeat(3);
     let source = format!("mov 0x1800, r7\nnop\nnop\nnop\nnop\n{loads}nop");
-    // mov and nops until 16; loads of the open row requested at 17, 18, 19 are there at 25, 27, 29. The next line is
-    // wanted at 19. Without the row its first word follows them on the bus, 31; with it, it is requested at 25: 33.
+    // mov and the nops end at clock 16. The loads of the open row are requested at 17, 18 and 19, and their data arrive
+    // at 25, 27 and 29. The next line is needed at 19. Without the freeze row, its first word follows these data on the
+    // bus, at 31. With the freeze row, the line is requested at 25 and arrives at 33.
     assert_eq!(clocks(&[Freeze::InstructionMiss], &source), 32);
     assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::AddressPipeFull], &source), 34);
 }
@@ -117,7 +123,7 @@ fn sum_behind(operation: &str) -> f32 {
     f32::from_bits(cpu.state.f[10])
 }
 
-/// The manual: a scalar operation goes through the pipe of its unit and destroys the results in the pipe.
+/// According to the manual, a scalar operation uses the pipe of its unit and destroys the results in the pipe.
 #[test]
 fn a_scalar_operation_destroys_what_the_pipe_of_its_unit_holds() {
     for keeps in ["nop", "fmul.ss f2, f3, f4", "frcp.ss f2, f4", "fiadd.ss f2, f3, f4"] {

@@ -1,9 +1,9 @@
-//! Tests of every row of the freeze table: its cost when it applies, and no cost one instruction later.
+//! Tests of every row of the freeze table. A row must have its cost if it applies, and no cost one instruction later.
 //!
-//! A program runs twice, without any row and with the tested row. The difference is the cost of the row. Expected
-//! clocks do not come from the table under test: each test quotes Intel's list (the instruction-timing table of the
-//! i860 Programmer's Reference Manual, from memory). Where memory takes part, the wait is a sum of DRAM parameters.
-//! `anchors.rs` compares the rows together with published counts.
+//! A program runs twice: without any row, and with the tested row. The difference is the cost of the row. Expected
+//! clocks do not come from the table under test. Each test quotes Intel's list ("the list", the instruction-timing
+//! table of the i860 Programmer's Reference Manual, from memory). For a row with memory accesses, the wait is a sum of
+//! DRAM parameters. `anchors.rs` compares the rows together with published counts.
 
 use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
 use i860::{Config, Cpu, Ram, RunEnd, assemble};
@@ -36,7 +36,7 @@ fn cost_beside(others: FreezeRules, row: Freeze, source: &str) -> u64 {
     clocks_with(others.with(row), source) - clocks_with(others, source)
 }
 
-/// A program that pays the constant part of a row once, with the row and the other rows that must apply.
+/// A program in which the constant part of a row occurs once, with the row and the other rows that must apply.
 struct Sample {
     row: Freeze,
     beside: FreezeRules,
@@ -86,7 +86,8 @@ fn samples() -> Vec<Sample> {
     ]
 }
 
-/// Returns a program that loads, loops for this many turns of two clocks, and continues in the next cache line.
+/// Returns a program that executes a load and then a loop of `turns` turns with two clocks each. The program continues
+/// in the next cache line.
 fn next_line_behind_load(turns: u64) -> String {
     format!(".align 32\nmov {turns}, r7\nld.l 0(r4), r5\nl: adds -1, r7, r7\nbtne r0, r7, l\nnop\nnop\nnop\nnop\nnop")
 }
@@ -95,7 +96,8 @@ fn stores(n: u64) -> String {
     (0..n).map(|k| format!("st.l r5, {}(r4)\n", 8 * k)).collect()
 }
 
-/// Every number of the table matters and appears once: five more clocks in a row cost five more clocks in its program.
+/// Every number of the table has its effect exactly once. With five more clocks in a row, the program of the row takes
+/// five more clocks.
 #[test]
 fn every_row_costs_what_its_number_says() {
     for Sample { row, beside, source } in samples() {
@@ -140,7 +142,8 @@ fn row_1_an_instruction_miss_waits_for_the_word_needed() {
 fn row_1_leaving_the_line_early_waits_for_the_rest_of_it() {
     let t = dram();
     let there_and_back = "br away\nnop\nback: br end\nnop\n.align 32\naway: br back\nnop";
-    // Two clocks of br and its slot pass while the line arrives. Its last word is 3 x next after the first.
+    // br and its delay slot take two clocks while the line arrives. The last word of the line arrives 3 x next after
+    // the first.
     let rest = 3 * t.next - 2;
     let second_line = t.first_hit + 3 * t.next - 2;
     assert_eq!(cost(Freeze::InstructionMiss, there_and_back), t.first_miss + rest + second_line);
@@ -317,8 +320,8 @@ fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
     }
 }
 
-/// The list, 11, multiplier operation after a double-precision multiply: "1". The data sheet's 60 MFLOPS double at 40
-/// MHz is one multiplication every second clock beside one addition every clock.
+/// The list, 11, multiplier operation after a double-precision multiply: "1". The 60 MFLOPS in double precision at 40
+/// MHz in the data sheet mean one multiplication every second clock and one addition every clock.
 #[test]
 fn row_11_the_multiplier_takes_a_double_every_second_clock() {
     let row = Freeze::DoubleMultiply;
@@ -346,7 +349,7 @@ fn row_12_a_page_seen_first_costs_five_and_two_reads() {
 fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
     let t = dram();
     assert_eq!(cost(Freeze::LoadPipeFull, &pipelined_loads(3)), 0);
-    // The first was requested after one clock; the fourth issues, then waits, at clock 4.
+    // The first load was requested after one clock. The fourth load is issued at clock 4 and then waits.
     assert_eq!(cost(Freeze::LoadPipeFull, &pipelined_loads(4)), t.first_miss + 1 - 4 + 1);
     let late = format!("{}{}{}", pipelined_loads(3), "nop\n".repeat(t.first_miss as usize - 3), pipelined_loads(1));
     assert_eq!(cost(Freeze::LoadPipeFull, &late), 0);
@@ -359,7 +362,7 @@ fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
     let line = t.first_miss + 3 * t.next;
     let row = Freeze::PipelinedLoadHit;
     assert_eq!(cost_apart(row, "ld.l 0(r4), r5", line + 10, "pfld.d 8(r4), f8"), 2);
-    // The line ends `line` clocks after the load's issue, and one of them is this instruction's own.
+    // The line ends `line` clocks after the issue of the load. One of these clocks is the issue of this instruction.
     assert_eq!(cost_apart(row, "ld.l 0(r4), r5", 0, "pfld.d 8(r4), f8"), line - 1 + 2);
 }
 
@@ -368,7 +371,7 @@ fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
 fn row_15_the_fourth_store_waits_for_the_first_to_leave() {
     let t = dram();
     assert_eq!(cost(Freeze::StorePipeFull, &stores(3)), 0);
-    // The first is requested at clock 1 and ends at 1 + write_miss; the fourth has issued at clock 4.
+    // The first store is requested at clock 1 and ends at 1 + write_miss. The fourth store is issued at clock 4.
     assert_eq!(cost(Freeze::StorePipeFull, &stores(4)), t.write_miss + 1 - 4 + 1);
 }
 
@@ -376,7 +379,7 @@ fn row_15_the_fourth_store_waits_for_the_first_to_leave() {
 #[test]
 fn row_16_a_fourth_request_waits_for_the_first_to_end() {
     let t = dram();
-    // Pipelined loads without row 13 use the address pipe alone: requests at 1, 2, 3, then 4.
+    // Without row 13, pipelined loads use only the address pipe. The requests are at clocks 1, 2, 3 and then 4.
     assert_eq!(cost(Freeze::AddressPipeFull, &pipelined_loads(3)), 0);
     assert_eq!(cost(Freeze::AddressPipeFull, &pipelined_loads(4)), 1 + t.first_miss - 4);
 }
@@ -390,8 +393,8 @@ fn row_17_a_load_right_behind_a_store_that_hit_waits() {
     assert_eq!(cost(Freeze::LoadAfterStoreHit, "st.l r5, 4(r4)\nld.l 8(r4), r6"), 0, "the store missed");
 }
 
-/// The list, 18, delayed conditional branch not taken: "1". A taken one costs its slot only: the loop of a period tree
-/// code has 106 clocks with one in it (anchors.rs).
+/// The list, 18, delayed conditional branch not taken: "1". A taken branch takes only the clock of its delay slot. For
+/// example, the loop of a tree code of the period takes 106 clocks with such a branch (anchors.rs).
 #[test]
 fn row_18_a_delayed_branch_not_taken_costs_one_and_taken_none() {
     let row = Freeze::DelayedBranchNotTaken;
@@ -456,8 +459,8 @@ fn row_24_a_pipelined_result_waits_for_the_store_of_its_register() {
     assert_eq!(cost(row, "fst.l f8, 0(r4)\nfadd.ss f2, f3, f8"), 0);
 }
 
-/// The list has no such row: its row 10 leaves frcp and frsqr out. A published three-way reciprocal root of 39 clocks
-/// allows a result that is usable two instructions later.
+/// The list has no such row, because its row 10 does not include frcp and frsqr. A published code for three reciprocal
+/// roots in 39 clocks is possible if the result can be used two instructions later.
 #[test]
 fn row_25_a_seed_is_late_by_one() {
     assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nfmul.ss f9, f9, f10"), 1);
@@ -483,7 +486,8 @@ fn pair_behind_a_transfer(low: &str, high: &str) -> String {
 fn both_halves_of_a_pair_wait_together_for_the_longer_freeze() {
     let plain = pair_behind_a_transfer("pfadd.ss f0, f0, f0", "ld.l 0(r4), r6");
     let waiting = pair_behind_a_transfer("pfadd.ss f8, f0, f0", "ld.l 0(r4), r6");
-    // Two single instructions, then one clock for each of four pairs; the first pair is dual once the word is over.
+    // Two single instructions take two clocks, and each of four pairs takes one clock. The pairs begin after the end of
+    // the first word.
     assert_eq!(clocks_with(FreezeRules::none(), &plain), 2 + 4);
     let row = FreezeRules::none().with(Freeze::FloatingLoadUse);
     assert_eq!(clocks_with(row, &plain), 2 + 4);
@@ -493,7 +497,8 @@ fn both_halves_of_a_pair_wait_together_for_the_longer_freeze() {
 #[test]
 fn a_row_switched_off_among_all_others_costs_nothing() {
     let all_but = FreezeRules::all().without(Freeze::ConditionUse);
-    // Behind the last word of the line: before it, row 1 makes it longer (fills.rs).
+    // The branch is after the last word of the line. Before the last word, row 1 would make the freeze longer
+    // (fills.rs).
     let source = format!("{}adds 1, r5, r5\nbc end", "nop\n".repeat(6));
     assert_eq!(clocks_with(FreezeRules::all(), &source) - clocks_with(all_but, &source), 1);
 }

@@ -7,8 +7,8 @@ use i860::{Config, Cpu, Profile, Ram, RunEnd, assemble};
 const CODE: u32 = 0x1000;
 const DATA: u32 = 0x8000;
 
-/// Runs a stretch twice over data at r4, so that the second run hits the caches. Returns the memory at DATA and the
-/// profile of the second run.
+/// Runs a stretch twice with data at address r4, so that the second run hits the caches. Returns the memory at DATA and
+/// the profile of the second run.
 fn run(settings: &str, body: &str, data: &[u32]) -> (Vec<u32>, Profile) {
     let source = format!(
         ".pool r8 r9 r10\nmov 2, r20\n.align 8\nagain: d.fnop\nnop\n.linear {settings}\n{body}\n.endlinear\n\
@@ -27,8 +27,8 @@ fn run(settings: &str, body: &str, data: &[u32]) -> (Vec<u32>, Profile) {
     (ram.words(DATA, 32).expect("inside"), cpu.profile())
 }
 
-/// Sums of products in both precisions, a reciprocal by a Newton step, minima, integers: (a b + c) and so on for three
-/// sets.
+/// Operations for three sets of data: sums of products in both precisions, such as (a b + c), a reciprocal by a Newton
+/// step, minima, and integer operations.
 const BODY: &str = "
     for i 0 1 2
 a$i = fld.l 16*$i(r4)
@@ -74,7 +74,7 @@ fn a_stretch_computes_what_its_lines_say() {
         let [a, b, c] = [a, b, c].map(f64::from);
         assert_eq!(f64::from_bits(double), a * c * b + b);
     }
-    // The seed of 1 / 3 has 8 bits of fraction: 0x3EAA8000.
+    // The seed of 1 / 3 with 8 bits of fraction is 0x3EAA8000.
     assert_eq!(f32::from_bits(found[26]), v(8) - v(4) * f32::from_bits(0x3EAA_8000));
     let l = ((data()[0] >> 4) + 17) ^ data()[0];
     assert_eq!((found[28], found[29]), (l, l.wrapping_neg()));
@@ -96,7 +96,8 @@ fn every_schedule_computes_the_same() {
 #[test]
 fn nothing_waits_but_for_what_is_around_the_stretch() {
     let (_, profile) = run("", BODY, &data());
-    // The branch back and the code after it lie outside the stretch and enter the cache only now.
+    // The branch back and the code after the branch are outside the stretch, and enter the cache only in the second
+    // run.
     let inside = FREEZES.iter().filter(|row| !matches!(row.id, Freeze::CompareBranchTaken | Freeze::InstructionMiss));
     let waits: Vec<_> = inside.filter(|row| profile.frozen_by(row.id) > 0).map(|row| row.number).collect();
     assert_eq!(waits, Vec::<&str>::new(), "{profile}");
@@ -121,7 +122,7 @@ fn what_is_wrong_is_said_with_its_line() {
     assert!(fault(&format!("{crowd}{uses}")).unwrap_err().contains("do not fit the registers"));
 }
 
-/// Two additions, a product of doubles that takes two slots, and four accesses of memory.
+/// The stretch has two additions, a product of doubles that takes two slots, and four accesses to memory.
 #[test]
 fn slots_are_counted_by_unit_and_no_schedule_is_shorter() {
     let source = "        .linear\n\

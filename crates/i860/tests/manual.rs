@@ -1,12 +1,12 @@
-//! Compares every instruction of the i860 XR with a table made from the programmer's manual: text to word, word to
-//! text, and no other words.
+//! Compares every instruction of the i860 XR with a table from the programmer's manual. The tests convert text to words
+//! and words to text, and check that no other words are valid.
 
 use i860::{Config, Cpu, Ram, RunEnd, assemble, decode, disassemble, instruction_word};
 use std::collections::BTreeSet;
 
 /// Core instructions and `fnop`, each with text and word. The registers make every field visible: r1 in the first
-/// source, r2 in the second, r3 in the destination. Branches are at address 0 and go to 0x10, three words after the
-/// next instruction.
+/// source, r2 in the second, r3 in the destination. Branches are at address 0 and have the target 0x10, three words
+/// after the next instruction.
 const CORE: [(&str, u32); 113] = [
     ("ld.b r1(r2), r3", 0x0043_0800),
     ("ld.b 5(r2), r3", 0x0443_0005),
@@ -141,8 +141,8 @@ enum Operands {
     ToInteger,
 }
 
-/// Instructions of the floating-point unit besides the dual operations: name, the low seven bits, precisions, whether
-/// there is a scalar and a pipelined form, operands.
+/// Instructions of the floating-point unit other than the dual operations. A row has the name, the low seven bits, the
+/// precisions, two booleans and the operands. The booleans are true if a scalar form and a pipelined form exist.
 type Row = (&'static str, u32, &'static [(&'static str, u32)], [bool; 2], Operands);
 
 const FLOATING: [Row; 21] = {
@@ -175,13 +175,13 @@ const FLOATING: [Row; 21] = {
     ]
 };
 
-/// The data paths of pfam by number (bits 3 to 0); pfsm has s for p, and bit 4.
+/// The data paths of pfam by number (bits 3 to 0). The names for pfsm have `s` instead of `p`, and its bit 4 is set.
 const PATHS: [&str; 16] = [
     "r2p1", "r2pt", "r2ap1", "r2apt", "i2p1", "i2pt", "i2ap1", "i2apt", "rat1p2", "m12apm", "ra1p2", "m12ttpa",
     "iat1p2", "m12tpm", "ia1p2", "m12tpa",
 ];
 
-/// The data paths of pfmam by number; number 15 does not exist.
+/// The data paths of pfmam by number. Number 15 does not exist.
 const MULTIPLIER_PATHS: [&str; 15] = [
     "mr2p1", "mr2pt", "mr2mp1", "mr2mpt", "mi2p1", "mi2pt", "mi2mp1", "mi2mpt", "mrmt1p2", "mm12mpm", "mrm1p2",
     "mm12ttpm", "mimt1p2", "mm12tpm", "mim1p2",
@@ -259,7 +259,7 @@ fn name(text: &str) -> String {
 fn there_are_no_instructions_but_those_of_the_manual() {
     let known: BTreeSet<String> =
         CORE.iter().map(|(text, _)| name(text)).chain(floating().iter().map(|(text, _)| name(text))).collect();
-    // Try all low bits that may select an operation, for every operation code. Floating-point codes are tried without
+    // Try all low bits that can select an operation, for every operation code. Floating-point codes are tried without
     // the D bit.
     for op in 0..64_u32 {
         for low in (0..2048).filter(|low| low & 0x200 == 0) {
@@ -291,7 +291,7 @@ fn there_are_no_instructions_but_those_of_the_manual() {
     }
 }
 
-/// The manual: `pfmul3` advances all three stages, in double precision too.
+/// According to the manual, `pfmul3` advances all three stages, also in double precision.
 #[test]
 fn a_multiply_through_three_stages_takes_the_result_of_the_third_one_before_it() {
     let source = "start: mov data, r4; fld.d 0(r4), f2; fld.d 8(r4), f4; nop; nop

@@ -26,7 +26,8 @@ impl Twins {
         }))
     }
 
-    /// Executes one step, or up to a number of instructions. Code that has left the program begins again.
+    /// Executes one step, or up to a number of instructions. If the execution has left the program, the program starts
+    /// again.
     fn go(&mut self, instructions: u64) -> Result<(), TestCaseError> {
         let [memoised, counted] = self.0.each_mut().map(|(cpu, ram)| {
             let outcome = match instructions {
@@ -73,7 +74,7 @@ fn registers() -> impl Strategy<Value = [u32; 32]> {
     })
 }
 
-/// Freeze rules with all rows, with one row, with all rows but one, or with random rows.
+/// Freeze rules with all rows, with one row, with all rows except one, or with random rows.
 fn rules() -> impl Strategy<Value = FreezeRules> {
     let row = 0..FREEZES.len() as u32;
     prop_oneof![Just(!0u32), row.clone().prop_map(|n| 1 << n), row.prop_map(|n| !(1 << n)), any::<u32>()]
@@ -108,7 +109,7 @@ proptest! {
 /// Bytes of a way of the instruction cache. Lines at this distance are in the same set.
 const WAY: usize = 0x800;
 
-/// Pieces of code that replace each other in the instruction cache. Each ends with a branch to another piece.
+/// Pieces of code that replace each other in the instruction cache. Each piece ends with a branch to another piece.
 fn pieces() -> impl Strategy<Value = Vec<u32>> {
     let piece = (prop::collection::vec(likely_word(), 0..24), any::<prop::sample::Index>());
     prop::collection::vec(piece, 3..7).prop_map(|pieces| {
@@ -151,7 +152,7 @@ fn memories() -> impl Strategy<Value = DramTiming> {
     })
 }
 
-/// Freeze rules with one row of so many clocks that every use of it shows in the total.
+/// Freeze rules in which one row has so many clocks that every use of the row changes the total noticeably.
 fn slow_rules() -> impl Strategy<Value = FreezeRules> {
     (rules(), 0..FREEZES.len(), 0u64..40).prop_map(|(mut rules, row, clocks)| {
         rules.clocks.set(FREEZES[row].clocks.name, clocks.into()).expect("the table has all rows");
@@ -184,7 +185,8 @@ proptest! {
     }
 }
 
-/// Code of three times the size of the instruction cache, with stores that miss the data cache, executed repeatedly.
+/// Repeatedly executes code of three times the size of the instruction cache. The code has stores that miss the data
+/// cache.
 #[test]
 fn code_that_does_not_fit_the_caches_is_mostly_repeated() {
     let body = "adds 1, r6, r6\n fadd.ss f8, f9, f10\n st.l r6, 0(r4)\n adds 32, r4, r4\n".repeat(768);
@@ -203,7 +205,7 @@ fn code_that_does_not_fit_the_caches_is_mostly_repeated() {
     assert!(10 * repeated > 8 * all, "{repeated} of {all}");
 }
 
-/// Eight instructions in two lines of the cache.
+/// A loop of eight instructions in two lines of the cache.
 const LOOP: &str = "
         mov     100, r5
 loop:   fld.d   0(r4), f8
@@ -227,8 +229,8 @@ fn run_loop(prepare: impl Fn(&mut Cpu)) -> (Cpu, Ram) {
     (cpu, ram)
 }
 
-/// The first turn misses, the second finds the cache changed, and later turns are remembered with the state that the
-/// turn before left. The last turn exits the loop. At most ten of a hundred turns are counted.
+/// The first turn misses the cache. In the second turn, the state of the cache has changed. Later turns are memoized
+/// with the state after the previous turn. The last turn leaves the loop. At most ten of a hundred turns are counted.
 #[test]
 fn a_loop_in_cache_is_counted_only_until_it_is_known() {
     let (cpu, _) = run_loop(|_| {});
@@ -245,7 +247,8 @@ fn a_profile_by_address_accounts_for_the_same_clocks() {
     assert_eq!(by_address, plain.clocks());
 }
 
-/// Random turns on a shelf: the processor, its program and the number of instructions.
+/// Random turns of processors that share decoded programs. A turn has the processor, its program and the number of
+/// instructions.
 fn turns() -> impl Strategy<Value = Vec<(usize, usize, u64)>> {
     prop::collection::vec((0usize..3, 0usize..2, 1u64..400), 20..60)
 }
@@ -253,7 +256,7 @@ fn turns() -> impl Strategy<Value = Vec<(usize, usize, u64)>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Programs may store into themselves, so each is loaded again before its turn.
+    /// Programs can store into their own code, so each program is loaded again before its turn.
     #[test]
     fn processors_that_share_a_shelf_take_the_clocks_that_each_takes_alone(
         words in prop::collection::vec(prop::collection::vec(likely_word(), 1..60), 2),
@@ -295,8 +298,8 @@ fn two_loops() -> [Arc<Program>; 2] {
     sources.map(|source| Arc::new(assemble("loop.s", CODE, &source).unwrap_or_else(|e| panic!("{e}"))))
 }
 
-/// Programs that take turns at the same addresses, with their code exchanged or forgotten, reach the same state at the
-/// same clock.
+/// Two programs run in turn at the same addresses, with exchanged or discarded decoded code. Both ways must reach the
+/// same state at the same clock.
 #[test]
 fn programs_that_take_turns_are_decoded_once_and_take_the_same_clocks() {
     let programs = two_loops();

@@ -13,8 +13,8 @@ fn run(source: &str, freezes: FreezeRules) -> (Cpu, i860::Program) {
     (cpu, program)
 }
 
-/// Three turns of a loop of four clocks (adds, btne and two more clocks when taken), with one instruction before and
-/// two after.
+/// A loop of three turns. Each turn takes four clocks: adds, btne, and two more clocks if btne is taken. One
+/// instruction precedes the loop, and two instructions follow.
 const LOOP: &str = "start: mov 3, r5\nloop: adds -1, r5, r5\nbtne r0, r5, loop\nlast: nop\nnop\nend: nop";
 
 #[test]

@@ -99,7 +99,7 @@ fn traps_by_instruction_set_their_bits() {
 
 #[test]
 fn a_handler_returns_to_the_trapped_pair_in_dual_mode() {
-    // The handler maps no memory: it moves r9 to an aligned address and returns to fir.
+    // The handler maps no memory. It sets r9 to an aligned address and returns to the address in fir.
     let program = assemble(
         "t.s", 0x1000,
         "mov 0x8002, r9\nnop\nd.fnop\nnop\nd.fnop\nadds 1, r10, r10\nd.fnop\nst.l r10, 0(r9)\nfnop\nadds 1, r10, r10\nfnop\nadds 1, r10, r10\nend: nop\nnop",

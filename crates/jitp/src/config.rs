@@ -12,7 +12,8 @@ use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// Interpolation mode for two views of a field: how vertices move between the start and the end of the field.
+/// Mode of interpolation between the two views of a field. The mode determines the paths of vertices from the start to
+/// the end of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interpolation {
     /// Interpolates the vertex's screen positions, after the division by depth.
@@ -21,7 +22,8 @@ pub enum Interpolation {
     View,
 }
 
-/// The times for which a field's picture is computed. At such a time the viewer has a certain position and orientation.
+/// The choice of the times for which the parts of a field's picture are computed. Each part shows the view from the
+/// viewer's position and orientation at its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
     /// One time for the whole field.
@@ -33,7 +35,7 @@ pub enum Viewpoint {
     Dual(Interpolation),
 }
 
-/// Drawing schedule: the choice between strips and blocks, and the order in which they are drawn.
+/// Drawing schedule: strips or blocks, and the order in which they are drawn.
 #[derive(Clone, Debug)]
 pub enum DrawingSchedule {
     /// Draws strips of a field from top to bottom.
@@ -117,13 +119,13 @@ impl fmt::Debug for BlockOrder {
     }
 }
 
-/// The master's request for a view that is computed from the tracker's reports.
+/// The master's request for a view. The view is computed from the tracker's reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
     /// Number that the view gets: see [`JitpConfig::view_number`].
     pub number: ViewNumber,
-    /// Time before which the host received the reports that have reached the master. The view must use only these
-    /// reports.
+    /// Time limit of the reports. The view must use only reports that the host received before this time. Later reports
+    /// have not reached the master.
     pub known: Time,
     /// Time for which the view is drawn.
     pub shown_at: Time,
@@ -132,25 +134,25 @@ pub struct Wanted {
 /// The boards of the pipeline, and its variant.
 #[derive(Clone, Debug)]
 pub struct JitpConfig {
-    /// Node of the host interface, which forwards the tracker's reports.
+    /// Ring port of the host, which forwards the tracker's reports.
     pub host: NodeId,
-    /// Node of the GP that follows the beam and orders strips or blocks.
+    /// Ring port of the GP that follows the beam and orders strips or blocks.
     pub master: NodeId,
-    /// Nodes of the slave GPs, at least one.
+    /// Ring ports of the slave GPs, at least one.
     pub slaves: Vec<NodeId>,
-    /// Nodes of the renderers, at least one.
+    /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// Node of the frame buffer; the display is mono.
+    /// Ring port of the frame buffer. The display is mono.
     pub frame_buffer: NodeId,
     /// Order of the regions, and times for which they are drawn.
     pub schedule: DrawingSchedule,
     /// Timing of the beam.
     pub beam: Beam,
-    /// Time within a view's display time for which the view is drawn, such as its middle.
+    /// Time within a view's display time for which the view is drawn, such as the middle of the display time.
     pub aim: Aim,
     /// Division of pixel memory among contexts.
     pub layout: Layout,
-    /// True if the run may compute pixels. Otherwise no command words are made, but all times stay the same.
+    /// True if the run can compute pixels. If false, no command words are made, but all times stay the same.
     pub pixels: bool,
     /// Times of this firmware that the processor's timing table lacks.
     pub timing: JitpTiming,
@@ -173,7 +175,7 @@ pub enum JitpConfigError {
     },
 }
 
-/// Number of view numbers that are reserved for each field. A field has at most 240 strips.
+/// Number of view numbers for each field. A field has at most 240 strips.
 const VIEWS_PER_FIELD: u64 = 256;
 
 impl JitpConfig {
@@ -181,7 +183,7 @@ impl JitpConfig {
     ///
     /// # Errors
     ///
-    /// [`JitpConfigError`] with the expected and the found value.
+    /// Returns [`JitpConfigError`] with the expected and the found value.
     pub fn check(&self) -> Result<(), JitpConfigError> {
         if self.slaves.is_empty() {
             return Err(JitpConfigError::NoSlave);
@@ -247,12 +249,13 @@ impl JitpConfig {
         (first, (first + region_height - 1).min(height - 1))
     }
 
-    /// Returns the time at which the first pixel of a strip is scanned, the strip's deadline.
+    /// Returns the deadline of a strip. The deadline is the time at which the beam scans the first pixel of the strip.
     pub(crate) fn deadline(&self, field: PeriodNumber, strip: u32) -> Time {
         self.beam.at(field, self.rows(strip).0, 0)
     }
 
-    /// Returns true for the middle strip of a field. In the trace, the events of this strip represent the whole field.
+    /// Returns true for the middle strip of a field. In the trace, the events of this strip represent the
+    /// whole field.
     pub fn is_middle(&self, strip: u32) -> bool {
         strip == self.grid().rows() / 2
     }
@@ -287,8 +290,8 @@ impl JitpConfig {
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
     }
 
-    /// Returns the time for which a strip is drawn, as a position between T0 (0) and T1 (1). The position is negative
-    /// for the retrace, which is before T0.
+    /// Returns the time for which a strip is drawn, on a scale from T0 (0) to T1 (1). If strips are drawn for the
+    /// retrace, the result is negative, because the retrace is before T0.
     #[must_use]
     pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);
@@ -298,11 +301,12 @@ impl JitpConfig {
 
     /// Returns the duration from the order of a strip to the strip's deadline.
     ///
-    /// A slave draws every n-th strip, so it has the time of n strips, where n is the number of slaves. If strips do
-    /// not race the beam, they are ordered one field earlier.
+    /// A slave draws every n-th strip, so it has the time of n strips, where n is the number of slaves. Strips that do
+    /// not race the beam are ordered one field earlier.
     ///
-    /// A field and the field two before it use the same lines of the frame buffer. A strip is not ordered before its
-    /// lines of the earlier field have been scanned, so that it cannot overwrite them.
+    /// Every second field uses the same lines of the frame buffer. A strip must not overwrite lines of the second
+    /// previous field that the beam has not scanned. A strip is therefore ordered only after the beam has scanned its
+    /// lines in this earlier field.
     pub(crate) fn lead(&self, racing: bool) -> Span {
         let first = PeriodNumber::FIRST;
         let begin = self.deadline(first, 0);
@@ -313,7 +317,7 @@ impl JitpConfig {
         wanted.min(next_of_its_lines.since(self.scanned(first, 0)))
     }
 
-    /// Returns the duration from the start of a field to the start of the next one.
+    /// Returns the duration of a field, from its start to the start of the next field.
     pub(crate) fn field_time(&self) -> Span {
         let first = PeriodNumber::FIRST;
         self.deadline(first.after(2), 0).since(self.deadline(first, 0)) / 2

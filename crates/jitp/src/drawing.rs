@@ -1,4 +1,4 @@
-//! The primitives of a display list as seen from one view, or interpolated between two views.
+//! The primitives of a display list as seen in one view, or interpolated between two views.
 
 use crate::config::Interpolation;
 use glam::Mat4;
@@ -11,16 +11,16 @@ use pxpl5_renderer::{Command, TriangleCommand};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Number of subpixels along the side of a pixel. Outlines are in units of subpixels.
+/// Number of subpixels along the side of a pixel. Coordinates of outlines are in subpixels.
 const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 
-/// Largest deviation, in subpixels, between a straight line and a corner's path on the screen. Interpolation in eye
-/// space makes this path curved.
+/// Largest deviation, in subpixels, between a straight line and the path of a triangle's corner on the screen. With
+/// interpolation in eye space, this path is curved.
 ///
-/// A head that turns by 10 degrees during a field gives a deviation of 5 pixels. No real head turns so fast.
+/// A head that turns by 10 degrees during a field causes a deviation of 5 pixels. Real heads do not turn so fast.
 const CURVED: i32 = 8 * SUBPIXELS;
 
-/// A rectangle of pixels. `across` holds its first and last column; `lines` holds its first and last line of the frame.
+/// A rectangle of pixels. `across` has its first and last column, and `lines` has its first and last line of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {
     pub(crate) across: [i32; 2],
@@ -32,9 +32,9 @@ pub(crate) struct DrawnList {
     list: Arc<DisplayList>,
     viewport: Viewport,
     placed: Vec<PlacedStructure>,
-    /// Time between two views for which the list is drawn. `None` if there is only one view.
+    /// Time between two views for which the list is drawn. `None` if the list has only one view.
     between: Option<Between>,
-    /// Triangles on the screen, computed at the first use. All strips of a conventional picture share them.
+    /// Triangles on the screen, computed at the first use. All strips of a conventional picture share these triangles.
     outlines: OnceLock<Vec<Outline>>,
 }
 
@@ -48,7 +48,7 @@ struct Between {
     view: FrameView,
 }
 
-/// The transformed display list: for the start and the end of a field, or for one time only.
+/// The transformed display list, either for the start and the end of a field, or for one time only.
 #[derive(Clone)]
 pub(crate) struct Ends {
     pub(crate) views: Arc<[FrameView]>,
@@ -62,7 +62,7 @@ impl fmt::Debug for DrawnList {
 }
 
 impl Ends {
-    /// Transforms the list for `views`, which is one view, or two views for the start and the end of a field.
+    /// Transforms the list for `views`. `views` has one view, or two views for the start and the end of a field.
     pub(crate) fn new(list: &DisplayList, views: Vec<FrameView>, viewport: Viewport) -> Self {
         let triangles = match &views[..] {
             [from, to] => triangle_ends(list, from, to, viewport),
@@ -83,8 +83,8 @@ fn triangle_ends(
     placed.map(|(from, to)| structure_ends(list, &from, &to)).collect()
 }
 
-/// Returns the positions of one structure's triangles in both views. The result is `None` for a triangle that lacks a
-/// position in either view.
+/// Returns the positions of one structure's triangles in both views. The result is `None` for a triangle without a
+/// position in one of the views.
 fn structure_ends(list: &DisplayList, from: &PlacedStructure, to: &PlacedStructure) -> Vec<Option<TriangleEnds>> {
     let numbers = from.structure.triangles.clone();
     numbers.map(|number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number))).collect()
@@ -110,7 +110,7 @@ impl DrawnList {
         Self { between: Some(Between { ends: ends.clone(), part: s, interpolation, view }), ..drawn }
     }
 
-    /// Returns the number of primitives that touch each window. Also returns the number of primitives that touch any
+    /// Returns the number of primitives that touch each window, and the number of primitives that touch at least one
     /// window.
     pub(crate) fn count(&self, windows: &[Window]) -> (Vec<PrimitiveCounts>, PrimitiveCounts) {
         let mut tallies = WindowCounts::new(windows);
@@ -130,7 +130,7 @@ impl DrawnList {
         all
     }
 
-    /// Calls `sink` for each triangle on the screen. Leaves out triangles that are certainly outside the range `near`
+    /// Calls `sink` for each triangle on the screen. Triangles that cannot touch the range `near` of lines are left out
     /// (see [`near`]).
     fn each_outline(&self, near: [i32; 2], mut sink: impl FnMut(&Outline)) {
         let mut stats = SetupStats::default();
@@ -164,7 +164,7 @@ impl DrawnList {
     }
 
     /// Calls `sink` with the command of each triangle that touches the window, in the order of the display list. The
-    /// window must be one of those given to [`Self::count`], with the same lines.
+    /// window must have the lines of a window in an earlier call of [`Self::count`].
     pub(crate) fn triangle_commands(&self, window: &Window, mut sink: impl FnMut(Command)) {
         let near = near(std::slice::from_ref(window));
         let mut stats = SetupStats::default();
@@ -172,8 +172,8 @@ impl DrawnList {
             let Some(transform) = &place.transform else { continue };
             for (k, number) in place.structure.triangles.clone().enumerate() {
                 let triangle = self.list.triangle(number);
-                // A triangle with positions in both views is interpolated on the screen; any other is drawn in the
-                // list's own view.
+                // A triangle with positions in both views is interpolated. Every other triangle is drawn in the list's
+                // own view.
                 match self.ends_of(i, k) {
                     Some((ends, ..)) if is_outside_lines(ends, near) => {}
                     Some((ends, s, Interpolation::Screen)) => {
@@ -198,11 +198,11 @@ impl DrawnList {
         });
     }
 
-    /// Returns the work that interpolates the primitives near the given windows. Returns `None` if there is only one
+    /// Returns the work of interpolating the primitives near the given windows. Returns `None` if there is only one
     /// view.
     ///
-    /// One part of the board's memory, `ends`, holds the triangles of both views. Another part, `commands`, receives
-    /// the commands.
+    /// The part `ends` of the board's memory holds the triangles of both views. The part `commands` receives the
+    /// commands.
     pub(crate) fn interpolating<'a>(
         &'a self,
         share: &'a Share,
@@ -230,22 +230,23 @@ impl DrawnList {
     }
 }
 
-/// Returns the smallest and greatest distance from the frame's top, in subpixels. Only triangles within these limits
-/// can touch the windows at any time of the field.
+/// Returns the range of lines near the windows, as two distances from the frame's top in subpixels. A triangle outside
+/// this range cannot touch the windows at any time of the field.
 fn near(windows: &[Window]) -> [i32; 2] {
     let [top, bottom] = span(windows);
     [top - CURVED, bottom + CURVED]
 }
 
-/// Returns the distances of the highest window's top and of the lowest window's bottom from the frame's top, in
-/// subpixels.
+/// Returns the distance of the highest window's top from the frame's top, and the distance of the lowest window's
+/// bottom, in subpixels.
 fn span(windows: &[Window]) -> [i32; 2] {
     let top = windows.iter().map(|w| w.lines[0] * SUBPIXELS).min().unwrap_or_default();
     let bottom = windows.iter().map(|w| w.lines[1] * SUBPIXELS).max().unwrap_or_default() + SUBPIXELS;
     [top, bottom]
 }
 
-/// Returns true if a triangle is outside a range of distances from the frame's top at every time of the field.
+/// Returns true if a triangle stays outside a range of lines during the whole field. The range is given by two
+/// distances from the frame's top.
 fn is_outside_lines(ends: &TriangleEnds, [top, bottom]: [i32; 2]) -> bool {
     let [least, greatest] = ends.y_range();
     least > bottom || greatest < top
@@ -267,7 +268,8 @@ fn sink_if_met(
 /// Counts the primitives that touch windows.
 struct WindowCounts<'a> {
     windows: &'a [Window],
-    /// Distances of the highest window's top and of the lowest window's bottom from the frame's top, in subpixels.
+    /// Distance of the highest window's top from the frame's top, and distance of the lowest window's bottom, in
+    /// subpixels.
     span: [i32; 2],
     each: Vec<PrimitiveCounts>,
     any: PrimitiveCounts,
@@ -310,7 +312,7 @@ impl<'a> WindowCounts<'a> {
     }
 }
 
-/// Returns the view at position `s` between two views. All elements of matrices are interpolated linearly.
+/// Returns the view at position `s` between two views. The function interpolates all elements of the matrices linearly.
 ///
 /// Positions in eye space then move on straight lines: (M0 p) (1 - s) + (M1 p) s = (M0 (1 - s) + M1 s) p.
 pub(crate) fn interpolated(from: &FrameView, to: &FrameView, s: f64) -> FrameView {

@@ -1,20 +1,21 @@
-//! CPU work of a search for the primitives in the regions of a strip, or in the regions of a batch of blocks.
+//! CPU work of searching the primitives in the regions of a strip or of a batch of blocks.
 //!
-//! The work interpolates primitives, finds the primitives in each region, and lists the messages that draw them.
+//! The work has three parts: to interpolate primitives, to find the primitives in each region, and to list the messages
+//! that draw these primitives.
 
 use pphigs::{PrimitiveCounts, StripInterpolation, WindowSearchWork};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
-/// Work that interpolates the primitives near some regions, finds the primitives in each region, and lists the messages
-/// that draw them.
+/// The work of interpolating the primitives near some regions, finding the primitives in each region, and listing the
+/// messages that draw these primitives.
 pub(crate) struct StripSearchWork<'a> {
     pub(crate) searching: WindowSearchWork<'a>,
-    /// Interpolation before the search. `None` if the display list was transformed for one view only.
+    /// Interpolation before the search. `None` if the display list was transformed for only one view.
     pub(crate) interpolating: Option<StripInterpolation<'a>>,
     /// Numbers of primitives that touch at least one of the regions.
     pub(crate) met: PrimitiveCounts,
-    /// Time to interpolate one primitive, by the timing table, in nanoseconds.
+    /// Time to interpolate one primitive, from the timing table, in nanoseconds.
     pub(crate) interpolate_ns: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Program of the host: it forwards the tracker's reports.
+//! Program of the host, which forwards the tracker's reports.
 
 use crate::config::JitpConfig;
 use crate::protocol::DrawingOrder;
@@ -6,15 +6,15 @@ use pphigs::send_as_tracked;
 use pxpl5_gp::{Fault, Gp, HostTiming};
 use pxpl5_sim::Time;
 
-/// Sends every report of the tracker to the master as soon as it arrives. If several reports wait, only the newest is
-/// sent ([`send_as_tracked`]).
+/// Sends every report of the tracker to the master as soon as the report arrives. If several reports wait, only the
+/// newest report is sent ([`send_as_tracked`]).
 ///
-/// `next_report` returns the time at which the first report after a given time arrives. It returns `None` if there are
-/// no more reports.
+/// `next_report` returns the time at which the first report after a given time arrives. The function returns `None` if
+/// there are no more reports.
 ///
 /// # Errors
 ///
-/// The function itself never returns an error; its return type is that of every program.
+/// The function never returns an error. Its return type is the return type of all programs.
 pub async fn host(
     gp: Gp,
     config: JitpConfig,

@@ -1,4 +1,4 @@
-//! The master GP: it follows the beam, stores the newest tracking data and orders strips or blocks.
+//! The master GP, which follows the beam, stores the newest tracking data and orders strips or blocks.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
 use crate::ordering::OrderAssemblyWork;
@@ -20,8 +20,8 @@ struct MasterState {
 
 /// Returns the programs of the master, for both priorities of its board.
 ///
-/// `pass` is the work of a slave's pass over the whole display list. `view_of` predicts a view. The programs fail with
-/// [`Fault::Protocol`] for an unknown message.
+/// `pass` is the work of a slave's pass over the whole display list. `view_of` returns the predicted view for a
+/// request. The programs fail with [`Fault::Protocol`] for an unknown message.
 pub fn master(
     gp: &Gp,
     config: &JitpConfig,
@@ -81,7 +81,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
                     self.order_field(prepared, viewpoint).await?;
                     prepared = prepared.next();
                 }
-                // A strip whose deadline has passed is left out.
+                // The master orders no strip whose deadline has passed.
                 self.wait_until(order_at).await;
                 if self.gp.now() < self.config.deadline(field, strip) {
                     self.order_strip(field, strip, viewpoint).await?;
@@ -93,8 +93,9 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
 
     /// Returns the time at which slaves must begin to transform for a field.
     ///
-    /// Slaves draw strips at the same time, so the lead time is 1.5 times the TRANSFORM time by the timing table. The
-    /// time of i860 code is not known in advance, so its lead time is a whole field (pphigs's kernels/order_rules.md).
+    /// With the timing table, the lead time is 1.5 times the TRANSFORM time, because the slaves also draw strips during
+    /// TRANSFORM. With i860 code, the lead time is a whole field, because the time of the code is not known in advance
+    /// (pphigs's kernels/order_rules.md).
     fn preparation_at(&self, field: PeriodNumber, viewpoint: Viewpoint, ahead: Span) -> Time {
         let first_strip = self.config.deadline(field, 0);
         if self.gp.runs_code() {
@@ -169,7 +170,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Returns the time for which a batch of blocks is drawn, if it is ordered now.
+    /// Returns the time for which a batch of blocks is drawn if the master orders the batch now.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;
@@ -180,14 +181,14 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 }
 
-/// Two expected durations: from an order until its blocks are visible, and from this instant until other blocks replace
-/// these blocks.
+/// Two expected durations. The first is the time from an order until its blocks are visible. The second is the time
+/// from then until other blocks replace these blocks.
 struct Expected {
     drawing: Span,
     standing: Span,
 }
 
-/// Times of recent orders. They predict how long the next order takes.
+/// Times of recent orders. From these times, the master estimates the duration of the next order.
 struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
     /// Times of the orders of the last pass over all blocks of the frame, oldest first.
@@ -200,10 +201,10 @@ impl OrderTimes {
         Self { last_order_of: vec![None; slaves], pass: VecDeque::new(), orders_of_pass: orders_of_pass as usize }
     }
 
-    /// Records an order and returns its expected durations.
+    /// Records an order and returns the expected durations of this order.
     ///
-    /// Drawing is expected to take as long as the slave took for its last order. The blocks are expected to stay on the
-    /// screen for one pass, until all blocks of the frame have been drawn again.
+    /// The expected drawing time is the time that the slave needed for its last order. The blocks are expected to stay
+    /// on the screen for one pass, in which all blocks of the frame are drawn again.
     fn ordered(&mut self, slave: usize, now: Time) -> Expected {
         self.pass.push_back(now);
         let oldest = if self.pass.len() > self.orders_of_pass { self.pass.pop_front() } else { None };

@@ -7,8 +7,8 @@ use pxpl5_sim::Span;
 
 /// Work of assembling an order of the master.
 ///
-/// By the timing table, the order for a field takes the time of an empty pass. Other orders take no time except that of
-/// their message.
+/// In the timing table, the order for a field takes the time of an empty pass. Other orders take only the time of their
+/// message.
 pub(crate) struct OrderAssemblyWork<'a>(pub(crate) &'a DrawingOrder);
 
 impl Work for OrderAssemblyWork<'_> {
@@ -32,8 +32,8 @@ mod tests {
     use pxpl5_sim::Time;
     use pxpl5_wire::PeriodNumber;
 
-    /// Uses the fact that six instructions move a word (pphigs's kernels/order.s), each at least a clock of 25 ns.
-    /// Cache misses add a few clocks per word.
+    /// The code moves a word with six instructions (pphigs's kernels/order.s), and each instruction takes at least a
+    /// clock of 25 ns. Cache misses add a few clocks per word.
     #[test]
     fn by_code_an_order_takes_at_least_six_clocks_a_word() {
         let views = |n: u64| (0..n).map(view).collect();

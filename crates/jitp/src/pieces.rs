@@ -38,15 +38,15 @@ struct Part {
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// Divides a region's triangles and spheres into messages, triangles first. There are as few messages as their maximum
-/// length permits.
+/// Divides a region's triangles and spheres into messages, triangles first. The number of messages is as small as their
+/// maximum length permits.
 fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut triangle = 0;
     let mut sphere = 0;
     loop {
         let first = parts.is_empty();
-        // Every message keeps room for the copy, since it may become the last one.
+        // Every message keeps room for the copy command, because it can be the last message.
         let mut room_words = MAX_MESSAGE_WORDS - CLOSING - if first { OPENING } else { 0 };
         let triangles = take_run(triangle..counts.triangles, CommandKind::Triangle.words(), &mut room_words);
         let spheres = take_run(sphere..counts.spheres, CommandKind::Sphere.words(), &mut room_words);
@@ -60,7 +60,8 @@ fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     }
 }
 
-/// Returns the first part of `remaining`: as many primitives of `words_each` words each as fit into `room_words`.
+/// Returns the first part of `remaining`. The part has as many primitives of `words_each` words as fit into
+/// `room_words`.
 fn take_run(remaining: Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let n = (remaining.end - remaining.start).min(*room_words / words_each);
     *room_words -= n * words_each;
@@ -104,7 +105,7 @@ pub(crate) fn messages(
         parts: parts.clone(),
         primitives: OnceLock::new(),
     };
-    // Without pixels, no words are made.
+    // Without pixels, the messages need no words.
     let words = config.pixels.then(|| Arc::new(words()) as Arc<dyn CommandWords>);
     let lists = (0..).zip(&parts).map(|(number, part)| {
         let runs = part.runs();
@@ -149,8 +150,8 @@ impl RegionWords {
         })
     }
 
-    /// Appends the words of a command. The function cannot fail, because the machine's configuration rejects layouts
-    /// that lack a field of a command.
+    /// Appends the words of a command. The function cannot fail, because the machine's configuration rejects a layout
+    /// without all fields that the commands use.
     fn append(&self, command: Command, out: &mut Vec<Word>) {
         let encoded = command.encode(&self.layout, out);
         debug_assert!(encoded.is_ok(), "{encoded:?}");
@@ -186,7 +187,8 @@ impl CommandWords for RegionWords {
     }
 }
 
-/// Returns the words of the commands with the indices `numbers`, from the words of all commands of one kind.
+/// Returns the words of some commands from `all`, the words of all commands of one kind. `numbers` is the range of the
+/// commands' indices.
 fn words_of<'a>(all: &'a [Word], numbers: &Range<u32>, kind: CommandKind) -> &'a [Word] {
     let [begin, end] = [numbers.start, numbers.end].map(|number| (number * kind.words()) as usize);
     debug_assert!(end <= all.len(), "as many commands as were counted");

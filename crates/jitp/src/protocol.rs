@@ -11,8 +11,8 @@ const BLOCKS: Word = 0x1F1E_1D02;
 const REPORT: Word = 0x1F1E_1D03;
 const DONE: Word = 0x1F1E_1D04;
 
-/// Number of words of a report from the host. It holds two time stamps, position and quaternion in 64 bits each, and a
-/// header.
+/// Number of words of a report from the host. A report has a header, two time stamps, a position and a quaternion. Each
+/// number has 64 bits.
 pub(crate) const REPORT_WORDS: u32 = 20;
 
 /// A message between the boards.
@@ -24,7 +24,7 @@ pub(crate) enum DrawingOrder {
     Strip { field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView> },
     /// Order to draw blocks of the random order, beginning at the step with index `step`.
     Blocks { update: PictureNumber, step: u64, view: FrameView },
-    /// Notice that all reports have arrived that the host received before the time `known`.
+    /// Notice about reports of the tracker. All reports that the host received before the time `known` have arrived.
     Report { known: Time },
     /// Notice that a slave can take another order.
     Done { slave: u32 },
@@ -40,7 +40,7 @@ impl DrawingOrder {
     /// Encodes the message as words.
     pub(crate) fn words(&self) -> Vec<Word> {
         let mut words = Vec::new();
-        // The first word names the order; 64-bit numbers take two words, low word first.
+        // The first word states the kind of order. A 64-bit number takes two words, the low word first.
         match self {
             Self::Field { field, views } => {
                 let [field_low, field_high] = field.to_words();
@@ -68,7 +68,7 @@ impl DrawingOrder {
         words
     }
 
-    /// Returns the number of words before the words of the first view.
+    /// Returns the number of words in front of the first view.
     pub(crate) fn head_words(&self) -> usize {
         match self {
             Self::Field { .. } => 4,
@@ -82,7 +82,7 @@ impl DrawingOrder {
     ///
     /// # Errors
     ///
-    /// Returns [`Fault::Protocol`] for words that are no such message.
+    /// Returns [`Fault::Protocol`] if the words are not a message of this protocol.
     pub(crate) fn read(received: &Received, node: NodeId) -> Result<Self, Fault> {
         let order = match &received.body {
             Body::Words(words) => Self::from_words(words),

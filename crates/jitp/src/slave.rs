@@ -1,4 +1,4 @@
-//! A slave GP: it draws the strips of lines, or the blocks, that the master orders.
+//! A slave GP, which draws the strips of lines or the blocks that the master orders.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends};
@@ -19,14 +19,15 @@ use std::sync::Arc;
 /// Number of transformed fields in a slave's memory, including the current and the next field.
 const FIELDS_KEPT: usize = 3;
 
-/// Number of parts of a slave's memory for fields: one for each stored field, and one for the field in progress. One
-/// more part is for a strip between two views.
+/// Number of parts of a slave's memory for fields: one part for each stored field, and one part for the field in
+/// progress. Another part of memory is for a strip between two views.
 const PARTS_OF_FIELDS: u8 = FIELDS_KEPT as u8 + 1;
 const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_FIELDS + 1);
 
 #[derive(Default)]
 struct SlaveFields {
-    /// Numbers and views of the fields that the master has ordered but that are not transformed yet, oldest first.
+    /// Fields that the master has ordered but that are not transformed yet, oldest first. Each entry has the number and
+    /// the views of a field.
     ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
     /// Transformed fields, oldest first, each with its part of memory.
     transformed: VecDeque<(PeriodNumber, Field, MemoryPart)>,
@@ -43,10 +44,10 @@ struct Field {
 
 type SharedFields = Rc<RefCell<SlaveFields>>;
 
-/// Cache of transformed fields, common to all slaves.
+/// Cache of transformed fields, which all slaves share.
 ///
 /// All slaves hold the same display list and get the same views, so the simulator computes each field once. Every slave
-/// still spends its own simulated time.
+/// nevertheless spends the simulated time of its own TRANSFORM.
 #[derive(Clone, Default)]
 pub struct Transforms(Rc<RefCell<VecDeque<(PeriodNumber, Field)>>>);
 
@@ -75,8 +76,8 @@ impl Transforms {
 /// Returns the programs of the slave with index `index`, for both priorities of its board.
 ///
 /// The program that draws strips interrupts the program that transforms the next field. Every slave holds the whole
-/// display list. The programs fail with [`Fault::Memory`] if the list does not fit, and with [`Fault::Protocol`] for an
-/// unknown message.
+/// display list. The programs fail with [`Fault::Memory`] if the list does not fit into memory, and with
+/// [`Fault::Protocol`] for an unknown message.
 pub fn slave(
     gp: &Gp,
     config: &JitpConfig,
@@ -159,7 +160,7 @@ impl Slave {
         self.gp.work(&WholeList { share, pass: *pass, views, viewport, layout: config.layout, part }).await
     }
 
-    /// Returns the newest field in the list of orders, and drops older fields.
+    /// Returns the newest field in the list of orders, and removes older fields from the list.
     fn take_newest_order(&self) -> Option<(PeriodNumber, Vec<FrameView>)> {
         self.state.borrow_mut().ordered.drain(..).next_back()
     }
@@ -178,14 +179,14 @@ impl Slave {
         deadline: Time,
         view: Option<FrameView>,
     ) -> Result<(), Fault> {
-        // It is too late to start the strip.
+        // The deadline has passed, so the strip is skipped.
         if self.gp.now() >= deadline {
             return Ok(());
         }
         let picture = PictureNumber::drawn_for(field);
         let viewport = self.config.extent(picture).0;
         let stands_for_field = self.config.is_middle(strip);
-        // A strip with its own view needs a TRANSFORM first; otherwise wait for the transforms of the field.
+        // A strip with its own view needs a TRANSFORM first. Every other strip waits for the TRANSFORM of its field.
         let drawing = match &view {
             Some(view) => {
                 self.transform_all(std::slice::from_ref(view), picture, MemoryPart::WHOLE).await?;
@@ -196,7 +197,7 @@ impl Slave {
             }
             None => self.drawing_of_field(field, strip, viewport).await,
         };
-        // TRANSFORM may have taken until after the deadline.
+        // TRANSFORM may have ended after the deadline.
         let Some((drawing, part)) = drawing.filter(|_| self.gp.now() < deadline) else { return Ok(()) };
         if stands_for_field {
             self.gp.begin(Stage::Render, picture, None);
@@ -213,8 +214,8 @@ impl Slave {
         self.state.borrow().transformed.back().is_some_and(|newest| newest.0 >= field)
     }
 
-    /// Returns a strip's prepared list from the transformed triangles of its field, and the part of memory that holds
-    /// them. Returns `None` if the field was skipped.
+    /// Returns a strip's prepared list, and the part of memory that holds the transformed triangles of the field.
+    /// Returns `None` if the field was skipped.
     async fn drawing_of_field(
         &self,
         field: PeriodNumber,
@@ -224,7 +225,7 @@ impl Slave {
         self.gp.until("the transforms of the field", || self.has_transformed(field).then_some(())).await;
         let state = self.state.borrow();
         let (_, ready, part) = state.transformed.iter().find(|ready| ready.0 == field)?;
-        // A field with one view is drawn from it, even if the variant interpolates.
+        // A field with one view is drawn from this view, even if the pipeline normally interpolates.
         let drawing = match self.dual() {
             Some(interpolation) if ready.ends.views.len() == 2 => {
                 let s = self.config.part(field, strip);
@@ -274,7 +275,7 @@ impl Slave {
         let windows: Vec<_> = regions.iter().map(|region| window(&self.config, viewport, *region)).collect();
         let (counts, any) = drawing.count(&windows);
         let of_kernels = whole::picture(*viewport, self.config.layout);
-        // Interpolated commands go to their own part of memory, which is searched instead of the field's part.
+        // Interpolated commands go to their own part of memory. The search uses this part instead of the field's part.
         let interpolating = drawing.interpolating(&self.share, &windows, of_kernels, [part, OF_STRIP]);
         let searching = WindowSearchWork {
             part: if interpolating.is_some() { OF_STRIP } else { part },

@@ -8,8 +8,8 @@ use pxpl5_sim::Span;
 
 /// Work of a pass over all primitives, for one view or for each of two views.
 ///
-/// The pass makes the commands of all primitives and fills no bins. The primitives in a strip or block are searched
-/// later.
+/// The pass makes the commands of all primitives and fills no bins. A later search finds the primitives in a strip or
+/// block.
 pub(crate) struct WholeList<'a> {
     /// The whole display list.
     pub(crate) share: &'a Share,
@@ -19,7 +19,7 @@ pub(crate) struct WholeList<'a> {
     pub(crate) views: &'a [FrameView],
     /// Lines of the field or frame that the views show.
     pub(crate) viewport: Viewport,
-    /// Layout of pixel memory; commands are encoded for this layout.
+    /// Layout of pixel memory, for which the commands are encoded.
     pub(crate) layout: Layout,
     /// Part of memory for the result: commands for one view, or positions of triangles for two views.
     pub(crate) part: MemoryPart,
@@ -30,8 +30,8 @@ impl Work for WholeList<'_> {
         self.pass.span(timing) * self.views.len() as u64
     }
 
-    /// Runs the code. For one view it stores commands with their bounding boxes. For two views it stores the positions
-    /// of triangles in both views.
+    /// Runs the code. For one view, the code stores commands with their bounding boxes. For two views, the code stores
+    /// the positions of triangles in both views.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let Self { share, part, .. } = *self;
         let picture = picture(self.viewport, self.layout);
@@ -51,8 +51,8 @@ impl Work for WholeList<'_> {
     }
 }
 
-/// Returns the picture parameters that select the kernels. No bins are filled, since the primitives in regions are
-/// searched later.
+/// Returns the picture parameters that select the kernels. The kernels fill no bins, because a later search finds the
+/// primitives in the regions.
 pub(crate) const fn picture(viewport: Viewport, layout: Layout) -> Picture {
     Picture { viewport, shading: Shading::Gouraud, binning: RegionBinning::All, layout, pixels: false }
 }

@@ -19,7 +19,7 @@ fn modes() -> [(&'static str, Config); 3] {
     [("memoised", Config::cycle()), ("counted", counted), ("functional", Config::functional())]
 }
 
-/// Benchmarks the kernels on triangles of about the size that the published figures use.
+/// Benchmarks the kernels with triangles of about the size in the published figures.
 fn kernels(c: &mut Criterion) {
     let mut group = c.benchmark_group("kernels");
     let input = triangles(500, 0.12, 1);

@@ -1,9 +1,11 @@
-//! Work of a board before the first triangle of a pass: it edits the display list and places the list's structures for
-//! an eye.
+//! Work of a board before the first triangle of a pass. The board applies edits to the display list and places the
+//! list's structures for an eye.
 //!
-//! Both steps are code in the style of a compiler (`pxpl5_geometry::kernel::place_source`), the same for every version
-//! of the kernels. The code computes the view-dependent part of each structure's parameter block before the pass. The
-//! simulator then writes the block that a kernel reads. That block is equal in every word (tests/begin.rs).
+//! To *place* a structure is to compute its matrices and its light source in the coordinates of an eye. Both steps run
+//! i860 code in the style of compiled code (`pxpl5_geometry::kernel::place_source`). This code is the same for every
+//! version of the kernels (the code that transforms primitives). The code computes the view-dependent part of each
+//! structure's parameter block before the pass. A kernel reads a block that the simulator has computed and written. The
+//! block of the code equals this block in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
 use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};
@@ -31,7 +33,7 @@ const EDIT_WORDS: u32 = 17;
 const _: () =
     assert!(MESSAGE + MAX_EDITS as u32 * 4 * EDIT_WORDS <= MODELS, "what a message holds lies before the matrices");
 
-/// Instruction limit, many times what the code needs. Code that exceeds the limit counts as an endless loop.
+/// Instruction limit, much higher than the need of the code. Code that exceeds the limit counts as an endless loop.
 const BUDGET: u64 = 20_000;
 
 /// Work of the EDIT step, which stores the new model matrices of a view's edited structures.
@@ -62,14 +64,16 @@ impl Work for EditWork<'_> {
     }
 }
 
-/// Work at the beginning of a pass over the display list: it resets bins and places structures, for one eye or both.
+/// Work at the beginning of a pass over the display list. The work empties the bins and places structures (computes
+/// their matrices and light in eye coordinates), for one eye or both eyes.
 #[derive(Clone, Debug)]
 pub struct PassStartWork {
     list: Arc<DisplayList>,
     eyes: Vec<Arc<[PlacedStructure]>>,
-    /// Number of bins to reset for each eye, 0 if there are no bins.
+    /// Number of bins to empty for each eye, 0 if there are no bins.
     bins: u32,
-    /// For each structure, by its index in the display list: true if the work places it. `None` places all structures.
+    /// For each structure, by its index in the display list: true if the work places the structure. `None` places all
+    /// structures.
     chosen: Option<Arc<[bool]>>,
 }
 
@@ -97,12 +101,12 @@ impl PassStartWork {
         Self { bins: 0, ..self }
     }
 
-    /// Returns the same work for the chosen structures only. `chosen` has one element for each structure.
+    /// Returns the same work for only the chosen structures. `chosen` has one element for each structure.
     pub(crate) fn for_structures(self, chosen: Option<&[bool]>) -> Self {
         Self { chosen: chosen.map(Arc::from), ..self }
     }
 
-    /// Returns those structures of an eye that the work places. Structures that cannot be drawn are left out.
+    /// Returns those of an eye's structures that this work places. The result omits structures that cannot be drawn.
     fn begun<'a>(&'a self, placed: &'a [PlacedStructure]) -> impl Iterator<Item = &'a PlacedStructure> {
         let is_chosen = |number: usize| self.chosen.as_ref().is_none_or(|chosen| chosen.get(number) == Some(&true));
         let chosen = placed.iter().enumerate().filter(move |(number, _)| is_chosen(*number)).map(|(_, place)| place);
@@ -120,8 +124,8 @@ impl Work for PassStartWork {
         let mut span = Span::ZERO;
         for placed in &self.eyes {
             if self.bins > 0 {
-                // Reset the beginnings of the bins. The actual table depends on how full the bins become, and is
-                // written before the kernel runs.
+                // Reset the beginnings of the bins. The actual table depends on the sizes of the bins. The simulator
+                // writes this table before the kernel runs.
                 let registers = [(16, MESSAGE), (17, self.bins), (19, BIN_TABLE)];
                 span += processor.call(&PROGRAM, "reset", &registers, BUDGET)?;
             }
@@ -133,8 +137,8 @@ impl Work for PassStartWork {
     }
 }
 
-/// Returns the counted work at the beginning of a pass, for the timing table. `eyes` has the structures of each eye.
-/// Structures that cannot be drawn are not placed.
+/// Returns the work at the beginning of a pass as counts for the timing table. `eyes` has the structures of each eye.
+/// The counts omit structures that cannot be drawn.
 pub(crate) fn beginning<'a>(eyes: impl IntoIterator<Item = &'a [PlacedStructure]>) -> TransformCost {
     let drawn = |place: &&PlacedStructure| place.transform.is_some();
     TransformCost::beginning(eyes.into_iter().flatten().filter(drawn).map(|place| &place.structure))
@@ -168,7 +172,7 @@ impl PlacedStructure {
         let Some(transform) = self.transform.as_ref().filter(|_| !self.structure.spheres.is_empty()) else {
             return Ok(0);
         };
-        // The view-dependent part does not depend on the surface, so any kernel will do.
+        // The view-dependent part does not depend on the surface, so every kernel gives the same result.
         let kernel = SphereKernel::for_picture(KernelSurface::Phong, transform.viewport());
         let Some(mut block) = kernel.and_then(|kernel| kernel.parameters(transform, &self.light, &[])) else {
             return Ok(0);

@@ -1,7 +1,7 @@
 //! CPU work of TRANSFORM. The time comes from the timing table, or from i860 code that runs over the board's memory.
 //!
 //! [`pxpl5_geometry::kernel`] has the code for triangles and [`pxpl5_geometry::sphere_kernel`] the code for spheres.
-//! Such code is called a *kernel*. Each structure of the display list takes one call of each of the two kernels. All
+//! Such code is called a *kernel*. Each structure of the display list needs one call of each of the two kernels. All
 //! triangles come before the spheres, so that bins hold commands in the order in which they are sent.
 
 use crate::begin::{PassStartWork, beginning};
@@ -34,12 +34,12 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 pub(crate) const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
 pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 
-/// Largest number of triangles that clipping makes of one triangle. Clipping against six planes leaves a polygon of up
-/// to nine corners.
+/// Largest number of triangles that can result from the clipping of one triangle. Clipping against six planes leaves a
+/// polygon of up to nine corners.
 const MOST_PIECES: u32 = 7;
 
-/// Instruction limits, many times what a primitive and the prologue need. A kernel that exceeds its limit counts as an
-/// endless loop.
+/// Instruction limits, much higher than the needs of a primitive and of the prologue. A kernel that exceeds its limit
+/// counts as an endless loop.
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
 pub(crate) const BUDGET: u64 = 10_000;
 
@@ -51,7 +51,7 @@ pub(crate) const fn budget(primitives: u32) -> u64 {
 /// The TRANSFORM of one graphics processor's share of the primitives, for one eye or for both eyes.
 ///
 /// Some kernels transform both eyes in one pass over the primitives ([`Kernel::can_serve_both_eyes`]). With other
-/// kernels each eye takes its own pass.
+/// kernels, each eye needs a separate pass.
 #[derive(Clone, Copy, Debug)]
 pub struct TransformWork<'a> {
     /// Result of the TRANSFORM for each eye.
@@ -70,12 +70,12 @@ pub struct KernelOutput {
     pub span: Span,
     /// Simulated time of the kernels for spheres, which is included in `span`.
     pub of_spheres: Span,
-    /// Address range of the commands: first those of triangles, then those of spheres.
+    /// Address range of the commands. Commands of triangles come first, then commands of spheres.
     pub commands: Range<u32>,
     /// Address of the first sphere's command.
     pub spheres: u32,
     /// Address range of each bin's entries. An entry is the address of a command. If every region gets all triangles,
-    /// the bins hold spheres only.
+    /// the bins hold only spheres.
     pub bins: Vec<Range<u32>>,
 }
 
@@ -133,7 +133,8 @@ impl TransformWork<'_> {
 }
 
 impl Share {
-    /// Stores all primitives of the graphics processor in a board's memory, even if this share is only a clump of them.
+    /// Stores all primitives of the graphics processor in a board's memory. The function also stores all primitives if
+    /// this share is only a clump.
     ///
     /// # Errors
     ///
@@ -150,12 +151,12 @@ impl Share {
         Ok(())
     }
 
-    /// Returns the address of the first sphere.
+    /// Returns the address of the first sphere of the display list in the board's memory.
     pub(crate) fn place_of_spheres(&self) -> u32 {
         DISPLAY_LIST + self.all_triangles().len() as u32 * TRIANGLE_BYTES
     }
 
-    /// Returns the address at the end of the display list.
+    /// Returns the first address after the display list in the board's memory.
     pub(crate) fn end_of_list(&self) -> u32 {
         self.place_of_spheres() + self.all_spheres().len() as u32 * SPHERE_BYTES
     }
@@ -183,14 +184,14 @@ impl OutputSize {
     }
 }
 
-/// Addresses of a view's output.
+/// Addresses of a view's output: the commands, and the entries of each bin.
 struct Places {
     commands: u32,
     bins: Vec<u32>,
 }
 
-/// Addresses at which a kernel continues its output. `command` is the address of the next command. `table` is the
-/// address of the table of bins or, if the kernel stores bounding boxes instead, of the next box.
+/// Addresses of the next outputs of a kernel. `command` is the address of the next command. `table` is the address of
+/// the table of bins. If the kernel stores bounding boxes instead of bins, `table` is the address of the next box.
 #[derive(Clone, Copy)]
 pub(crate) struct Next {
     pub(crate) command: u32,
@@ -198,7 +199,8 @@ pub(crate) struct Next {
 }
 
 impl Next {
-    /// Reads the addresses at which the next kernel continues from the registers after a call.
+    /// Returns the addresses for the next output. After a call of a kernel, the processor's registers hold these
+    /// addresses.
     pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }
@@ -214,7 +216,8 @@ pub(crate) struct Destination {
     pub(crate) begin: u32,
 }
 
-/// Addresses of the mark words, one for each primitive, and the bit that is set for primitives of this view.
+/// Addresses of the mark words, and the bit of a mark word that is set for primitives of this view. Each primitive has
+/// one mark word.
 #[derive(Clone, Copy)]
 pub(crate) struct Marks {
     /// Address of the mark word of the GP's first triangle.
@@ -224,7 +227,7 @@ pub(crate) struct Marks {
 }
 
 impl Pass {
-    /// Returns the counted work of the TRANSFORM for the timing table, without the preparation of structures.
+    /// Returns the work of the TRANSFORM as counts for the timing table, without the preparation of structures.
     #[must_use]
     pub fn cost(&self) -> TransformCost {
         let counted = TransformCost::primitives(self.transformed());
@@ -246,14 +249,14 @@ impl Pass {
         self.run_kernels(processor, kernel, &needs, Destination { context, view: 0, begin }, None).map(Some)
     }
 
-    /// Runs the kernels for this eye (the left one) and the right eye, with a single pass over the triangles.
+    /// Runs the kernels for the left eye (`self`) and the right eye, with a single pass over the triangles.
     ///
     /// Returns `None` if no kernel serves both eyes. The left eye's output contains the time of the triangles of both
     /// eyes.
     ///
     /// # Errors
     ///
-    /// The errors of [`Pass::run_code`].
+    /// Returns the errors of [`Pass::run_code`].
     pub fn run_code_for_both(
         &self,
         right: &Self,
@@ -283,7 +286,7 @@ impl Pass {
 
     /// Runs the triangles of both eyes. Returns the time, and the addresses at which the output of each eye continues.
     ///
-    /// A structure that only one eye can draw is transformed by the kernel for one eye.
+    /// For a structure that only one eye can draw, the function runs the kernel for one eye.
     fn run_triangles_for_both(
         &self,
         right: &Self,
@@ -299,14 +302,14 @@ impl Pass {
             if held.is_empty() {
                 continue;
             }
-            // Both eyes together, if both can draw the structure.
+            // If both eyes can draw the structure, one call transforms it for both.
             let transforms = places.map(|place| place.transform.as_ref());
             let both_eyes = transforms.iter().all(Option::is_some);
             let kernel = Kernel { culls: places[0].structure.culling != Culling::None, both_eyes, ..kernel };
             let program = program(kernel, false);
             let clipper = program.symbol("clipper").unwrap_or_default();
             let blocks = [PARAMETERS, RIGHT_PARAMETERS];
-            // A parameter block for each eye.
+            // Each eye has a parameter block.
             for ((place, transform), block) in places.iter().zip(transforms).zip(blocks) {
                 let Some(transform) = transform else { continue };
                 processor.write(block, &kernel.parameters(transform, &place.light, &heads, clipper))?;
@@ -321,7 +324,7 @@ impl Pass {
                 (next[0].command, next[1].command) = (processor.register(18), processor.register(19));
                 continue;
             }
-            // Otherwise each eye that can draw the structure has a call of its own.
+            // Otherwise, each eye that can draw the structure needs a separate call.
             for eye in (0..2).filter(|eye| transforms[*eye].is_some()) {
                 let call = Call { first, count, next: next[eye], parameters: blocks[eye] };
                 span += call.run(processor, &program, "start", None)?;
@@ -378,7 +381,7 @@ impl Pass {
     ) -> Result<(Span, Next), ProcessorFault> {
         let heads = self.heads();
         let mut span = Span::ZERO;
-        // One call for each structure, with its own parameter block.
+        // Each structure needs one call with its own parameter block.
         for (place, transform, held) in self.calls_of_triangles() {
             let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
             let program = program(kernel, marks.is_some());
@@ -411,7 +414,7 @@ impl Pass {
         };
         let blank = self.encoded(&blank);
         let mut span = Span::ZERO;
-        // One call for each structure, with its own parameter block.
+        // Each structure needs one call with its own parameter block.
         for (place, transform, held) in self.calls_of_spheres() {
             let Some(parameters) = kernel.parameters(transform, &place.light, &blank) else { continue };
             processor.write(SPHERE_PARAMETERS, &parameters)?;
@@ -433,8 +436,8 @@ impl Pass {
         self.picture().kernel(schedule)
     }
 
-    /// Returns the words of a triangle command and of a sphere command. Returns `None` if code does not fill the bins
-    /// of both.
+    /// Returns the number of words of a triangle command and of a sphere command. Returns `None` if code cannot fill
+    /// the bins of both kinds.
     pub(crate) fn binned_words(&self, version: CodeVersion) -> Option<[u32; 2]> {
         let kernel = self.kernel(version).filter(|_| self.is_binned())?;
         Some([kernel.command_bytes() / 4, sphere_kernel(kernel).command_words() as u32])
@@ -449,8 +452,8 @@ impl Pass {
         self.picture().binning == RegionBinning::Touched
     }
 
-    /// Returns the words that all triangle commands have in common. They are read from an encoded command whose values
-    /// are zero.
+    /// Returns the words that all triangle commands have in common. The function encodes a command whose values are
+    /// zero, and reads the words from this command.
     pub(crate) fn heads(&self) -> Heads {
         let blank = match self.picture().shading {
             Shading::Gouraud | Shading::Precomputed => Command::Triangle(TriangleCommand::default()),
@@ -489,9 +492,9 @@ impl Pass {
 
     /// Returns the memory that a kernel needs for its output.
     ///
-    /// The kernel needs room for a command of every given primitive, visible or not, and for the pieces of clipped
-    /// triangles. It also needs room for one command that it may drop. [`pxpl5_gp::Memory`] counts fewer bytes, since
-    /// it counts only visible primitives.
+    /// The kernel needs memory for a command of every given primitive, visible or not, and for the pieces of clipped
+    /// triangles. The kernel also needs memory for one command that it can discard. [`pxpl5_gp::Memory`] counts fewer
+    /// bytes, because it counts only visible primitives.
     pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> OutputSize {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {
@@ -510,8 +513,8 @@ impl Pass {
     }
 }
 
-/// Stores the start and end address of each bin of a context, for the code that hands over regions. The table of bins
-/// cannot keep these addresses, because the other context will overwrite the table.
+/// Stores the start and end address of each bin of a context. The code that sends bins to renderers needs these
+/// addresses. The table of bins cannot keep them, because the other context overwrites the table.
 fn note_bins(
     processor: &mut Processor,
     to: Destination,
@@ -558,7 +561,7 @@ impl Call {
     }
 }
 
-/// Returns the kernel for spheres that draws the same kind of picture as a kernel for triangles.
+/// Returns the kernel for spheres that belongs to a kernel for triangles. Both draw the same kind of picture.
 pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
     SphereKernel { surface: kernel.surface, picture: kernel.picture, keeps_boxes: kernel.keeps_boxes }
 }

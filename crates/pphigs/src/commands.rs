@@ -1,4 +1,5 @@
-//! Messages of renderer commands. A message lists the kinds of its commands at once; its words are computed on demand.
+//! Messages of renderer commands. A message states the kinds of its commands immediately. The words of the commands are
+//! computed on demand.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
@@ -24,16 +25,17 @@ use std::sync::Arc;
 /// The commands before and after a region's primitives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RegionEnvelope {
-    /// True if the region's context is selected and cleared first.
+    /// True if the commands begin with the selection and clearing of the region's context in pixel memory.
     pub begin: bool,
-    /// True if the commands begin with the selection and clearing of the region's context.
+    /// True if the region ends with the shading of all its pixels. Only pictures with Phong shading have such a
+    /// command.
     pub shade: bool,
-    /// Copy of the region to the frame buffer at the end, if any.
+    /// Copy of the region to the frame buffer at the end. `None` if the region is not copied.
     pub copy: Option<CopyOrder>,
 }
 
-/// Returns the messages with the commands of a region's bin and the commands of its envelope. There are as few messages
-/// as their maximum length permits.
+/// Returns the messages with the commands of a region's bin and the commands of its envelope. The number of messages is
+/// as small as their maximum length permits.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
@@ -51,8 +53,8 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
     parts.map(list).collect()
 }
 
-/// Returns a message that copies regions to a frame buffer. Each region is copied from the pixel-memory context that
-/// its order names.
+/// Returns a message that copies regions to a frame buffer. The source of each region is the pixel-memory context that
+/// its order states.
 #[must_use]
 pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> CommandList {
     let runs =
@@ -83,7 +85,7 @@ struct Parts {
     triangles: Range<u32>,
     spheres: Range<u32>,
     words_each: [u32; 2],
-    /// True if every message must begin with the selection of its context.
+    /// True if every message must begin with the selection of the region's context in pixel memory.
     selects: bool,
     clears_next: bool,
     ending_words: u32,
@@ -106,8 +108,8 @@ impl Parts {
 }
 
 impl Parts {
-    /// Returns the message at index `number`. All messages between the first and the last one with triangles are
-    /// equally long, so they are skipped in one step.
+    /// Returns the message at index `number`. Between the first and the last message with triangles, all messages have
+    /// the same length. The function therefore skips them in one step.
     fn skip_to(mut self, number: u32) -> Option<RegionPart> {
         if number == 0 {
             return self.next();
@@ -124,14 +126,15 @@ impl Parts {
 impl Iterator for Parts {
     type Item = RegionPart;
 
-    /// Returns the next message. A message whose only command would be the selection of a context is left out.
+    /// Returns the next message. The iterator leaves out a message whose only command would be the selection of a
+    /// context.
     fn next(&mut self) -> Option<RegionPart> {
         if self.has_ended {
             return None;
         }
         let clear = std::mem::take(&mut self.clears_next);
         let select = clear || self.selects;
-        // Fill the message with as many primitives as fit; spheres follow only after the last triangle.
+        // Fill the message with as many primitives as fit. Spheres follow only after the last triangle.
         let mut room_words = MAX_MESSAGE_WORDS
             - CommandKind::SelectRegion.words() * u32::from(select)
             - CommandKind::Clear.words() * u32::from(clear);
@@ -149,8 +152,8 @@ impl Iterator for Parts {
     }
 }
 
-/// Removes from the front of `remaining` as many primitives as fit into `room_words`, and returns them. Each primitive
-/// has `words_each` words.
+/// Removes primitives from the front of `remaining`, and returns them. The number of removed primitives is the greatest
+/// number that fits into `room_words`. Each primitive has `words_each` words.
 fn take_run(remaining: &mut Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let end = remaining.start + (remaining.end - remaining.start).min(*room_words / words_each);
     let taken = std::mem::replace(&mut remaining.start, end)..end;
@@ -199,7 +202,7 @@ impl Pass {
             + CommandKind::CopyRegion.words() * u32::from(envelope.copy.is_some())
     }
 
-    /// Returns the bytes of the renderer commands of all primitives on the screen. Each command is stored once, since
+    /// Returns the bytes of the renderer commands of all primitives on the screen. Each command is stored once, because
     /// bins hold pointers to commands (TR94).
     #[must_use]
     pub fn command_bytes(&self) -> u64 {
@@ -212,9 +215,9 @@ impl Pass {
 /// (TR94).
 pub const BIN_ENTRY_BYTES: u64 = 4;
 
-/// Bytes of a GP's memory for program, stacks and message buffers, the same in every pipeline.
+/// Bytes of a GP's memory for program, stacks and message buffers. The number is the same in every pipeline.
 ///
-/// Assumed: no paper gives the number. TR94's GPs have 8 MB each, so a megabyte makes no difference.
+/// Assumed: no paper gives the number. Each GP of TR94 has 8 MB, so an error of a megabyte has little effect.
 pub const PROGRAM_BYTES: u64 = 1 << 20;
 
 fn bytes(kind: CommandKind, count: u32) -> u64 {
@@ -253,13 +256,13 @@ impl CommandWords for RegionWords {
 }
 
 impl RegionWords {
-    /// Returns the content of the message at index `number`. The content is empty if there is no such message.
+    /// Returns the content of the message at index `number`. The content is empty if the message does not exist.
     fn part(&self, number: u32) -> RegionPart {
         Parts::new(&self.pass, self.region, self.envelope).skip_to(number).unwrap_or_default()
     }
 
-    /// Appends all commands of a message. `triangles` are the triangles to draw, which may be fewer than those of the
-    /// message.
+    /// Appends all commands of a message. `triangles` are the triangles to draw, and can be fewer than the triangles of
+    /// the message.
     fn append_with(&self, part: &RegionPart, triangles: &[BinEntry], out: &mut dyn CommandSink) {
         let picture = self.pass.picture();
         // Start of the region: context and clear.
@@ -325,7 +328,7 @@ impl RegionWords {
             match some {
                 SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.gouraud_lanes(lanes, &mut stats);
-                    // A sink that takes batches needs no words.
+                    // A sink that accepts batches needs no words.
                     if !out.triangles(&expressions.batch(entries.len())) {
                         let words = out.words();
                         (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), words));
@@ -368,7 +371,7 @@ impl RegionWords {
                     let colour = |entry: &BinEntry| list.colours[list.triangles[entry.triangle as usize][0] as usize];
                     let mut colours = [0; LANES];
                     colours.iter_mut().zip(entries).for_each(|(out, entry)| *out = rgb(colour(entry)));
-                    // A sink that takes batches needs no words.
+                    // A sink that accepts batches needs no words.
                     if !out.triangles(&expressions.batch(entries.len(), colours)) {
                         let words = out.words();
                         for (i, entry) in entries.iter().enumerate() {
@@ -415,8 +418,8 @@ impl RegionWords {
     }
 }
 
-/// Appends the words of a command. It cannot fail, because the machine's configuration rejects layouts that lack a
-/// field of a command.
+/// Appends the words of a command. The function cannot fail, because the machine's configuration rejects a layout
+/// without all fields that the commands use.
 fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
     let encoded = command.encode(layout, out);
     debug_assert!(encoded.is_ok(), "{encoded:?}");
@@ -450,10 +453,10 @@ struct SetupBatches<'a> {
 }
 
 enum SetupBatch<'a> {
-    /// Triangles whose edges and gradients are computed together. An invisible triangle takes a place in the batch
-    /// without data.
+    /// Triangles whose edges and gradients are computed together. An invisible triangle occupies a place in the batch,
+    /// but this place has no data.
     Unclipped(&'a [BinEntry], &'a TriangleLanes<'a>),
-    /// A piece of a clipped triangle, which forms a batch of its own.
+    /// A piece of a clipped triangle. The piece forms a separate batch.
     Clipped(&'a BinEntry),
 }
 
@@ -470,7 +473,7 @@ impl SetupBatches<'_> {
                 break;
             }
         }
-        // If the first entry needs clipping, it forms a batch of its own.
+        // If the first entry needs clipping, it forms a separate batch.
         let (now, later) = self.entries.split_at(self.lanes.len().max(1).min(self.entries.len()));
         self.entries = later;
         match now {
@@ -481,8 +484,8 @@ impl SetupBatches<'_> {
     }
 }
 
-/// Returns the piece with the entry's index among the pieces that `clip` produces. Returns `None` if the triangle is
-/// invisible.
+/// Returns the piece of a clipped triangle to which a bin entry refers. `clip` produces all pieces of the triangle, and
+/// the entry has the index of its piece. Returns `None` if the triangle is invisible.
 #[cold]
 fn pick<T>(entry: &BinEntry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     let mut pieces = Vec::new();
@@ -532,7 +535,7 @@ fn fixed_part(part: f32) -> u8 {
     (part * 256.0).clamp(0.0, 255.0) as u8
 }
 
-/// Intensity of a highlight, of at most 255 (assumed: a slightly glossy surface).
+/// Intensity of a highlight, on a scale from 0 to 255 (assumed: a slightly glossy surface).
 const SPECULAR: u8 = 96;
 
 fn unit(v: [f32; 3]) -> [f32; 3] {

@@ -1,4 +1,4 @@
-//! The time of a TRANSFORM by the timing table of graphics-processor code.
+//! The time of a TRANSFORM according to the timing table of graphics-processor code.
 
 use crate::counts::PrimitiveCounts;
 use crate::list::DisplayList;
@@ -6,7 +6,7 @@ use crate::structure::DisplayStructure;
 use pxpl5_gp::GpTiming;
 use pxpl5_sim::Span;
 
-/// Counted work of a TRANSFORM. Each count has a time per unit in the timing table.
+/// The work of a TRANSFORM as counts. The timing table has a time per unit for each count.
 ///
 /// The simulation uses whole counts (`u64`). A closed form can use mean counts (`f64`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,8 +1,8 @@
-//! CPU work of handing over a region's bin to the ring. The code lists the messages of the region's commands as pieces
-//! of memory.
+//! CPU work of sending a region's bin. The code lists the messages with the region's commands as pieces of memory,
+//! which the ring interface then sends.
 //!
 //! The code is kernels/token.s. It reads the bin's entries, which the code of TRANSFORM has written. The commands stay
-//! where they are in memory. By the timing table each entry takes `token_entry_ns`.
+//! in their place in memory. In the timing table, each entry takes `token_entry_ns`.
 
 use crate::commands::RegionEnvelope;
 use crate::layout::{ENVELOPES, LISTS, LISTS_END, PIECES, TOKEN_CODE, TOKEN_PARAMETERS, bins};
@@ -14,16 +14,16 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionId, Word};
 use std::sync::{Arc, LazyLock};
 
-/// Work of handing over the bin of one region, with the commands of its envelope.
+/// Work of sending the bin of one region, with the commands of its envelope.
 #[derive(Clone, Copy, Debug)]
 pub struct BinHandoffWork<'a> {
     /// TRANSFORM result that contains the bin.
     pub pass: &'a Pass,
     /// Bin context, 0 or 1.
     pub context: u8,
-    /// Index of the view among the views that share the bin context, 0 if there is only one view.
+    /// Index of the view among the views that share the bin context. The index is 0 if the context has only one view.
     pub view: u8,
-    /// Region whose bin is handed over.
+    /// Region whose bin is sent.
     pub region: RegionId,
     /// Commands before and after the region's primitives.
     pub envelope: RegionEnvelope,
@@ -35,12 +35,12 @@ pub type MessagePieces = Vec<[Word; 2]>;
 /// Bytes of one piece in the list of pieces.
 pub(crate) const PIECE_BYTES: u32 = 8;
 pub(crate) const MESSAGE_BYTES: u32 = 16;
-/// Largest number of bin entries of a region. A message holds 20 commands or more, and needs two further pieces for its
-/// envelope.
+/// Largest number of bin entries of a region. A message holds at least 20 commands, and needs two further pieces for
+/// its envelope.
 pub(crate) const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
 const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 
-/// Instruction limit, many times what the code needs. Code that exceeds the limit counts as an endless loop.
+/// Instruction limit, much higher than the need of the code. Code that exceeds the limit counts as an endless loop.
 pub(crate) const BUDGET: u64 = 10_000;
 pub(crate) const BUDGET_OF_ENTRY: u64 = 1_000;
 
@@ -50,7 +50,7 @@ impl Work for BinHandoffWork<'_> {
     }
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
-        // Only bins that code has filled can be handed over by code.
+        // The code can send only bins that code has filled.
         let Some([triangle, sphere]) = self.pass.binned_words(processor.version()) else {
             return Ok(self.by_table(timing));
         };
@@ -63,7 +63,8 @@ impl Work for BinHandoffWork<'_> {
                 available_bytes: MOST_ENTRIES * PIECE_BYTES,
             });
         }
-        // Lengths of commands and the envelope tell the code how to divide the bin into messages.
+        // The parameters contain the lengths of the commands and the envelope, from which the code divides the bin into
+        // messages.
         let parameters = [&[triangle, sphere], self.enclosing().as_slice()].concat();
         processor.write(TOKEN_PARAMETERS, &parameters)?;
         let bins = bins(self.context, self.view);
@@ -77,7 +78,7 @@ impl BinHandoffWork<'_> {
     ///
     /// The first six parameters are address and length in words of three command sequences. The sequences are the start
     /// of the region, the start of every further message, and the end of the region. The seventh parameter is the
-    /// number of words of an empty message.
+    /// number of words of a message without primitives and without the end of the region.
     fn enclosing(&self) -> [Word; 7] {
         let words = |kind: CommandKind, is_there: bool| kind.words() * u32::from(is_there);
         let contexts = self.pass.picture().layout.plan().contexts > 1;
@@ -95,7 +96,7 @@ impl BinHandoffWork<'_> {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] on a board that has not run the code.
+    /// Returns [`ProcessorFault::Unmapped`] on a board that has not run the code.
     pub fn listed(processor: &Processor) -> Result<Vec<MessagePieces>, ProcessorFault> {
         listed(processor, processor.register(16))
     }
@@ -114,8 +115,8 @@ pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePie
 
 /// Returns the source of the code that divides a bin into messages.
 ///
-/// `most` is the maximum number of words of a message without the end of the region. `whole` is the maximum for a
-/// message with the end of the region.
+/// `most` is the maximum number of words of a message without the commands that end a region. `whole` is the maximum
+/// for a message with these commands.
 pub(crate) fn token_source([most, whole]: [Word; 2]) -> String {
     format!("MOST = {most}\nWHOLE = {whole}\n{}", include_str!("../kernels/token.s"))
 }

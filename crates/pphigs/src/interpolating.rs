@@ -1,7 +1,7 @@
 //! CPU work of interpolating triangles between two views (a *dual display list*).
 //!
-//! The code records each triangle's positions in the two views at the start and at the end of a field. It then makes
-//! the commands of a strip, a group of consecutive lines, for a view in between. The code is `ends.s` and
+//! The code records each triangle's positions in the two views at the start and at the end of a field. Then the code
+//! makes the commands of a strip (a group of consecutive lines) for a view between the two views. The code is `ends.s` and
 //! `compiled.s` of `pxpl5-geometry`. This project made the rules for the code (kernels/between_rules.md).
 
 use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
@@ -20,14 +20,14 @@ use pxpl5_wire::Word;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex};
 
-/// Bytes of the record of one triangle's positions in two views.
+/// Bytes of the record of one triangle, with its positions in two views.
 const RECORD_BYTES: u32 = 4 * ENDS_WORDS as u32;
 const VIEW_BYTES: u32 = 4 * ENDS_VIEW_WORDS as u32;
 
-/// Work that records the positions of all triangles in two views, in a part of memory.
+/// Work that records the positions of all triangles in two views. The records are stored in a part of memory.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleEndsRecorder<'a> {
-    /// Primitives that the graphics processor holds.
+    /// Primitives of the graphics processor.
     pub share: &'a Share,
     /// The first and the second view.
     pub views: [&'a FrameView; 2],
@@ -48,7 +48,7 @@ impl TriangleEndsRecorder<'_> {
     pub fn run_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Option<Span>, ProcessorFault> {
         let n_triangles = self.share.counts().triangles;
         let records = self.part.checked(processor, self.share, RECORD_BYTES * n_triangles)?;
-        // Clear all records: triangles of a structure that one view does not draw must not count as recorded.
+        // Clear all records. If one view does not draw a structure, its triangles must not count as recorded.
         processor.write(records, &vec![0; ENDS_WORDS * n_triangles as usize])?;
         let passes = self.views.map(|view| self.share.transform(view, 0, self.picture));
         let mut span = Span::ZERO;
@@ -75,23 +75,25 @@ const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
     [DISPLAY_LIST + first * TRIANGLE_BYTES, (held.end - held.start) as u32, records + first * RECORD_BYTES]
 }
 
-/// Work that makes the commands of a strip of lines, for a view between two recorded views. It makes commands and
-/// bounding boxes of the triangles near the strip and of all spheres.
+/// Work that makes the commands of a strip of lines, for a view between two recorded views. The result has commands and
+/// bounding boxes of the triangles near the strip, and of all spheres.
 #[derive(Clone, Copy, Debug)]
 pub struct StripInterpolation<'a> {
-    /// Primitives that the graphics processor holds.
+    /// Primitives of the graphics processor.
     pub share: &'a Share,
-    /// The first and the second view. A [`TriangleEndsRecorder`] has recorded their triangles.
+    /// The first and the second view. A [`TriangleEndsRecorder`] has recorded the positions of the triangles in both
+    /// views.
     pub views: [&'a FrameView; 2],
-    /// View in between. Spheres, light source and clipped triangles are computed from it, without interpolation.
+    /// View between the two views. Spheres, light source and clipped triangles are computed from this view, without
+    /// interpolation.
     pub between: &'a FrameView,
-    /// Position of the view in between, on a scale from the first view (0) to the second view (1).
+    /// Position of `between` on a scale from the first view (0) to the second view (1).
     pub part_of_way: f64,
-    /// True if triangles are interpolated in eye space, before the perspective division. False if they are interpolated
-    /// on the screen.
+    /// True if triangles are interpolated in eye space, before the perspective division. False if triangles are
+    /// interpolated on the screen.
     pub in_eye_space: bool,
-    /// Smallest and greatest distance from the frame's top, in 1/16 px. Only triangles within these limits can touch
-    /// the strip at any position between the views.
+    /// Range of lines near the strip, as the smallest and greatest distance from the frame's top in 1/16 px. Only
+    /// triangles within this range can touch the strip at any position between the views.
     pub near: [i32; 2],
     /// Picture that contains the strip.
     pub picture: Picture,
@@ -147,7 +149,7 @@ impl StripInterpolation<'_> {
         let [top, bottom] = self.near.map(|y| y as Word);
         let heads = pass.heads();
         let mut span = Span::ZERO;
-        // One call for each structure, with its own parameter block.
+        // Each structure needs one call with its own parameter block.
         for (place, transform, held) in pass.calls_of_triangles() {
             let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
             let program = program(kernel);
@@ -164,7 +166,8 @@ impl StripInterpolation<'_> {
     }
 }
 
-/// Returns the matrix elements to interpolate. Projection matrices are left out, since they are the same in both views.
+/// Returns the matrix elements to interpolate. Projection matrices are left out, because they are the same in both
+/// views.
 fn elements(view: &FrameView) -> Vec<Word> {
     let of_eyes = view.eyes.iter().flat_map(|eye| [eye.world_to_eye, eye.head_to_eye]);
     let matrices = of_eyes.chain(view.edits.iter().map(|edit| edit.model));
@@ -202,8 +205,8 @@ mod tests {
         FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits: edits.collect() }
     }
 
-    /// Tests the last matrix of a full chunk and of several chunks: `M0 (1 - s) + M1 s` in double precision, rounded
-    /// once.
+    /// Tests the last matrix of a full chunk and of several chunks. The expected result is `M0 (1 - s) + M1 s` in
+    /// double precision, rounded once.
     #[test]
     fn code_interpolates_matrices_as_double_precision_does() {
         let share = Share::new(Arc::new(DisplayList::default()), 0, 1);

@@ -8,15 +8,15 @@
 
 /// Address of the code for triangles, with its clipper. The processor's trap vectors are below this address.
 pub(crate) const CODE: u32 = 0x1000;
-/// Address of the code that finds which of six views contain a primitive.
+/// Address of the code that finds the views that contain a primitive, among six views.
 pub(crate) const SORT_CODE: u32 = 0xB000;
-/// Address of the code at the beginning of a pass, which edits structures and places them for an eye.
+/// Address of the code at the beginning of a pass. This code edits structures and places them for an eye.
 pub(crate) const BEGIN_CODE: u32 = 0xC000;
 /// Address of the code for spheres.
 pub(crate) const SPHERE_CODE: u32 = 0xE000;
 /// Address of a kernel's parameter block.
 pub(crate) const PARAMETERS: u32 = 0x1_0000;
-/// Address of the table of bins, in which a kernel reads and updates the end of each bin.
+/// Address of the table of bins. A kernel reads and updates the end of each bin in this table.
 pub(crate) const BIN_TABLE: u32 = 0x1_0200;
 /// Address of the parameter block for spheres.
 pub(crate) const SPHERE_PARAMETERS: u32 = 0x1_0400;
@@ -24,14 +24,14 @@ pub(crate) const SPHERE_PARAMETERS: u32 = 0x1_0400;
 pub(crate) const STACK: u32 = 0x1_1400;
 /// Address of the right eye's parameter block, for kernels that transform both eyes.
 pub(crate) const RIGHT_PARAMETERS: u32 = 0x1_2500;
-/// Address of the display list. It follows the first megabyte, which belongs to the program.
+/// Address of the display list. The list follows the first megabyte, which belongs to the program.
 pub(crate) const DISPLAY_LIST: u32 = 1 << 20;
 /// Address of a message from the host, with matrices or edits.
 pub(crate) const MESSAGE: u32 = 0x1_4000;
 /// Address of the model matrices, sorted by structure.
 pub(crate) const MODELS: u32 = 0x1_6000;
-/// Address of further bin bounds in the format of [`BINS`], for the second and later views that share a context. Each
-/// view has bounds in both contexts.
+/// Address of the bin bounds of the second and later views that share a bin context (set of bins), in the format of
+/// [`BINS`]. Each view has bounds in both contexts.
 const MORE_BINS: u32 = 0x7_D000;
 /// Address at the end of the model matrices.
 pub(crate) const MODELS_END: u32 = BLENDED;
@@ -40,37 +40,41 @@ pub(crate) const BLENDED: u32 = 0x7_5000;
 pub(crate) const BLENDED_ELEMENTS: u32 = 1024;
 /// Address of the code that finds the primitives in windows (rectangles of the screen).
 pub(crate) const WINDOWS_CODE: u32 = 0x7_8000;
-/// Address of the windows to search. The rectangle around all windows comes first.
+/// Address of the windows (rectangles of the screen) to search. The rectangle around all windows comes first.
 pub(crate) const WINDOWS: u32 = 0x7_9000;
 pub(crate) const REGION_WINDOWS: u32 = 0x7_9C00;
-/// Address of the coordinates of each window's upper left pixel.
+/// Address of the coordinates of the upper left pixel of each window (rectangle of the screen).
 pub(crate) const WINDOW_PLACES: u32 = 0x7_AE00;
-/// Address of the lists of primitives in windows, in the format of [`bins`].
+/// Address of the lists of primitives in windows (rectangles of the screen), in the format of the addresses at
+/// [`bins`].
 pub(crate) const WINDOW_LISTS: u32 = 0x7_B000;
-/// Address of the records of stored passes, one record for each part of memory.
+/// Address of the records of stored passes, one record for each part of memory. A stored pass is the result of a
+/// TRANSFORM without bins, which a part of memory holds for later searches.
 pub(crate) const KEPT: u32 = 0x7_B400;
-/// Bytes of the record of a stored pass.
+/// Bytes of the record of a stored pass (the result of a TRANSFORM that a part of memory holds).
 pub(crate) const KEPT_BYTES: u32 = 32;
-/// Largest number of passes that are stored at a time.
+/// Largest number of TRANSFORM results that a board's memory holds at a time.
 pub(crate) const MOST_KEPT: u32 = 16;
-/// Address of the code that assembles a master's order, its message to the slaves.
+/// Address of the code that assembles an order, the message of a master to its slaves.
 pub(crate) const ORDER_CODE: u32 = 0x7_B600;
 /// Address of the first words of an order, before its views.
 pub(crate) const ORDER_HEAD: u32 = 0x7_B800;
 pub(crate) const ORDER_VIEWS: u32 = 0x7_C000;
-/// Largest number of windows in one search.
+/// Largest number of windows (rectangles of the screen) in one search for primitives.
 pub(crate) const MOST_WINDOWS: u32 = 64;
-/// Bytes of a window's description.
+/// Bytes of the description of a window (rectangle of the screen).
 pub(crate) const WINDOW_BYTES: u32 = 32;
-/// Bytes at the end of memory for the primitives found in the windows of one search.
+/// Number of bytes at the end of memory for the primitives that one search finds in its windows (rectangles of the
+/// screen).
 pub(crate) const ENTRY_BYTES: u32 = 4 * (LISTS_END - PIECES) / 8;
 /// Largest number of views whose bins share a context: the six faces of a cube.
 pub(crate) const MOST_VIEWS: u32 = 6;
-/// Address of the start and end addresses of all bins, in both contexts. The code that hands over a region reads them.
+/// Address of the bin bounds: the start and end addresses of all bins, in both bin contexts (sets of bins). The code
+/// that sends a region's bin reads these bounds.
 const BINS: u32 = 0x1_2F00;
 /// Bytes of the bin bounds of one context: the address of its first sphere command, and two addresses for each region.
 const BIN_BOUNDS_BYTES: u32 = 0x480;
-/// Address of the parameter block for the code that hands over a region.
+/// Address of the parameter block for the code that sends a region's bin.
 pub(crate) const TOKEN_PARAMETERS: u32 = 0x1_3800;
 pub(crate) const ENVELOPES: u32 = 0x1_3900;
 pub(crate) const TOKEN_CODE: u32 = 0x1_3C00;
@@ -79,8 +83,8 @@ pub(crate) const LISTS: u32 = 0x8_0000;
 pub(crate) const PIECES: u32 = 0x9_0000;
 pub(crate) const LISTS_END: u32 = pxpl5_gp::RING_MEMORY.start;
 
-/// Returns the address of the start and end addresses of a context's bins. `view` is 0 for the first view that shares
-/// the context.
+/// Returns the address of the start and end addresses of the bins of one view in a bin context (set of bins). `view` is
+/// 0 for the first view that shares the context.
 pub(crate) fn bins(context: u8, view: u8) -> u32 {
     let context = u32::from(context % 2);
     match u32::from(view).checked_sub(1) {

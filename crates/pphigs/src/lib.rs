@@ -1,6 +1,6 @@
 //! Display list, primitives and TRANSFORM of the graphics processors.
 //!
-//! PPHIGS was the graphics library of Pixel-Planes 5. This crate models the part of it that all pipelines need:
+//! PPHIGS was the graphics library of Pixel-Planes 5. This crate models the part of PPHIGS that all pipelines need:
 //!
 //! ```text
 //!   DisplayList --deal--> Share --transform(FrameView, eye)--> Pass --command_list(region)--> CommandList
@@ -11,22 +11,22 @@
 //! - [`DisplayList`]: triangles, spheres, and structures with a model matrix each.
 //! - [`Share`]: every n-th primitive. The GPs get primitives round-robin (TR94).
 //! - [`FrameView`]: the host's message for a frame: viewing transforms and edits, as words.
-//! - [`send_as_tracked`]: the host program of a pipeline that takes the newest view when it needs one.
-//! - [`Pass`]: the result of one TRANSFORM. It counts the primitives of each region immediately. The words of their
-//!   commands are computed on demand, from the same transformed vertices.
-//! - [`TransformCost`]: counted work of a TRANSFORM, and its time by the timing table.
-//! - [`TransformWork`]: the CPU work of TRANSFORM. Its time comes from the table or from i860 code, which makes the
-//!   same words.
+//! - [`send_as_tracked`]: the host program of a pipeline that uses the newest view whenever the pipeline needs a view.
+//! - [`Pass`]: the result of one TRANSFORM. The numbers of primitives in each region are computed immediately. The
+//!   words of the commands are computed on demand, from the same transformed vertices.
+//! - [`TransformCost`]: the work of a TRANSFORM as counts, and its time according to the timing table.
+//! - [`TransformWork`]: the CPU work of TRANSFORM. The time comes from the table or from i860 code. Both ways give the
+//!   same words of commands.
 //! - [`CubeTransform`]: TRANSFORM of six views around an eye, as i860 code.
-//! - [`BinHandoffWork`]: the CPU work of handing over a region's bin to the ring.
+//! - [`BinHandoffWork`]: the CPU work of sending a region's bin to its renderer.
 //! - [`WindowSearchWork`]: the CPU work of searching for the primitives in rectangles of the screen, without bins.
 //! - [`TriangleEndsRecorder`] and [`StripInterpolation`]: positions of triangles in two views, and commands of a strip
-//!   of lines for a view in between, as i860 code.
+//!   of lines for a view between these views, as i860 code.
 //! - [`assemble_order`]: assembly of an order, the message of a master GP to its slaves, as i860 code.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
 //!
-//! Sources: TR94 (round-robin dealing, bins that hold pointers to shared commands).
+//! Sources: TR94 (round-robin assignment of primitives, bins that hold pointers to shared commands).
 
 mod begin;
 mod code;

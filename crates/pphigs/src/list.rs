@@ -22,27 +22,29 @@ pub struct DisplayList {
     pub triangles: Vec<[u32; 3]>,
     /// Spheres in their structure's coordinates.
     pub spheres: Vec<WorldSphere>,
-    /// Structures, in the order of their triangles and of their spheres. No primitive lies between two structures.
+    /// Structures, in the order of their triangles and of their spheres. The ranges of successive structures have no
+    /// gaps.
     pub structures: Vec<DisplayStructure>,
-    /// Unit vector towards the light source, in the frame of reference of each structure.
+    /// Unit vector towards the light source, in the coordinates of each structure's frame of reference (the room or the
+    /// head).
     pub towards_light: Vec3,
     /// Fraction of the colour that is visible in shadow, 0 to 1.
     pub ambient: f32,
-    /// Fraction of the colour that light from a perpendicular direction adds, 0 to 1.
+    /// Fraction of the colour that perpendicular light adds to the ambient light, 0 to 1.
     pub diffuse: f32,
     /// Background colour: red, green, blue.
     pub background: [u8; 3],
-    /// True if surfaces have no highlight. A highlight requires one eye direction for the whole picture.
+    /// True if surfaces have no highlight. Pictures with highlights need one eye direction for the whole picture.
     pub is_matte: bool,
     /// Cache of results that all graphics processors share. Code that changes the list must empty this cache.
     pub recent: RecentViews,
 }
 
 impl DisplayList {
-    /// Sorts each structure's vertices by their first use in its triangles. Vertices that are used together then lie
-    /// together in memory.
+    /// Sorts each structure's vertices by their first use in its triangles. Vertices of the same triangles are then
+    /// near each other in memory.
     ///
-    /// A vertex that several structures use is duplicated. A vertex that no triangle uses is dropped.
+    /// A vertex that several structures use is duplicated. A vertex that no triangle uses is removed.
     ///
     /// # Panics
     ///
@@ -50,7 +52,7 @@ impl DisplayList {
     #[must_use]
     pub fn with_vertices_in_order(mut self) -> Self {
         let mut order: Vec<usize> = Vec::with_capacity(self.positions.len());
-        // By old index: the new index in the last structure that used the vertex.
+        // For each old index: the new index in the last structure that used the vertex.
         let mut renumbered = vec![0; self.positions.len()];
         // Give every vertex a new number at its first use in each structure.
         for structure in &self.structures {
@@ -74,13 +76,13 @@ impl DisplayList {
 
     /// Replaces the colours by lit colours, for [`Shading::Precomputed`](crate::Shading::Precomputed).
     ///
-    /// Each vertex colour gets ambient light. It also gets diffuse light if its normal points towards the light. Every
-    /// structure is lit at its original position, before any edit moves it. Spheres keep their colours.
+    /// Each vertex gets ambient light. A vertex whose normal points towards the light also gets diffuse light. Every
+    /// structure is lit at its original position, before edits move the structure. Spheres keep their colours.
     #[must_use]
     pub fn with_precomputed_colours(mut self) -> Self {
         let towards_light = self.towards_light.to_array().map(f64::from);
         for (colour, normal) in self.colours.iter_mut().zip(&self.normals) {
-            // A normal without a direction counts as towards the light.
+            // A normal of length zero counts as a normal towards the light.
             let [x, y, z] = normal.to_array().map(f64::from);
             let length = (x * x + y * y + z * z).sqrt();
             let along = x * towards_light[0] + y * towards_light[1] + z * towards_light[2];
@@ -96,7 +98,7 @@ impl DisplayList {
     ///
     /// # Panics
     ///
-    /// Panics if there is no triangle with index `number`, or if it refers to a missing vertex.
+    /// Panics if there is no triangle with index `number`, or if the triangle refers to a missing vertex.
     #[must_use]
     pub fn triangle(&self, number: usize) -> Triangle {
         let corners = self.triangles[number].map(|i| i as usize);
@@ -111,14 +113,14 @@ impl DisplayList {
     ///
     /// # Panics
     ///
-    /// Panics if there is no triangle with index `number`, or if it refers to a missing vertex.
+    /// Panics if there is no triangle with index `number`, or if the triangle refers to a missing vertex.
     #[must_use]
     pub fn corners(&self, number: usize) -> [Vec3; 3] {
         self.triangles[number].map(|i| self.positions[i as usize])
     }
 }
 
-/// The primitives of one graphics processor (GP), or a consecutive part of them.
+/// The primitives of one graphics processor (GP), or a consecutive part of these primitives.
 ///
 /// The GP holds the triangles and the spheres with the indices `first`, `first + step`, `first + 2 step` and so on.
 #[derive(Clone, Debug)]
@@ -143,7 +145,7 @@ impl Share {
     ///
     /// # Panics
     ///
-    /// Panics if `of` is zero, which a valid configuration excludes.
+    /// Panics if `of` is zero. A valid configuration has at least one GP.
     #[must_use]
     pub fn new(list: Arc<DisplayList>, index: usize, of: usize) -> Self {
         assert!(of > 0, "primitives need a graphics processor");
@@ -213,26 +215,26 @@ impl Share {
         u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES
     }
 
-    /// Returns the indices, in the display list, of all triangles that the GP holds. Unlike a clump, this includes all
-    /// of them.
+    /// Returns the indices, in the display list, of all triangles that the GP holds. The result is the same for every
+    /// clump of the GP.
     pub(crate) fn all_triangles(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.triangles.len()).step_by(self.step)
     }
 
-    /// Returns the indices, in the display list, of all spheres that the GP holds. Unlike a clump, this includes all of
-    /// them.
+    /// Returns the indices, in the display list, of all spheres that the GP holds. The result is the same for every
+    /// clump of the GP.
     pub(crate) fn all_spheres(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.spheres.len()).step_by(self.step)
     }
 
-    /// Finds the share's triangles whose index in the display list is in `of`. Returns their indices among all
-    /// triangles that the GP holds.
+    /// Returns those of the share's triangles that belong to a structure. `of` is the structure's range of triangles in
+    /// the display list. The result is a range of indices among all triangles that the GP holds.
     pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.triangles, of)
     }
 
-    /// Finds the share's spheres whose index in the display list is in `of`. Returns their indices among all spheres
-    /// that the GP holds.
+    /// Returns those of the share's spheres that belong to a structure. `of` is the structure's range of spheres in the
+    /// display list. The result is a range of indices among all spheres that the GP holds.
     pub(crate) fn held_places_of_spheres(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.spheres, of)
     }
@@ -245,8 +247,9 @@ impl Share {
         self.held(&self.spheres, of)
     }
 
-    /// Returns the indices, in the display list, of the primitives in the range `of`. `positions` is the share's range,
-    /// as indices among the primitives that the GP holds.
+    /// Returns the indices, in the display list, of those of the share's primitives that belong to a structure. `of` is
+    /// the structure's range of primitives in the display list. `positions` is the range of the share, as indices among
+    /// the primitives that the GP holds.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         let first = self.first;
         let step = self.step;
@@ -260,7 +263,8 @@ impl Share {
     }
 }
 
-/// Returns how many of the first `all` primitives are held by the GP with index `index` among `gps` GPs.
+/// Returns the number of primitives, among the first `all`, that the GP with index `index` holds. `gps` is the number
+/// of GPs.
 fn dealt(all: usize, index: usize, gps: usize) -> usize {
     all.saturating_sub(index).div_ceil(gps)
 }
@@ -292,7 +296,7 @@ mod tests {
     fn vertices_in_order_leave_all_triangles_as_they_were() {
         let structure =
             |triangles| DisplayStructure { triangles, spheres: 0..0, frame: ModelFrame::World, culling: Culling::None };
-        // Vertex 0 is used last, vertices 3 and 4 by both structures, vertex 5 by no structure.
+        // Vertex 0 is used last, vertices 3 and 4 are used by both structures, and vertex 5 is used by no structure.
         let list = DisplayList {
             positions: (0..7).map(|i| Vec3::splat(i as f32)).collect(),
             normals: (0..7).map(|i| Vec3::splat(-i as f32)).collect(),

@@ -14,8 +14,8 @@ const BUDGET: u64 = 12 * MAX_MESSAGE_WORDS as u64;
 /// Largest number of words of an order before its views.
 const HEAD_WORDS: usize = (ORDER_VIEWS - ORDER_HEAD) as usize / 4;
 
-/// Assembles an order on a board, and returns the simulated time. The first `head` words of the order are its head; the
-/// other words are views.
+/// Assembles an order on a board, and returns the simulated time. The first `head` words of the order come before its
+/// views. All other words are views.
 ///
 /// # Errors
 ///
@@ -52,7 +52,8 @@ mod tests {
     use pxpl5_gp::CodeVersion;
     use pxpl5_wire::NodeId;
 
-    /// The message buffer must hold exactly the words of the order. An order without a head takes no time.
+    /// The message buffer must hold exactly the words of the order. An order without words before its views takes no
+    /// time.
     #[test]
     fn an_order_lies_in_the_buffer_word_for_word() {
         let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());
@@ -60,7 +61,8 @@ mod tests {
             let order: Vec<Word> = (0..words).map(|word| 0x1000_0000 + 7 * word).collect();
             processor.write(MESSAGE, &vec![0; order.len() + 1]).expect("in memory");
             let span = assemble_order(&mut processor, &order, head).expect("it returns");
-            // Each word takes six instructions. The last one is a branch, which takes two more clocks when taken.
+            // Each word takes six instructions. The last instruction is a branch, which takes two more clocks if the
+            // branch is taken.
             assert!(span >= Processor::CLOCK * (6 * u64::from(words)), "{span:?} for {words} words");
             assert_eq!(processor.read(MESSAGE, order.len()).expect("in memory"), order);
             assert_eq!(processor.read(MESSAGE + 4 * words, 1).expect("in memory"), [0], "{words} words and no more");

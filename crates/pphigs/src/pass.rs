@@ -13,12 +13,13 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// A triangle on the screen, or a piece of one, as an entry of a bin.
+/// A triangle on the screen, or a piece of a clipped triangle, as an entry of a bin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BinEntry {
     /// Index of the triangle in the display list.
     pub(crate) triangle: u32,
-    /// Index of the piece that clipping made, 0 for an unclipped triangle. `None` for an invisible triangle.
+    /// Index of the piece among the pieces of the clipped triangle. The index is 0 for an unclipped triangle. `None`
+    /// for an invisible triangle.
     pub(crate) piece: Option<u8>,
 }
 
@@ -29,7 +30,7 @@ pub(crate) struct Bin {
     pub(crate) spheres: Vec<u32>,
 }
 
-/// Result of the TRANSFORM for one eye. It holds the screen primitives that touch each region.
+/// Result of the TRANSFORM for one eye: the primitives on the screen that touch each region.
 ///
 /// Simulated time depends only on the counts of primitives. The content of the bins is computed when it is first read.
 #[derive(Debug)]
@@ -39,8 +40,8 @@ pub struct Pass {
     stats: SetupStats,
     /// Bins, one for each region, filled at the first use.
     bins: OnceLock<Vec<Bin>>,
-    /// Triangles that really touch each region, computed at the first use. Needed only if every region's bin gets all
-    /// triangles.
+    /// Triangles that touch each region, computed at the first use. The list is used only if every region's bin gets
+    /// all triangles.
     touching: OnceLock<RegionTriangles>,
     /// Encoder of triangle commands, created at the first use.
     encoder: OnceLock<Option<Encoder>>,
@@ -52,21 +53,22 @@ struct Walk {
     share: Share,
     placed: Arc<[PlacedStructure]>,
     picture: Picture,
-    /// For each structure, by its index in the display list: true if it is included. `None` includes all structures.
+    /// For each structure, by its index in the display list: true if the pass includes the structure. `None` includes
+    /// all structures.
     chosen: Option<Box<[bool]>>,
 }
 
 /// A consumer of the binning results. The results arrive structure by structure, in the order of the display list.
 trait BinningSink {
-    /// Takes a triangle that touches only one region.
+    /// Receives a triangle that touches only one region.
     fn triangle_in(&mut self, region: RegionId, triangle: u32);
 
-    /// Takes a triangle or a piece of a clipped triangle, and the set of regions that it touches.
+    /// Receives a triangle, or a piece of a clipped triangle, and the set of regions that it touches.
     ///
     /// The entry belongs to the bins of these regions, or to the bins of all regions under [`RegionBinning::All`].
     fn piece(&mut self, touched: RegionMask, entry: BinEntry);
 
-    /// Takes the index of a sphere in the display list and the set of regions that the sphere touches.
+    /// Receives the index of a sphere in the display list and the set of regions that the sphere touches.
     fn sphere(&mut self, regions: RegionMask, number: u32);
 }
 
@@ -76,8 +78,8 @@ struct Found {
     /// Number of entries in each region's bin.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
-    /// Indices, in the display list, of the triangles and spheres in any bin. Recorded only if some structures were
-    /// chosen.
+    /// Indices, in the display list, of the triangles and spheres that are in at least one bin. The indices are
+    /// recorded only if the pass has chosen structures.
     touching: Option<[Vec<u32>; 2]>,
 }
 
@@ -85,7 +87,8 @@ struct Found {
 struct PrimitiveCounter {
     /// For each region, the number of triangles that touch only that region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// For each region, the numbers of all other primitives.
+    /// For each region, the number of touching triangles that also touch other regions, and the number of touching
+    /// spheres.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,
@@ -133,7 +136,8 @@ impl BinningSink for PrimitiveCounter {
     }
 }
 
-/// A binning consumer that counts primitives. It also records the indices of the primitives that are in any bin.
+/// A binning consumer that counts primitives. The consumer also records the indices of the primitives that are in at
+/// least one bin.
 struct PrimitiveRecorder {
     counting: PrimitiveCounter,
     touching: [Vec<u32>; 2],
@@ -184,11 +188,11 @@ impl BinningSink for BinFiller {
     }
 }
 
-/// A binning consumer that collects the triangles that touch each region. It is used when every region's bin gets all
-/// triangles.
+/// A binning consumer that collects the triangles that touch each region. This consumer is used if every region's bin
+/// gets all triangles.
 #[derive(Debug)]
 struct RegionTriangles {
-    /// Entries of each region, each with its index in the region's bin.
+    /// Entries of each region. Each entry has its index in the region's bin.
     entries: Vec<Vec<(u32, BinEntry)>>,
     n_triangles: u32,
 }
@@ -265,7 +269,7 @@ impl Walk {
                 take.piece(RegionMask::EMPTY, BinEntry { triangle, piece: None });
             }
         }
-        // Triangles in one region are the common case, so they are counted together.
+        // Most triangles touch only one region, so these triangles are counted together.
         stats.triangles += in_one_region;
         stats.screen_triangles += in_one_region;
     }
@@ -299,7 +303,8 @@ impl Pass {
         Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder: OnceLock::new() }
     }
 
-    /// Computes the content of the bins. The binning runs a second time, because the first time only counted.
+    /// Computes the content of the bins. The binning runs a second time, because the first run counted primitives
+    /// without storing them.
     fn filled(&self) -> Vec<Bin> {
         let room = |counts: &PrimitiveCounts| Bin {
             triangles: Vec::with_capacity(counts.triangles as usize),
@@ -323,7 +328,7 @@ impl Pass {
         self.found.counts[usize::from(region.0)]
     }
 
-    /// Returns the numbers of primitives on the screen, each counted once.
+    /// Returns the numbers of primitives on the screen. Each primitive counts once, in any number of regions.
     #[must_use]
     pub const fn screen_counts(&self) -> PrimitiveCounts {
         self.found.on_screen
@@ -341,14 +346,14 @@ impl Pass {
         self.walk.share.counts()
     }
 
-    /// Returns the indices of the triangles and of the spheres that are in any bin, in the order of the display list.
-    /// Returns `None` for a pass over all structures.
+    /// Returns the indices of the triangles and of the spheres that are in at least one bin, in the order of the
+    /// display list. Returns `None` for a pass over all structures.
     #[must_use]
     pub const fn touching(&self) -> Option<&[Vec<u32>; 2]> {
         self.found.touching.as_ref()
     }
 
-    /// Returns the counts of primitives that were dropped, clipped, or limited to the range of a number format.
+    /// Returns the counts of primitives that were left out, clipped, or limited to the range of a number format.
     #[must_use]
     pub const fn stats(&self) -> SetupStats {
         self.stats
@@ -393,7 +398,7 @@ impl Pass {
         &self.bin(region).triangles[places.start as usize..places.end as usize]
     }
 
-    /// Returns those triangles at the given range of indices in a region's bin that touch the region.
+    /// Returns the triangles that touch a region, among the triangles at a range of indices in the region's bin.
     ///
     /// Under [`RegionBinning::Touched`] all triangles of a bin touch the region.
     pub(crate) fn triangles_touching(&self, region: RegionId, places: &Range<u32>) -> Cow<'_, [BinEntry]> {
@@ -410,7 +415,8 @@ impl Pass {
         self.walk.taken().filter_map(|place| Some((place, place.transform.as_ref()?)))
     }
 
-    /// Returns true for each structure to draw, by its index in the display list. Returns `None` if all are drawn.
+    /// Returns a list with true for each structure to draw, by its index in the display list. Returns `None` if all
+    /// structures are drawn.
     pub(crate) fn chosen(&self) -> Option<&[bool]> {
         self.walk.chosen.as_deref()
     }

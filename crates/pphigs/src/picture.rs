@@ -7,10 +7,10 @@ use pxpl5_renderer::Layout;
 /// Shading mode: the processor that computes colours, and the points at which it computes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
-    /// The GP computes colours at the corners; the renderers interpolate them.
+    /// The GP computes colours at the corners, and the renderers interpolate the colours.
     Gouraud,
-    /// Colours are lit once, before the run; the renderers interpolate them. Spheres have no corners, so they are lit
-    /// as under [`Shading::Gouraud`].
+    /// Lighting is computed once for the vertices, before the run. The renderers interpolate the resulting colours.
+    /// Spheres have no corners, so they are lit as with [`Shading::Gouraud`].
     Precomputed,
     /// The renderers compute the colour of each pixel once, at the end of the frame.
     Phong,
@@ -21,11 +21,11 @@ pub enum Shading {
 pub enum RegionBinning {
     /// The regions that the primitive touches.
     Touched,
-    /// All regions (Slats prototype, TR94). An invisible triangle costs as much time as a visible one, but draws
+    /// All regions (Slats prototype, TR94). An invisible triangle takes as much time as a visible triangle, but draws
     /// nothing.
     ///
-    /// Spheres go to the touched regions only; the prototype had no spheres. In other regions the values of a sphere's
-    /// quadratic would exceed 48 bits.
+    /// Spheres go only to the touched regions. In other regions, the values of a sphere's quadratic expression would
+    /// exceed 48 bits. The prototype had no spheres.
     All,
 }
 
@@ -45,15 +45,15 @@ pub struct Picture {
     pub shading: Shading,
     /// Binning mode: regions that receive a primitive's commands.
     pub binning: RegionBinning,
-    /// Layout of pixel memory; commands are encoded for this layout.
+    /// Layout of pixel memory, for which the commands are encoded.
     pub layout: Layout,
-    /// True if the run may compute pixels, which requires the words of commands.
+    /// True if the run can compute pixels. Pixels require the words of commands.
     pub pixels: bool,
 }
 
 impl Picture {
     /// Returns the kernel for the picture's triangles. Returns `None` if TRANSFORM has no i860 code for this kind of
-    /// picture; its time then comes from the timing table.
+    /// picture. The time of TRANSFORM then comes from the timing table.
     pub(crate) fn kernel(&self, schedule: Schedule) -> Option<Kernel> {
         let surface = match self.shading {
             Shading::Gouraud => KernelSurface::Gouraud,

@@ -11,23 +11,23 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 /// One structure, placed for an eye: its matrices, light source and transformed vertices.
 #[derive(Debug)]
 pub struct PlacedStructure {
-    /// Map from the structure's coordinates to the picture. `None` if a matrix is not finite; such a structure is not
+    /// Map from the structure's coordinates to the picture. `None` if a matrix is not finite. Such a structure is not
     /// drawn.
     pub transform: Option<Transform>,
     /// The light source in eye coordinates.
     pub light: Light,
     /// The structure's primitives and its frame of reference.
     pub structure: DisplayStructure,
-    /// Three matrices: from the structure's frame of reference to the eye, from its own coordinates to that frame, and
-    /// from the eye to the picture.
+    /// Three matrices. The first leads from the structure's frame of reference to the eye. The second leads from the
+    /// structure's own coordinates to this frame. The third leads from the eye to the picture.
     pub(crate) matrices: [Mat4; 3],
-    /// Range of the list's vertices from the first to the last vertex that the structure's triangles use.
+    /// Range of the list's vertices from the first vertex to the last vertex of the structure's triangles.
     pub(crate) named: Range<usize>,
     pub(crate) vertices: OnceLock<Vertices>,
     pub(crate) touched: OnceLock<Touched>,
 }
 
-/// The transformed vertices of a structure, for the range [`named`](PlacedStructure::named).
+/// The transformed vertices of a structure, for the range [`PlacedStructure::named`] of the display list's vertices.
 #[derive(Debug)]
 pub(crate) struct Vertices {
     pub(crate) first: usize,
@@ -40,8 +40,8 @@ pub(crate) struct Vertices {
 
 /// Cache of a display list's recent views.
 ///
-/// All graphics processors draw the same views, so they share the transformed vertices. The cache shortens only the run
-/// time of the simulator, not simulated time.
+/// All graphics processors draw the same views, so they share the transformed vertices. The cache shortens the run time
+/// of the simulator, and does not change simulated time.
 #[derive(Debug)]
 pub struct RecentViews {
     views: Mutex<VecDeque<(ViewKey, Arc<[PlacedStructure]>)>>,
@@ -56,17 +56,18 @@ impl Default for RecentViews {
     }
 }
 
-/// A clone of the cache starts empty.
+/// A clone of the cache is empty at first.
 impl Clone for RecentViews {
     fn clone(&self) -> Self {
         Self::keeping(self.kept)
     }
 }
 
-/// Capacity of the cache: two eyes of two views. A slower processor may still work at the frame before the newest one.
+/// Capacity of the cache: two eyes of two views. A slower processor may still work on the frame before the newest
+/// frame.
 const RECENT: usize = 4;
 
-/// Cache key of a view. It contains everything that affects the placement of structures.
+/// Cache key of a view. The key contains all data that affect the placement of structures.
 #[derive(Debug, PartialEq)]
 pub(crate) struct ViewKey {
     pub(crate) eye: EyeView,

@@ -19,8 +19,8 @@ const UNMOVED: Mat4 = Mat4::IDENTITY;
 ///
 /// # Panics
 ///
-/// Panics if the view has no eye. Also panics if the list's structures have changed since its first placement, but its
-/// cache [`recent`](DisplayList::recent) has not been emptied.
+/// Panics if the view has no eye. Also panics if the list's structures have changed since its first placement, and the
+/// list's cache [`recent`](DisplayList::recent) was not emptied.
 #[must_use]
 pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);
@@ -30,7 +30,8 @@ pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Vie
     structures.map(|(i, (s, named))| place(list, s, named, model(view, i), eye, viewport)).collect()
 }
 
-/// Returns, for each structure, the range of vertices from the first to the last one that its triangles use.
+/// Returns a range of vertices for each structure. The range extends from the first vertex to the last vertex of the
+/// structure's triangles.
 fn named(list: &DisplayList) -> Vec<Range<usize>> {
     let of = |structure: &DisplayStructure| {
         let all = list.triangles[structure.triangles.clone()].iter().flatten();
@@ -59,7 +60,7 @@ fn model(view: &FrameView, structure: usize) -> Mat4 {
     view.edits.iter().rev().find(|edit| edit.structure as usize == structure).map_or(UNMOVED, |edit| edit.model)
 }
 
-/// Places one structure. A structure with a matrix that is not finite gets no transform and is not drawn.
+/// Places one structure. If a matrix is not finite, the structure gets no transform and is not drawn.
 fn place(
     list: &DisplayList,
     structure: &DisplayStructure,
@@ -94,7 +95,8 @@ fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
 }
 
 impl PlacedStructure {
-    /// Returns the light source for the colours of triangle corners, [`Light::NONE`] if the colours are precomputed.
+    /// Returns the light source for the colours of triangle corners. Returns [`Light::NONE`] if the colours are
+    /// precomputed.
     #[must_use]
     pub fn light_of_corners(&self, shading: Shading) -> &Light {
         if shading == Shading::Precomputed { &Light::NONE } else { &self.light }

@@ -7,15 +7,15 @@ use pxpl5_wire::{Body, NodeId, ViewNumber, Word};
 /// Sends the tracker's reports to one board, as often as tracker, link and ring permit (TR94).
 ///
 /// A message is sent for each report, as soon as the report has arrived and the previous message has been accepted. If
-/// several reports have arrived meanwhile, the newest is sent.
+/// several reports have arrived in the meantime, only the newest report is sent.
 ///
-/// The first message is sent at `first`; `None` sends no message. `next_report` returns the time at which the first
-/// report after a given time arrives, or `None` if there are no more reports. `message` makes the words of a message
-/// from its number and a time. The words use only reports that the host has received by that time.
+/// The first message is sent at `first`. If `first` is `None`, no message is sent. `next_report` returns the time at
+/// which the first report after a given time arrives, or `None` if there are no more reports. `message` makes the words
+/// of a message from its number and a time. The words use only reports that the host has received by that time.
 ///
 /// # Errors
 ///
-/// The function itself never returns an error; its return type is that of every program.
+/// The function never returns an error. Its return type is the return type of all programs.
 pub async fn send_as_tracked(
     gp: Gp,
     receiver: NodeId,
@@ -29,7 +29,8 @@ pub async fn send_as_tracked(
     while let Some(at) = due {
         gp.spend(at.since(gp.now())).await;
         let known = gp.now();
-        // The pictures that will show this view are not known yet, so SEND is marked by the message's own number.
+        // The pictures that will show this view are not determined yet, so the record of SEND has the number of the
+        // message.
         let marked_as = number.picture_taken_for();
         gp.begin(Stage::Send, marked_as, None);
         let sent = send(&gp, receiver, timing, message(number, known)).await;

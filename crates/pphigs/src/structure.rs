@@ -8,7 +8,7 @@ use std::ops::Range;
 pub enum ModelFrame {
     /// The room, in which the viewer moves.
     World,
-    /// The viewer's head; the structure moves with the head.
+    /// The viewer's head. The structure moves with the head.
     Head,
 }
 
@@ -21,6 +21,6 @@ pub struct DisplayStructure {
     pub spheres: Range<usize>,
     /// Frame of reference: the room or the viewer's head.
     pub frame: ModelFrame,
-    /// Culling mode of the structure's triangles. PHIGS+ sets it for each structure.
+    /// Culling mode of the structure's triangles. PHIGS+ sets this mode for each structure.
     pub culling: Culling,
 }

@@ -1,7 +1,7 @@
 //! TRANSFORM of six views from one eye position, such as the faces of a cube, as i860 code over the board's memory.
 //!
-//! Each primitive is transformed only for the views that it may touch. The code kernels/sort.s finds these views, and
-//! kernels/runs.s passes the primitives to the kernels. The rules of both are the project's own
+//! Each primitive is transformed only for the views that it can touch. The code kernels/sort.s finds these views, and
+//! kernels/runs.s passes the primitives to the kernels. This project made the rules for both codes
 //! (kernels/sort_rules.md).
 
 use crate::begin::PassStartWork;
@@ -18,14 +18,14 @@ use pxpl5_wire::Word;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
-/// Distance by which the sides of a view are moved outwards when the code finds the views of a primitive. It is a
-/// fraction of the projection's scale (rule 4).
+/// Margin around a view when the code finds the views of a primitive. The sides of the view are moved outwards by this
+/// fraction of the projection's scale (rule 4 of kernels/sort_rules.md).
 const MARGIN: f32 = 1.0 / 32.0;
 
 /// Work of the TRANSFORM of a share of primitives for six views from one eye position.
 #[derive(Clone, Copy, Debug)]
 pub struct CubeTransform<'a> {
-    /// TRANSFORM results of the views along +x, -x, +y, -y, +z and -z. The axes are those of the last view's eye
+    /// TRANSFORM results of the views along +x, -x, +y, -y, +z and -z. The axes are the axes of the last view's eye
     /// coordinates. All views have the same projection.
     pub passes: &'a [Arc<Pass>; MOST_VIEWS as usize],
     /// Bin context of all views, 0 or 1.
@@ -61,7 +61,7 @@ impl CubeTransform<'_> {
         let [.., ahead] = self.passes;
         let Some(kernel) = ahead.kernel(processor.version()) else { return Ok(None) };
         let eyes = self.passes.iter().map(|pass| pass.placed()).collect();
-        // The pass begins once for all six views, with the picture and structures of the last one.
+        // The pass begins once for all six views, with the picture and structures of the last view.
         let beginning = PassStartWork::new(ahead.share().list(), eyes, *ahead.picture()).for_structures(ahead.chosen());
         let start_span = beginning.by_code(timing, processor)?;
         let (sort_span, given) = self.sort(processor, kernel)?;
@@ -95,8 +95,8 @@ impl CubeTransform<'_> {
         pass.run_kernels(processor, kernel, needs, to, Some(marks))
     }
 
-    /// Writes a mark word for every primitive of the drawn structures: bit `n` is set if view `n` may contain the
-    /// primitive. Returns the time, and the number of primitives of each view.
+    /// Writes a mark word for every primitive of the drawn structures. Bit `n` of the word is set if view `n` can
+    /// contain the primitive. Returns the time, and the number of primitives of each view.
     fn sort(&self, processor: &mut Processor, kernel: Kernel) -> Result<(Span, Vec<PrimitiveCounts>), ProcessorFault> {
         let [.., ahead] = self.passes;
         let [triangles, spheres, _] = marks(ahead);
@@ -124,8 +124,9 @@ impl CubeTransform<'_> {
     }
 }
 
-/// Returns three addresses: the mark words of triangles (after the display list), those of spheres, and the end of the
-/// mark words.
+/// Returns three addresses of mark words, which state for each primitive the views that can contain the primitive. The
+/// mark words of triangles begin at the first address (after the display list), and the mark words of spheres at the
+/// second. The third address is the end of the mark words.
 fn marks(pass: &Pass) -> [u32; 3] {
     let share = pass.share();
     let triangles = share.end_of_list();
@@ -133,10 +134,11 @@ fn marks(pass: &Pass) -> [u32; 3] {
     [triangles, spheres, spheres + 4 * share.all_spheres().len() as u32]
 }
 
-/// Primitives of one structure whose views are to be found.
+/// The primitives of one structure, and the addresses that the code needs to find the views of each primitive.
 ///
 /// `held` is the range of these primitives' indices among all primitives that the GP holds. `first` is the address of
-/// the GP's first primitive, `bytes` the size of one primitive, and `marks` the address of the first mark word.
+/// the GP's first primitive, `bytes` the size of one primitive, and `marks` the address of the first mark word (the
+/// bits of the views that can contain a primitive).
 struct ViewSort {
     held: Range<usize>,
     first: u32,

@@ -41,19 +41,19 @@ const HEADER_WORDS: usize = 4;
 /// Largest number of edits that fit in one message together with the transforms of two eyes.
 pub const MAX_EDITS: usize = (MAX_MESSAGE_WORDS as usize - 8 - HEADER_WORDS - 2 * EYE_WORDS) / EDIT_WORDS;
 
-/// The error for a message whose length does not match its header.
+/// An error in a message: its length does not match its header.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("view: expected {expected} words, found {found}")]
 pub struct ViewWordsError {
-    /// Number of words according to the header, with the header's own words.
+    /// Number of words according to the header, including the words of the header.
     pub expected: usize,
     /// Number of words found.
     pub found: usize,
 }
 
 impl FrameView {
-    /// Encodes the view as words: number (two words), count of eyes, count of edits, then the matrices column by
-    /// column.
+    /// Encodes the view as words: number of the view (two words), number of eyes, number of edits, then the matrices
+    /// column by column.
     #[must_use]
     pub fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
@@ -113,7 +113,8 @@ fn eye(words: &[Word]) -> EyeView {
     EyeView { world_to_eye, head_to_eye, projection }
 }
 
-/// Returns `left * right`, computed in double precision and rounded once, so that it is the same on every host.
+/// Returns `left * right`. The product is computed in double precision and rounded once, so that it is the same on
+/// every host.
 pub(crate) fn product(left: &Mat4, right: &Mat4) -> Mat4 {
     let left: DMat4 = left.as_dmat4();
     let right: DMat4 = right.as_dmat4();

@@ -3,7 +3,7 @@
 //!
 //! [`Pass::keep`] stores the result of a TRANSFORM in a part of memory: commands, and the bounding box of each command.
 //! [`WindowSearchWork`] finds the primitives in each requested window, and lists the messages that draw the window. The
-//! code is kernels/windows.s. This project made the rules for the code (kernels/windows_rules.md). By the timing table
+//! code is kernels/windows.s. This project made the rules for the code (kernels/windows_rules.md). In the timing table,
 //! each primitive found in a window takes `bin_entry_ns`.
 
 use crate::begin::PassStartWork;
@@ -38,7 +38,7 @@ const LINE: u32 = 32;
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// One of several equal parts of the memory after a display list. It holds the result of one pass.
+/// One of several equal parts of the memory after a display list. The part holds the result of one pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryPart {
     number: u8,
@@ -49,8 +49,8 @@ impl MemoryPart {
     /// The whole memory after the display list.
     pub const WHOLE: Self = Self { number: 0, of: 1 };
 
-    /// Returns part `number` of `of` parts. `number` is taken modulo `of`; an `of` outside 1 to 16 is set to the
-    /// nearest limit.
+    /// Returns part `number` of `of` parts. `number` is taken modulo `of`. If `of` is outside the range from 1 to 16,
+    /// the nearest limit is used.
     #[must_use]
     pub const fn of(number: usize, of: u8) -> Self {
         let of = if of == 0 { 1 } else { of };
@@ -87,12 +87,13 @@ impl MemoryPart {
     }
 }
 
-/// Returns the address of the lists of primitives that a search finds in its windows.
+/// Returns the address of the lists of primitives that a search finds in its windows (rectangles of the screen).
 fn entries(processor: &Processor) -> u32 {
     processor.memory_bytes().saturating_sub(ENTRY_BYTES)
 }
 
-/// Consecutive commands of one kind: address of the first, their number, and the address of their bounding boxes.
+/// Consecutive commands of one kind: the address of the first command, the number of commands, and the address of their
+/// bounding boxes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct KeptCommands {
     first: u32,
@@ -100,7 +101,7 @@ struct KeptCommands {
     boxes: u32,
 }
 
-/// Commands of triangles and of spheres that a pass has left in a part of memory.
+/// Commands of triangles and of spheres that a pass has stored in a part of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Kept([KeptCommands; 2]);
 
@@ -110,7 +111,8 @@ impl Kept {
         processor.write(part.note(), words.as_flattened())
     }
 
-    /// Reads which commands a pass has left in a part of memory. Returns `None` if no pass has been stored there.
+    /// Reads the records of the commands that a pass has stored in a part of memory. Returns `None` if no pass was
+    /// stored there.
     fn noted(processor: &Processor, part: MemoryPart) -> Result<Option<Self>, ProcessorFault> {
         let words = processor.read(part.note(), 6)?;
         let mut kinds = words.as_chunks::<3>().0.iter().map(|[first, count, boxes]| KeptCommands {
@@ -162,7 +164,8 @@ impl Pass {
         let first = self.room(processor, kernel, part)?;
         let (of_triangles, next) = triangles(processor, first)?;
         let (of_spheres, end) = self.run_spheres(processor, sphere_kernel(kernel), next, None)?;
-        // The distance between two continuations gives the number of boxes, so of commands.
+        // The distance between the two addresses of boxes gives the number of boxes, which equals the number of
+        // commands.
         let commands = |from: Next, to: Next| KeptCommands {
             first: from.command,
             count: (to.table - from.table) / BOX_BYTES,
@@ -184,12 +187,13 @@ impl Pass {
     }
 }
 
-/// Work of searching a stored pass for the primitives in the given windows.
+/// Work of searching a stored pass (the result of a TRANSFORM in a part of memory) for the primitives in the given
+/// windows (rectangles of the screen).
 #[derive(Clone, Copy, Debug)]
 pub struct WindowSearchWork<'a> {
-    /// Part of memory with the stored pass.
+    /// Part of memory that holds the result of the TRANSFORM to search.
     pub part: MemoryPart,
-    /// Frame lines and regions of the picture that the pass was stored for.
+    /// Frame lines and regions of the picture for which [`Pass::keep`] stored the pass.
     pub viewport: Viewport,
     /// Division of the picture into windows.
     pub grid: RegionGrid,
@@ -209,7 +213,7 @@ impl Work for WindowSearchWork<'_> {
     }
 }
 
-/// Result of a search: its time, and the number of listed messages.
+/// Result of a search, with its time and the numbers of listed messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SearchOutput {
     /// Simulated time of all steps together.
@@ -225,7 +229,7 @@ impl SearchOutput {
     ///
     /// # Errors
     ///
-    /// [`ProcessorFault::Unmapped`] on a board that has not run the code.
+    /// Returns [`ProcessorFault::Unmapped`] on a board that has not run the code.
     pub fn listed(&self, processor: &Processor) -> Result<Vec<MessagePieces>, ProcessorFault> {
         listed(processor, self.messages.iter().sum())
     }
@@ -236,7 +240,7 @@ impl WindowSearchWork<'_> {
         self.counts.iter().map(|counts| counts.total()).sum()
     }
 
-    /// Runs the code on a board that holds the stored pass. Returns `None` if no pass is stored.
+    /// Runs the code on a board that holds a pass stored by [`Pass::keep`]. Returns `None` if no pass is stored.
     ///
     /// # Errors
     ///
@@ -245,7 +249,8 @@ impl WindowSearchWork<'_> {
         let Some(kept) = Kept::noted(processor, self.part)? else { return Ok(None) };
         self.check_room(processor)?;
         let mut output = SearchOutput { span: Span::ZERO, handoff_span: Span::ZERO, messages: Vec::new() };
-        // A window across regions may find primitives that touch none of its regions, so the regions are tested too.
+        // In a window across regions, the search can find primitives that touch none of the window's regions. The
+        // search therefore also tests the regions.
         if self.lies_across_regions() {
             output.span +=
                 make_windows(processor, self.viewport.grid(), &self.viewport, &self.all_regions(), REGION_WINDOWS)?;
@@ -265,8 +270,8 @@ impl WindowSearchWork<'_> {
         Ok(Some(output))
     }
 
-    /// Checks that the found primitives and the messages fit. They use the memory of a region's messages in
-    /// [`crate::BinHandoffWork`].
+    /// Checks that the found primitives and the messages fit into memory. They use the memory that
+    /// [`crate::BinHandoffWork`] uses for a region's messages.
     fn check_room(&self, processor: &Processor) -> Result<(), ProcessorFault> {
         let entries = self.entries() + 2 * self.windows.len() as u32;
         let fits =
@@ -293,15 +298,15 @@ impl WindowSearchWork<'_> {
         (0..self.viewport.grid().regions() as u16).map(RegionId).collect()
     }
 
-    /// Searches the bounding boxes of all stored primitives. The length of each window's list is known, so each list
-    /// begins where the one before it ends.
+    /// Searches the bounding boxes of all stored primitives for primitives in the windows. The length of each window's
+    /// list is known in advance, so each list begins at the end of the previous list.
     fn search(
         &self,
         processor: &mut Processor,
         Kept([triangles, spheres]): &Kept,
         counts: &[PrimitiveCounts],
     ) -> Result<Span, ProcessorFault> {
-        // Reserve a list for each window, as long as its known count.
+        // Reserve a list for each window, with the known number of entries.
         let mut place = entries(processor);
         let mut lists = vec![spheres.first];
         for counts in counts {
@@ -316,7 +321,7 @@ impl WindowSearchWork<'_> {
         };
         let of_lines = line_registers(&self.viewport, 24);
         let mut span = Span::ZERO;
-        // One call for all triangles, one for all spheres.
+        // One call searches all triangles, and one call searches all spheres.
         for (entry, KeptCommands { first, count, boxes }) in [("triangles", *triangles), ("spheres", *spheres)] {
             if count == 0 {
                 continue;
@@ -330,13 +335,14 @@ impl WindowSearchWork<'_> {
     }
 }
 
-/// Returns two registers with their values: the frame line of row 0, and the step between rows minus one, in lines.
+/// Returns two registers with their values. The first value is the frame line of row 0. The second value is the
+/// distance between rows, in lines, minus one.
 fn line_registers(viewport: &Viewport, first: usize) -> [(usize, Word); 2] {
     [(first, viewport.first_line()), (first + 1, viewport.line_step() - 1)]
 }
 
-/// Runs the code that computes the limits of the windows. Each window is a cell of `grid`, cut at the edges of the
-/// picture.
+/// Runs the code that computes the limits of the windows. Each window is a cell of `grid`. Cells at the edges of the
+/// picture are cut off.
 fn make_windows(
     processor: &mut Processor,
     grid: RegionGrid,
@@ -358,7 +364,8 @@ fn make_windows(
     processor.call(&PROGRAM, "windows", &registers, BUDGET + BUDGET_OF_ENTRY * windows.len() as u64)
 }
 
-/// Runs the kernel that lists the messages of one window. In memory, this list follows the lists of earlier windows.
+/// Runs the kernel that lists the messages of one window. In memory, the list of messages follows the lists of earlier
+/// windows.
 fn hand_over(
     processor: &mut Processor,
     window: u32,
@@ -380,7 +387,7 @@ pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
 }
 
-/// The program that searches windows and lists their messages. Every message has room for the copy command, like the
+/// The program that searches windows and lists their messages. Every message has room for the copy command, as in the
 /// messages that the simulator makes without code.
 static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);

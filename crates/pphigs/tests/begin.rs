@@ -1,5 +1,5 @@
-//! Tests of the i860 code that begins a pass and applies edits. The parameter blocks and matrices must equal those of
-//! the native firmware.
+//! Tests of the i860 code that begins a pass and applies edits. The parameter blocks and matrices must equal the blocks
+//! and matrices of the native firmware.
 
 use glam::{Mat4, Quat, Vec3};
 use pphigs::{
@@ -96,7 +96,7 @@ fn the_code_fills_parameter_blocks_as_the_native_firmware_does() {
         let kernel = Kernel { culls, ..kernel };
         for place in place_all(&list, &view, 0, viewport) {
             let expected = native(kernel, &place);
-            // First overwrite the part that depends on a view.
+            // First, overwrite the part of the block that depends on a view.
             let mut spoilt = expected;
             [0..19, 68..71, 72..75, 76..79, 80..83, 84..86, 118..120]
                 .into_iter()
@@ -145,7 +145,7 @@ fn edits_replace_the_matrices_of_their_structures_and_no_others() {
     let mut numbers = Numbers(SplitMix64::new(32));
     let mut processor = board();
     let mut models = vec![[0; 16]; 40];
-    // More edits than fit in one message, and far more than the table can hold.
+    // Some counts exceed one message, and the largest count exceeds the table.
     for count in [0, 1, 2, 17, 54, 55, 200, 500] {
         let edits: Vec<_> =
             (0..count).map(|n| ModelEdit { structure: (7 * n + count) as u32 % 40, model: numbers.model(n) }).collect();

@@ -1,5 +1,5 @@
-//! Tests of TRANSFORM as i860 code on a board: the words must equal those of the native firmware. Also tests of its
-//! time.
+//! Tests of TRANSFORM as i860 code on a board. The words must equal the words of the native firmware. Other tests check
+//! the time of the code.
 
 use glam::{Mat4, Vec3};
 use pphigs::{
@@ -90,7 +90,7 @@ fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     words
 }
 
-/// Returns the words of a region's primitives that the i860 code has left in memory.
+/// Returns the words of a region's primitives that the i860 code has written to memory.
 fn of_code(processor: &Processor, output: &KernelOutput, region: usize, command_words: usize) -> Vec<Word> {
     let bin = &output.bins[region];
     let entries = processor.read(bin.start, (bin.end - bin.start) as usize / 4).expect("in memory");
@@ -102,7 +102,7 @@ fn the_words_in_memory_are_those_of_the_native_firmware() {
     assert_native_words(list(300));
 }
 
-/// Tests two structures with different matrices. Both drop back faces.
+/// Tests two structures with different matrices. Both structures leave out back faces.
 #[test]
 fn code_leaves_out_what_faces_away() {
     let mut list = Arc::unwrap_or_clone(list(300));
@@ -124,7 +124,8 @@ fn assert_native_words(list: Arc<DisplayList>) {
                     for region in 0..viewport.grid().regions() as u16 {
                         let expected = native(&pass, RegionId(region));
                         let found = of_code(&processor, &made, usize::from(region), command_words);
-                        // A context of several begins with a select; this layout has only one context.
+                        // With several contexts, the words would begin with a selection. This layout has only one
+                        // context.
                         assert!(found == expected, "region {region}, {version:?}, {shading:?}, {viewport:?}");
                     }
                 }
@@ -299,11 +300,11 @@ fn a_context_larger_than_the_memory_is_refused_and_does_not_reach_the_code() {
     }
 }
 
-/// Transforms both structures clump by clump; one of them is edited. The words of either eye must be the native words,
-/// in the order of the display list.
+/// Transforms both structures clump by clump. One structure is edited. The words of either eye must be the native
+/// words, in the order of the display list.
 ///
-/// With compiled code, one pass for both eyes takes less time than two passes. With scheduled code it does not, since
-/// this code does not stay in the cache.
+/// With compiled code, one pass for both eyes takes less time than two passes. With scheduled code, one pass can take
+/// more time, because this code does not stay in the cache.
 #[test]
 fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
     let share = Share::new(list(90), 0, 1);
@@ -330,7 +331,7 @@ fn one_pass_for_both_eyes_gives_the_native_words_of_each() {
     }
 }
 
-/// If the left eye cannot draw a structure, the structure must have commands of the right eye only.
+/// If the left eye cannot draw a structure, the structure must have commands only for the right eye.
 #[test]
 fn a_structure_that_one_eye_cannot_draw_is_drawn_for_the_other() {
     let mut view = view();

@@ -1,4 +1,4 @@
-//! Tests of the handover of a bin by code: the messages and words must equal those of the native firmware.
+//! Tests of the code that sends a bin. The messages and words must equal the messages and words of the native firmware.
 
 use glam::{Mat4, Vec3};
 use pphigs::{
@@ -22,7 +22,7 @@ fn vector(numbers: &mut SplitMix64, size: f32) -> Vec3 {
     Vec3::new(numbers.unit() - 0.5, numbers.unit() - 0.5, numbers.unit() - 0.5) * (2.0 * size)
 }
 
-/// Returns small triangles and spheres in front of the eye. Most of them are near the middle, so that some bins fill
+/// Returns small triangles and spheres in front of the eye. Most primitives are near the middle, so that some bins fill
 /// several messages.
 fn share(triangles: u32, spheres: usize) -> Share {
     let mut numbers = SplitMix64::new(3);
@@ -71,7 +71,7 @@ fn envelopes(region: RegionId) -> [RegionEnvelope; 4] {
     [nothing, begin, end, RegionEnvelope { begin: true, ..end }]
 }
 
-/// Compares the messages of a bin that code has filled with the native messages. Returns their number.
+/// Compares the messages of a bin that code has filled with the native messages. Returns the number of messages.
 fn compare(
     processor: &mut Processor,
     pass: &Arc<Pass>,
@@ -113,7 +113,7 @@ fn pieces_hold_the_words_of_the_native_firmwares_messages() {
             for (context, pass) in (0..).zip(&passes) {
                 pass.run_code(&mut processor, context).expect("it returns").expect("it has a kernel");
             }
-            // Tokens of both contexts arrive when both bins are full.
+            // Tokens of both contexts arrive while both bins are full.
             let mut most = 0;
             for (region, (context, pass)) in
                 (0..20).map(RegionId).flat_map(|r| (0..).zip(&passes).map(move |of| (r, of)))
@@ -128,8 +128,8 @@ fn pieces_hold_the_words_of_the_native_firmwares_messages() {
     }
 }
 
-/// The list of pieces has room for 44,236 entries of a bin. A board of 8 MB never has so many entries, but a larger
-/// board may.
+/// The list of pieces has room for 44,236 entries of a bin. A board with 8 MB never has so many entries, but a board
+/// with more memory can.
 #[test]
 fn a_bin_of_more_entries_than_the_list_of_pieces_holds_is_a_fault() {
     let triangles: usize = 44_300;

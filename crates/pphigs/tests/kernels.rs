@@ -55,8 +55,8 @@ fn assert_same_output(found: &Output, expected: &Output, kernel: Kernel) {
     assert_eq!(found.commands.len(), expected.commands.len());
 }
 
-/// Returns small to large strips of 1 to 100 triangles. Some strips are longer than a batch, and one is near the near
-/// and far planes.
+/// Returns small to large strips of 1 to 100 triangles. Some strips are longer than a batch, and one strip is close to
+/// the near and far planes.
 fn strips_of_all_sizes() -> Vec<Strip> {
     let lengths: Vec<usize> = (1..60).chain([1, 2, 74, 75, 76, 77, 78, 79, 151, 152, 153, 400]).collect();
     [0.12, 0.8, 6.0].into_iter().zip(5..).flat_map(|(size, seed)| strips(&lengths, size, seed)).collect()
@@ -129,8 +129,8 @@ fn kernels_that_cull_give_the_native_words_and_bins() {
     }
 }
 
-/// Returns triangles all around the eye, under mirroring and other matrices. Some are far outside the picture, some
-/// cross several planes.
+/// Returns triangles all around the eye, under mirroring and other matrices. Some triangles are far outside the
+/// picture, and some cross several planes.
 ///
 /// Some have a corner on a plane of the guard band, as exactly as single precision permits.
 fn around_the_eye(seed: u64, mirrored: bool, viewport: Viewport) -> (ViewTransform, Vec<Triangle>) {
@@ -142,14 +142,14 @@ fn around_the_eye(seed: u64, mirrored: bool, viewport: Viewport) -> (ViewTransfo
     }
     let to_world = (view.projection * view.model_view).inverse();
     for (n, triangle) in all.iter_mut().enumerate() {
-        // Sizes over four powers of ten, mostly in front of the eye.
+        // The sizes cover four powers of ten. Most triangles are in front of the eye.
         let eye = view.model_view.inverse().transform_point3(Vec3::ZERO);
         let ahead = view.model_view.inverse().transform_vector3(Vec3::new(numbers.unit() - 0.5, 0.0, -1.0));
         let size = 10.0_f32.powf(4.0 * numbers.unit() - 1.0);
         let centre = eye + ahead * numbers.unit() * 30.0;
         triangle.positions = triangle.positions.map(|p| centre + (p - triangle.positions[0] * 0.5) * size);
         if n % 3 == 0 {
-            // 4,095 px from the middle of pixel 0, in each direction of the picture.
+            // The corner is 4,095 px from the middle of pixel 0, in each direction of the picture.
             let w = 0.5 + 30.0 * numbers.unit();
             let [width, height] = [viewport.grid().width, viewport.frame_lines()].map(|size| size as f32 / 2.0);
             let [x, y] = [(4095.0 - width) / width, (4095.0 - height) / height];
@@ -161,7 +161,7 @@ fn around_the_eye(seed: u64, mirrored: bool, viewport: Viewport) -> (ViewTransfo
             triangle.positions[n / 3 % 3] = world.truncate() / world.w;
         }
         if n % 4 == 1 {
-            // Nearly edge-on: slivers with steep planes.
+            // Triangles that are seen nearly edge-on are slivers with steep planes.
             let [a, b, _] = triangle.positions.map(|p| p - eye);
             triangle.positions[2] = eye + a * (2.0 * numbers.unit() - 0.5) + b * numbers.unit();
         }
@@ -198,7 +198,7 @@ fn the_clipper_gives_the_native_words_and_bins_of_triangles_all_around_the_eye()
     assert!(flattened > 0, "steep planes are among them");
 }
 
-/// Returns two eyes some distance apart that look in slightly different directions.
+/// Returns two eyes with some distance between them and slightly different view directions.
 fn two_eyes(left: &ViewTransform) -> [ViewTransform; 2] {
     let aside = Mat4::from_translation(Vec3::new(-0.4, 0.01, 0.0)) * Mat4::from_rotation_y(0.04);
     [*left, ViewTransform { model_view: aside * left.model_view, projection: left.projection }]
@@ -220,7 +220,7 @@ fn assert_same_words_for_both_eyes(kernel: Kernel, left: &ViewTransform, viewpor
 }
 
 /// In this test each eye has a single bin for all regions. The kernels for both eyes also make commands for triangles
-/// that touch no region; the native code drops such triangles. The test therefore uses only triangles that touch a
+/// that touch no region. The native code leaves out such triangles. The test therefore uses only triangles that touch a
 /// region.
 #[test]
 fn the_kernels_of_both_eyes_give_the_native_words_of_each() {
@@ -253,15 +253,15 @@ fn seen_by_both(kernel: Kernel, left: &ViewTransform, viewport: Viewport, input:
     let is_seen = |triangle: &&Triangle| {
         views.iter().all(|view| {
             let (_, stats) = native(kernel, view, viewport, std::slice::from_ref(*triangle));
-            // As above, only the clipper flattens steep planes.
+            // Only the clipper flattens steep planes.
             stats.untouched == 0 && (stats.flattened_planes == 0 || stats.clipped > 0)
         })
     };
     input.iter().filter(is_seen).copied().collect()
 }
 
-/// Returns frames that are not NTSC frames. They are faces of a cube from one region to 121 regions, the largest
-/// number, and two frames with partial regions.
+/// Returns frames that are not NTSC frames. The frames are faces of a cube with one region to 121 regions (the largest
+/// number), and two frames with partial regions.
 fn other_frames() -> impl Iterator<Item = Viewport> {
     let sizes = [(128, 128), (256, 256), (512, 512), (1408, 1408), (2048, 1024), (700, 500), (1280, 1000)];
     sizes.into_iter().map(|(width, height)| {

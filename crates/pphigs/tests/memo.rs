@@ -23,7 +23,7 @@ fn assert_same_kernel(freezes: FreezeRules, schedule: Schedule) {
     assert!(memoised.output() == counted.output() && memoised.cpu.state == counted.cpu.state);
 }
 
-/// Returns all rules that freeze the processor. One of them takes so many clocks that its use is noticeable.
+/// Returns all rules that freeze the processor. The rule `row` takes so many clocks that its use is noticeable.
 fn slower(row: &FreezeRow) -> FreezeRules {
     let mut rules = FreezeRules::all();
     rules.clocks.set(row.clocks.name, 10.into()).expect("the table has all rows");

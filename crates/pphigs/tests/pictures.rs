@@ -1,4 +1,4 @@
-//! Tests of the ideal renderer: its pictures must have shapes and colours that can be computed by hand.
+//! Tests of the ideal renderer. The expected shapes and colours of the pictures are computed by hand.
 
 use glam::{Mat4, Vec3};
 use image::Rgb;
@@ -12,8 +12,8 @@ const RED: [u8; 3] = [200, 0, 0];
 const GREEN: [u8; 3] = [0, 200, 0];
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
-/// Returns a display list with one unit for each pixel. x points right, y points up from the picture's lower border,
-/// and the eye looks along -z, from depth 0 to 100.
+/// Returns a display list with one unit for each pixel. x increases to the right, and y increases upwards from the
+/// picture's lower border. The eye looks along -z, from depth 0 to 100.
 fn list() -> DisplayList {
     DisplayList {
         structures: vec![DisplayStructure {
@@ -107,7 +107,7 @@ fn a_tie_may_show_either_colour_and_no_other() {
     let mut list = list();
     square(&mut list, [0.0, 8.0], [0.0, 8.0], 10.0, RED);
     square(&mut list, [4.0, 12.0], [0.0, 8.0], 10.0, GREEN);
-    // Behind both squares, so there is no tie.
+    // This square is behind both other squares, so its pixels have no tie.
     square(&mut list, [0.0, 12.0], [0.0, 8.0], 30.0, [9; 3]);
     let picture = drawn(&list);
     let ties: Vec<_> = picture.ties().map(|tie| [tie.x, tie.y]).collect();
@@ -132,7 +132,7 @@ fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
         colour: RED,
     });
     list.structures[0].spheres = 0..1;
-    // Cuts the sphere 18 units before its middle: a disc of radius 24 is in front of the square.
+    // The square cuts the sphere 18 units before its middle. A disc of radius 24 is in front of the square.
     square(&mut list, [100.0, 300.0], [50.0, 150.0], 32.0, GREEN);
     let picture = drawn(&list);
     for (x, y, Rgb(colour)) in picture.image().enumerate_pixels() {
@@ -151,8 +151,7 @@ fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
 fn phong_follows_the_cosine() {
     for (turn_deg, light, highlight) in [(0.0_f32, 1.0_f32, 96.0), (60.0, 0.5, 0.0)] {
         let mut list = DisplayList { ambient: 0.25, diffuse: 0.5, ..list() };
-        // Far enough from the origin to be seen from the front there too, since two-sided light depends on the visible
-        // side.
+        // Two-sided light depends on the visible side, so the square is far enough from the origin to show its front.
         square(&mut list, [0.0, 8.0], [0.0, 8.0], 90.0, [160, 80, 0]);
         let turn = turn_deg.to_radians();
         list.normals.fill(Vec3::new(turn.sin(), 0.0, turn.cos()));

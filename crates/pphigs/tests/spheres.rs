@@ -1,4 +1,4 @@
-//! Tests of spheres as i860 code on a board: the words and bins must equal those of the native firmware.
+//! Tests of spheres as i860 code on a board. The words and bins must equal the words and bins of the native firmware.
 
 use glam::{Mat4, Quat, Vec3};
 use pphigs::{
@@ -50,8 +50,8 @@ impl Numbers {
         }
     }
 
-    /// Returns a sphere of random size, from tiny to larger than the picture. Most spheres are in front of the eye;
-    /// some are behind it, around it, or across its near or far plane.
+    /// Returns a sphere of random size, from tiny to larger than the picture. Most spheres are in front of the eye.
+    /// Some spheres are behind the eye, around the eye, or across the near or far plane.
     fn sphere(&mut self) -> WorldSphere {
         let radius = 10.0_f32.powf(1.5 * self.next() - 1.0);
         let along = Vec3::new(0.5 * self.next(), 0.4 * self.next(), -1.0);

@@ -1,5 +1,5 @@
-//! Tests of the i860 code for six views around an eye. Each view's words and bins must equal those of the native
-//! firmware. Few primitives may be transformed for a view that does not contain them.
+//! Tests of the i860 code for six views around an eye. Each view's words and bins must equal the words and bins of the
+//! native firmware. The number of primitives that are transformed for a view outside which they lie must be small.
 
 use glam::{Mat4, Quat, Vec3, Vec4};
 use pphigs::{
@@ -33,7 +33,8 @@ impl Numbers {
     }
 }
 
-/// Returns triangles and spheres in five structures, all around the origin. Most of them look small from the origin.
+/// Returns triangles and spheres in five structures, all around the origin. Most primitives appear small from the
+/// origin.
 ///
 /// One structure is fixed to the head, one is not drawn, and one has back faces that are dropped.
 fn list(numbers: &mut Numbers, triangles: u32, spheres: usize) -> Arc<DisplayList> {
@@ -79,7 +80,7 @@ fn views(numbers: &mut Numbers, scale: f32) -> FrameView {
         Vec4::new(0.0, 0.0, deep, -1.0),
         Vec4::new(0.0, 0.0, near * deep, 0.0),
     );
-    // Rows of a rotation: to the right, up, and opposite to the view direction.
+    // The rows of a rotation are the directions to the right, up, and opposite to the view direction.
     let turns = [
         [Vec3::Z, Vec3::Y, Vec3::NEG_X],
         [Vec3::NEG_Z, Vec3::Y, Vec3::X],
@@ -134,7 +135,7 @@ fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     words
 }
 
-/// Returns the words of a region's primitives as the code hands them over.
+/// Returns the words of a region's primitives as the code sends them.
 fn handed_over(processor: &mut Processor, pass: &Pass, context: u8, view: u8, region: RegionId) -> Vec<Word> {
     let handing = BinHandoffWork { pass, context, view, region, envelope: RegionEnvelope::default() };
     handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
@@ -155,7 +156,7 @@ fn each_view_gets_the_words_and_bins_of_the_native_firmware() {
             let mut processor = board(version, &share);
             let shading = if n % 2 == 0 { Shading::Phong } else { Shading::Gouraud };
             let passes = passes(&share, &view, shading, face(texels));
-            // Both contexts are in use at once; the second one has another eye.
+            // Both contexts are in use at the same time, and the second context has another eye position.
             let other = self::passes(&share, &views(&mut numbers, scale), shading, face(texels));
             let made = run(&mut processor, &passes, 0);
             run(&mut processor, &other, 1);
@@ -176,8 +177,8 @@ fn each_view_gets_the_words_and_bins_of_the_native_firmware() {
     }
 }
 
-/// If a primitive is transformed for a view that does not contain it, it must be within the margin, large, or a back
-/// face.
+/// If a view does not contain a primitive, the primitive must not be transformed for this view. Exceptions are
+/// primitives within the margin, large primitives, and back faces.
 #[test]
 fn few_primitives_are_given_to_a_view_that_does_not_see_them() {
     let mut numbers = Numbers(SplitMix64::new(52));

@@ -1,13 +1,13 @@
-//! TRANSFORM and RENDER of Slats on one GP, computed for several machine configurations at once.
+//! TRANSFORM and RENDER of Slats on one GP, computed for several machine configurations together.
 
 use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
-/// Computes TRANSFORM and RENDER of all clumps of a field.
+/// Computes TRANSFORM and RENDER of all clumps (groups of triangles) of a field.
 ///
-/// Returns two times for the last clump: the time at which it was accepted, and the time at which the processor had
-/// handed it over for sending.
+/// Returns two times of the last clump: when the clump was accepted, and when the processor had handed the clump over
+/// for sending.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],
@@ -64,27 +64,28 @@ impl<const N: usize> MessageCosts<N> {
         }
     }
 
-    /// Returns the message that sends a region's part of a clump.
+    /// Returns the message that sends a region's part of a clump (group of triangles).
     #[inline(always)]
     fn commands(&self, head: Costs<N>, triangles: f64, each: PerTriangle) -> Commands<N> {
         Commands::new(&self.fifos, &head, triangles * each.entries / 10.0, &self.command)
     }
 }
 
-/// A clump of triangles, and its message to each region. The message selects the region and draws triangles. In the
-/// field's first clump it also clears the region.
+/// A clump (group of triangles), and the message that a renderer receives for each region. The message selects the
+/// region and draws the triangles. In the field's first clump, the message also clears the region.
 struct Clump<const N: usize> {
     transform: Times<N>,
     message: Commands<N>,
-    /// Time until a renderer's FIFO has [room](Commands::room_behind) for a message behind a message of the previous
-    /// clump.
+    /// Time until a renderer's FIFO has [room](Commands::room_behind) for a message that follows a message of the
+    /// previous clump (group of triangles).
     behind_last: Times<N>,
-    /// Time until a renderer's FIFO has room for a message behind another message of the same clump.
+    /// Time until a renderer's FIFO has room for a message that follows another message of the same clump (group of
+    /// triangles).
     behind_itself: Times<N>,
 }
 
 impl<const N: usize> Clump<N> {
-    /// Returns the first clump of a field.
+    /// Returns the first clump (group of triangles) of a field.
     #[inline(always)]
     fn first(models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select + sending.clear, triangles, each);
@@ -93,7 +94,7 @@ impl<const N: usize> Clump<N> {
         Self { transform, message, behind_last: Times::all(f64::NEG_INFINITY), behind_itself }
     }
 
-    /// Returns the clump of `triangles` triangles that follows this one.
+    /// Returns the clump (group) of `triangles` triangles that is sent after this clump.
     #[inline(always)]
     fn next(&self, models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select, triangles, each);
@@ -103,13 +104,13 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// Times of the clumps that are being sent.
+/// Times of the clumps (groups of triangles) that are being sent.
 struct Chain<const N: usize> {
     /// Time at which the processor has finished its latest work.
     cpu: Times<N>,
-    /// Time at which the last message of the latest clump was accepted.
+    /// Time at which the last message of the latest clump (group of triangles) was accepted.
     accepted: Times<N>,
-    /// Time at which every renderer has accepted its first message of the latest clump.
+    /// Time at which every renderer has accepted its first message of the latest clump (group of triangles).
     draining: Times<N>,
 }
 
@@ -118,7 +119,7 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// Sends the messages of one clump. The GP's port sends on several channels at a time.
+    /// Sends the messages of one clump (group of triangles). The GP's port sends on several channels at a time.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &MessageCosts<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);
@@ -159,8 +160,8 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Records the time from which the earliest channel is free again, and sorts it among the times of the other
-    /// channels.
+    /// Replaces the first time by `free`, the time from which this channel is free again, and restores the ascending
+    /// order of the times.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {
         let mut here = free;

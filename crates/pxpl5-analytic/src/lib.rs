@@ -1,16 +1,16 @@
-//! The analytic level of the model. It computes the times of Slats and of Rendering Control by formulas, without
-//! simulation. Such a *closed form* is a recurrence over clumps, regions and pictures.
+//! The analytic level of the model. This crate computes the times of Slats and of Rendering Control by formulas,
+//! without simulation. Such a *closed form* is a recurrence over clumps (groups of triangles), regions and pictures.
 //!
 //! ```text
 //!   MachineConfig + Load --> SlatsModel::field  --> times of one field   (clumps x regions)
 //!                        --> StereoModel::frames --> times of a frame     (pictures x regions)
 //! ```
 //!
-//! The closed forms have no events, programs or pixels. They take a few hundred additions and maxima for each
-//! configuration, so a sweep over many thousand configurations takes seconds. They follow these rules of the boards:
+//! The closed forms have no events, programs or pixels. A configuration takes a few hundred additions and maxima, so a
+//! sweep over many thousand configurations takes seconds. The formulas follow these rules of the boards:
 //!
 //! - The messages of a clump leave in order. A renderer's full input FIFO delays a message.
-//! - A renderer executes commands in order. While it copies a region, it executes no other command.
+//! - A renderer executes commands in order. While a renderer copies a region, it executes no other command.
 //! - A frame-buffer port receives one region at a time, in order of arrival.
 //!
 //! For Slats on several GPs, the model processes each message in the order in which the ring grants channels
@@ -20,11 +20,11 @@
 //!
 //! # Not modelled
 //!
-//! - Channels that pixels use.
+//! - Ring channels that messages with pixels occupy.
 //! - Interrupts of a GP by messages of other boards.
-//! - Words of a clump's last message besides its primitives.
+//! - Words of a clump's last message, except the words of primitives.
 //! - The host's own messages. A mean rate replaces them.
-//! - Views after the first one (Slats).
+//! - Views after the first view (Slats).
 //! - Memory.
 
 mod clumps;
@@ -67,7 +67,7 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
 
 /// Smallest and largest number of fields that an estimate computes.
 ///
-/// So many fields reach a steady state and show some views of a moving head.
+/// A run of this length reaches a steady state and shows some views of a moving head.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
 /// Estimates how many primitives the scene can have so that all pictures are in time. The scene is decimated to this
@@ -87,7 +87,7 @@ fn triangles_in_time(
     let whole = Arc::clone(plain.scene());
     let mut denser = Arc::clone(&whole);
     let mut in_time = 0;
-    // Bisection between a number that is in time and one that is too many.
+    // Bisection between a number of primitives that is in time and a number that is too large.
     let mut too_many = primitives(&whole) + 1;
     while too_many - in_time > 1 {
         let middle = in_time + (too_many - in_time) / 2;

@@ -18,14 +18,14 @@ pub(super) const REGIONS: usize = 20;
 /// Largest number of ring channels in the model.
 pub(super) const MAX_CHANNELS: usize = 8;
 
-/// Number of channels that copies to two frame buffers need.
+/// Number of ring channels that copies to two frame buffers need.
 const COPY_CHANNELS: u64 = 2;
 
-/// Number of eyes. Each structure is placed once per eye.
+/// Number of eyes. A graphics processor transforms each structure of the display list once per eye.
 const EYES: f64 = 2.0;
 
-/// Returns the time to begin a pass over structures for both eyes, in nanoseconds. `sphere_views` is the number of
-/// structures with spheres.
+/// Returns the time that a graphics processor needs to begin a pass over all structures for both eyes, in nanoseconds.
+/// `sphere_views` is the number of structures with spheres.
 fn begin_ns(gp: &GpTiming, structures: usize, sphere_views: usize) -> f64 {
     let [structures, sphere_views] = [structures, sphere_views].map(|n| EYES * n as f64);
     TransformCost { passes: 1.0, structures, sphere_views, ..TransformCost::default() }.ns(gp)
@@ -61,7 +61,7 @@ pub struct SlatsModel {
 /// Times of a field, in nanoseconds after the retrace at which the field's view was sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldTimes {
-    /// Time at which the last clump was accepted.
+    /// Time at which the last clump (group of triangles) was accepted.
     pub rendered_ns: f64,
     /// Copy of the top regions, or of all regions if copies are not split.
     pub top: CopyTimes,
@@ -71,7 +71,7 @@ pub struct FieldTimes {
     pub in_time: bool,
 }
 
-/// Mean values of a triangle, for one eye.
+/// Mean numbers that one triangle causes, for one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerTriangle {
     /// Number of entries in all bins together.
@@ -157,7 +157,7 @@ impl SlatsModel {
         (self.renderers, self.gps, self.source_channels, self.split)
     }
 
-    /// Counts the pictures that are due and those that are shown, if all fields have the times `times`.
+    /// Counts the pictures that are due and the pictures that are shown, if all fields have the times `times`.
     ///
     /// A field begins at the first retrace after the commands of the previous field are finished.
     pub(super) fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
@@ -187,13 +187,13 @@ impl SlatsModel {
         queues
     }
 
-    /// Returns the times of a field, and whether its copies meet their deadlines.
+    /// Returns the times of a field. Also determines if the field's copies meet their deadlines.
     pub(super) fn times(&self, rendered_ns: f64, top: CopyTimes, bottom: Option<CopyTimes>) -> FieldTimes {
         let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
         FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
     }
 
-    /// Returns the TRANSFORM time of a clump of `triangles` triangles, for both eyes, in nanoseconds.
+    /// Returns the TRANSFORM time of a clump (group) of `triangles` triangles, for both eyes, in nanoseconds.
     pub(super) fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = EYES * triangles;
         let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);

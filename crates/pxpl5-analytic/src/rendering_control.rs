@@ -64,13 +64,13 @@ impl StereoTimes {
     }
 }
 
-/// Returns the mean of a quantity over frames, in milliseconds. `ns` returns the quantity of one frame in nanoseconds.
+/// Returns the mean of a time over frames, in milliseconds. `ns` returns the time of one frame in nanoseconds.
 fn mean_ms(frames: &[&StereoTimes], ns: impl Fn(&StereoTimes) -> f64) -> f64 {
     frames.iter().map(|frame| ns(frame)).sum::<f64>() / frames.len().max(1) as f64 * 1e-6
 }
 
-/// Times at which all pictures so far completed each stage. A picture before the first one counts as complete at time
-/// 0.
+/// Times at which all pictures so far completed each stage. The predecessor of the first picture counts as complete at
+/// time 0.
 #[derive(Debug, Default)]
 struct History {
     transformed: Vec<f64>,
@@ -249,8 +249,8 @@ impl StereoModel {
     /// them.
     ///
     /// Each token starts at one slave and moves to the next as fast as renderers accept commands. If there are fewer
-    /// renderers than slaves, a slave can finish early. The first slave finishes when each token has visited as many
-    /// slaves as there are renderers.
+    /// renderers than slaves, a slave can finish early. The first slave finishes when the number of slaves that each
+    /// token has visited equals the number of renderers.
     fn first_free_ns(&self, load: &Load) -> f64 {
         let drawing_ns = load.entries() / load.bins.len().max(1) as f64 * self.triangle.ns;
         drawing_ns * (1.0 - self.renderers as f64 / self.slaves).max(0.0)
@@ -266,15 +266,15 @@ impl StereoModel {
         TransformCost { passes: 1.0, structures, sphere_views, triangles, spheres, clipped, entries }.ns(&self.gp)
     }
 
-    /// Returns the number of primitives of the slave that holds the most of them.
+    /// Returns the largest number of primitives that any slave holds: an equal share, rounded up.
     fn largest_share(&self, primitives: f64) -> f64 {
         (primitives / self.slaves).ceil()
     }
 
     /// Computes RENDER and COPY of one eye.
     ///
-    /// Returns the time at which the master knows that the last commands were accepted. Also returns the times of the
-    /// copies' first and last word.
+    /// Returns the time at which the master is notified that the last commands were accepted. Also returns the times of
+    /// the copies' first and last word.
     fn render(
         &self,
         all: &mut Renderers,
@@ -353,8 +353,8 @@ impl StereoModel {
 
     /// Returns the time at which the FIFO has room for the last word sent.
     ///
-    /// The FIFO has room when it has released the word that is one FIFO depth before the last word. It releases that
-    /// word when the command with the word starts.
+    /// The FIFO has room when it has released the word that is one FIFO depth before the last word. The FIFO releases
+    /// this word when the command that contains the word starts.
     fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
         let word = all.words[r] - 1.0 - self.fifo_words;
         let started = &mut all.started[r];
@@ -421,7 +421,8 @@ fn frames_of(experiment: &Experiment) -> Result<(StereoModel, Vec<StereoTimes>),
 }
 
 impl StereoModel {
-    /// Returns the summary of the frames that are shown within the first `fields` fields, except those of the warm-up.
+    /// Returns the summary of the frames that are shown within the first `fields` fields, except the frames of the
+    /// warm-up.
     #[must_use]
     pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
         // Frames of the warm-up do not count.
@@ -456,8 +457,8 @@ impl StereoModel {
         (0..self.eyes).map(|eye| (frame.shown_ns - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Counts the frames that are due, and those that were shown. The time of COPY for all eyes determines how often a
-    /// frame is due.
+    /// Counts the frames that are due, and the frames that were shown. The time of COPY for all eyes determines how
+    /// often a frame is due.
     fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);

@@ -30,27 +30,29 @@ use slats::CLUMP;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// A clump of one GP: up to [`CLUMP`] primitives, transformed and sent together.
+/// A clump of one graphics processor (GP): up to [`CLUMP`] primitives, transformed and sent together.
 #[derive(Clone, Debug, PartialEq)]
 struct Clump {
-    /// TRANSFORM time of the clump for both eyes.
+    /// TRANSFORM time of the clump (group of primitives) for both eyes.
     transform_ns: f64,
     /// Numbers of triangles and of spheres for each region, in the order in which regions are sent.
     bins: [[f64; 2]; REGIONS],
 }
 
-/// The clumps of every GP, and the number of words of the view that the first GP sends to the other GPs.
+/// The clumps (groups of primitives) of every GP, and the number of words of the view that the first GP sends to the
+/// other GPs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Clumps {
     of_gps: Vec<Vec<Clump>>,
     view_words: f64,
 }
 
-/// Number of words of a view of two eyes without edits: its number, two counts, and three matrices for each eye.
+/// Number of words of a message with the view of two eyes without edits. The message has the number of the view, two
+/// counts, and three matrices for each eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
-    /// Creates clumps of equal triangles, distributed evenly over the GPs and the regions.
+    /// Creates clumps (groups) of equal triangles, distributed evenly over the GPs and the regions.
     pub(super) fn uniform(model: &SlatsModel, triangles: f64, each: PerTriangle) -> Self {
         let all = triangles.round() as usize;
         // Distribute the triangles evenly over the GPs.
@@ -69,7 +71,7 @@ impl Clumps {
         Self { of_gps: (0..model.gps).map(of_gp).collect(), view_words: VIEW_WORDS }
     }
 
-    /// Creates clumps from an experiment's scene, as seen in its first view.
+    /// Creates clumps (groups of primitives) from an experiment's scene, as seen in its first view.
     ///
     /// # Errors
     ///
@@ -117,10 +119,11 @@ impl Clumps {
 /// Number of field regions of one eye that lie side by side.
 const COLUMNS: usize = REGIONS / 4;
 
-/// Sends all clumps to the renderers. `arrays` holds the state of the renderers, before and after the call.
+/// Sends all clumps (groups of primitives) to the renderers. `arrays` holds the state of the renderers, before and
+/// after the call.
 ///
-/// Returns two times. At the first time, the last clump is accepted. At the second time, the first GP has received all
-/// reports of this and is free.
+/// Returns two times. At the first time, the last clump is accepted. At the second time, the first GP has received the
+/// reports of all other GPs about their last clumps, and is free.
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
@@ -137,7 +140,8 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
     [accepted_ns, ring.all_done_ns(&senders)]
 }
 
-/// Words of a command that have left a FIFO. Each word makes room for the word that follows one FIFO depth later.
+/// Words of a command that have left a renderer's FIFO. Each word makes room for the word that follows one FIFO depth
+/// later.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     first_word: f64,
@@ -158,7 +162,7 @@ impl Renderer {
     /// Receives a command whose words arrive without gaps, starting at the time `from_ns`. Returns the time at which
     /// the last word has entered the FIFO.
     ///
-    /// A word enters when the word that is one FIFO depth ahead of it has left. The words of a command leave when the
+    /// A word enters the FIFO when the word one FIFO depth before has left. The words of a command leave when the
     /// command starts. A command starts when all its words have arrived and the previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
@@ -192,21 +196,23 @@ struct Message {
     runs: [(Cost, f64); 4],
 }
 
-/// A GP that sends its clumps. The messages of a clump form a chain: they are sent in order, one after the other.
+/// A graphics processor that sends its clumps (groups of primitives). The messages of a clump are sent in order, one
+/// after the other.
 #[derive(Debug)]
 struct Sender<'a> {
     gp: usize,
     clumps: &'a [Clump],
-    /// Number of clumps whose sending has begun.
+    /// Number of clumps (groups of primitives) whose sending has begun.
     begun: usize,
-    /// Messages of the current clump that the ring has not granted yet. Empty after the last clump.
+    /// Messages of the current clump (group of primitives) to which the ring has not granted a channel yet. Empty after
+    /// the last clump.
     messages: VecDeque<Message>,
-    /// Time at which the next message became the first of the queue.
+    /// Time at which the next message became the first in the queue of its sender.
     since_ns: f64,
     /// Time from which each channel of the port is free.
     channels_ns: Vec<f64>,
     cpu_ns: f64,
-    /// Time at which the last message of the current clump was accepted.
+    /// Time at which the last message of the current clump (group of primitives) was accepted.
     accepted_ns: f64,
     /// Time by which every renderer has accepted its first message of the current clump.
     draining_ns: f64,
@@ -250,7 +256,7 @@ impl<'a> Ring<'a> {
         // The first GP receives the host's next view during TRANSFORM.
         begin_ns[0] = model.message_ns;
         let mut accepted_ns = 0.0;
-        // With several GPs, the first one clears all regions and then sends the view.
+        // With several GPs, the first GP clears all regions and then sends the view.
         if !self.clears {
             accepted_ns = self.clear_all();
             let words_ns = model.overhead_ns + (clumps.view_words + 3.0) * model.word_ns;
@@ -283,7 +289,7 @@ impl<'a> Ring<'a> {
         clumps.of_gps.iter().enumerate().map(sender).collect()
     }
 
-    /// Sends the messages that clear all regions. Returns the time at which the last one was accepted.
+    /// Sends the messages that clear all regions. Returns the time at which the last message was accepted.
     fn clear_all(&mut self) -> f64 {
         // A clump without primitives produces only the messages that clear.
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
@@ -308,7 +314,7 @@ impl<'a> Ring<'a> {
         sender.accepted_ns
     }
 
-    /// Transforms clumps until one of them produces messages, or until no clump is left.
+    /// Transforms clumps (groups of primitives) until a clump produces messages, or until no clump is left.
     fn next_clump(&self, sender: &mut Sender<'_>) {
         while let Some(clump) = sender.clumps.get(sender.begun) {
             // The single clump buffer can be reused after all renderers have started to receive its content.
@@ -326,8 +332,8 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Returns the messages of a clump. Each message selects a region and holds as many primitives as fit. If `clears`
-    /// is true, the first message to a region also clears the region.
+    /// Returns the messages of a clump (group of primitives). Each message selects a region and holds as many
+    /// primitives as fit. If `clears` is true, the first message to a region also clears the region.
     fn messages_of(&self, clump: &Clump, clears: bool) -> VecDeque<Message> {
         let SlatsModel { select, clear, command, sphere, .. } = *self.model;
         let mut messages = VecDeque::new();
@@ -351,7 +357,8 @@ impl<'a> Ring<'a> {
         messages
     }
 
-    /// Returns two times for a sender's next message: when the message can be granted, and since when it has waited.
+    /// Returns two times for a sender's next message. At the first time, the ring can grant channels to the message.
+    /// The message has waited since the second time.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
         let region = sender.messages.front().map_or(0, |message| message.region);
         let port = &self.renderers[region % self.renderers.len()];
@@ -359,17 +366,18 @@ impl<'a> Ring<'a> {
         (later(later(since, port.released_ns), soonest(&self.channels_ns).1), since)
     }
 
-    /// Returns the index of the sender whose message is granted next.
+    /// Returns the index of the sender whose message gets the next channels of the ring.
     ///
-    /// If several messages can be granted at the same time, the message that has waited longest goes first. Among equal
-    /// waits, the sender with the lowest index goes first.
+    /// If several messages can get channels at the same time, the message that has waited longest comes first. For
+    /// equal waits, the sender with the lowest index comes first.
     fn first_head(&self, senders: &[Sender<'_>]) -> Option<usize> {
         let waiting = senders.iter().enumerate().filter(|(_, sender)| !sender.is_done());
         let heads = waiting.map(|(place, sender)| (self.head(sender), place));
         heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
     }
 
-    /// Grants the next message of a sender. The message occupies port and channels until its last word is in the FIFO.
+    /// Grants channels of the ring to the next message of a sender. The message occupies port and channels until its
+    /// last word is in the FIFO.
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;
         let (granted, _) = self.head(sender);
@@ -414,7 +422,7 @@ impl<'a> Ring<'a> {
         entered
     }
 
-    /// Returns the time at which the first GP knows that all clumps have been accepted.
+    /// Returns the time at which the first GP has been notified that all clumps (groups of primitives) were accepted.
     ///
     /// Each of the other GPs reports to the first GP by a message. Each message takes processor time of the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {
@@ -438,7 +446,7 @@ impl<'a> Ring<'a> {
 /// Number of ports of the two frame buffers.
 const FRAME_BUFFERS: usize = 2;
 
-/// Returns the earliest time and its index.
+/// Returns the earliest of some times, and the index of this time.
 fn soonest(times: &[f64]) -> (usize, f64) {
     let all = times.iter().copied().enumerate();
     all.reduce(|first, time| if time.1 < first.1 { time } else { first }).unwrap_or((0, f64::MIN))

@@ -13,7 +13,7 @@ pub struct Content {
     pub eye: DVec3,
     /// Index of the frame at whose start the eye had this position.
     pub frame: u64,
-    /// Indices of the segments that the memory contains.
+    /// Indices of the segments (parts of objects) that the memory contains.
     pub segments: Vec<usize>,
     /// Displacement of vertices, or `None` without warping: the warp, the assignment of cells, and the index of this
     /// memory.
@@ -35,7 +35,7 @@ impl Content {
         self.place(vertex) - self.eye
     }
 
-    /// Draws the memory's segments into faces.
+    /// Draws the memory's segments (parts of objects) into faces.
     pub fn draw(&self, world: &World, view: &CubeView, faces: &mut FaceSet) -> Drawing {
         view.draw(self.eye, world.triangles(&self.segments, |vertex| self.place(vertex)), faces)
     }
@@ -47,7 +47,7 @@ impl Content {
     }
 }
 
-/// Returns the warp that joins a memory to the next slower one. `places` are the two eye positions.
+/// Returns the warp that joins a memory to the next slower memory. `places` are the two eye positions.
 pub(crate) fn warp(
     settings: &crate::settings::Settings,
     dealing: &CellAssignment,

@@ -1,5 +1,5 @@
-//! Renderer of the six faces of a cube around the eye. It takes no simulated time, and serves as an ideal source of
-//! pictures for address recalculation.
+//! Renderer of the six faces of a cube around the eye. The renderer takes no simulated time, and serves as an ideal
+//! source of pictures for address recalculation.
 //!
 //! ```text
 //!  triangles --> [ seen from the eye, axes of a face ] --> [ three edges, 1/w: planes over the face ] --> rows of texels --> FaceSet
@@ -9,8 +9,8 @@
 //! # Behaviour
 //!
 //! - [`CubeView::draw`] draws triangles as seen from an eye position. The faces may already contain other triangles.
-//!   Each texel shows the nearest triangle. If two triangles are equally near, the first one is visible. The faces are
-//!   parallel to the world's axes, whatever the orientation of the head.
+//!   Each texel shows the nearest triangle. If two triangles are equally near, the first triangle is visible. The faces
+//!   are parallel to the world's axes, whatever the orientation of the head.
 //! - A texel shows the triangle at the texel's middle. This holds for guard texels as well: the tangent of a face's
 //!   half angle is the ratio of all texels to inner texels.
 //! - Triangles are not clipped. Edges and 1/w are linear functions over a face, even for corners behind the eye. Parts

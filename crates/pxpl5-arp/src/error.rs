@@ -42,7 +42,7 @@ pub enum WalkError {
         place: String,
         /// The requested path.
         found: String,
-        /// The valid path that is most similar to the requested one.
+        /// The valid path that is most similar to the requested path.
         nearest: String,
     },
     /// A setting has an invalid value.

@@ -21,9 +21,9 @@ pub struct WalkReport {
     #[serde(flatten)]
     pub report: Report,
     pub scene: String,
-    /// Number of triangles in the scene after cutting: the sum over all segments.
+    /// Number of triangles in the scene after cutting: the sum over all segments (parts of objects in one cell).
     pub triangles: u64,
-    /// Number of segments into which cells cut the scene.
+    /// Number of segments (parts of objects) into which the borders of cells cut the scene.
     pub segments: u64,
     /// Length of the viewer's walk, in frames of the fastest memory.
     pub frames: u64,
@@ -79,7 +79,7 @@ impl WalkOutcome {
             segments: world.segments.len() as u64,
             frames,
             m_per_s: plan.walk.m_per_s,
-            settings: plan.said().clone(),
+            settings: plan.given().clone(),
         };
         drop(eye);
         Ok(Self { path, settings, tally, report, world })

@@ -25,7 +25,7 @@ pub use interpretations::{
     Interpretations, LeftOutRate, PIXEL_DEG, RankedRules, Situation, ThresholdRow, Trial, Tried, threshold_rows,
 };
 pub use lens::straight_edge;
-pub use row::{Row, Standing};
+pub use row::{Provenance, Row};
 pub use rows::rows;
 pub use rules::Rules;
 

@@ -61,7 +61,7 @@ pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, WalkError> {
     Ok(Walk::new(&corners, 1.0)?)
 }
 
-/// Returns a scene whose length, width and path are multiplied by `factor`. Heights stay the same.
+/// Returns a copy of a scene with its length, width and path multiplied by `factor`. Heights stay the same.
 ///
 /// # Errors
 ///

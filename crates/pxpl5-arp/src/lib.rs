@@ -8,21 +8,22 @@
 //!
 //! # Behaviour
 //!
-//! - [`Plan`] holds settings by path (`priority.cell_m=5`). Settings that are not given depend on the others.
+//! - [`Plan`] holds settings by path (`priority.cell_m=5`). The defaults of some settings depend on other settings.
 //! - [`World`] cuts a scene at the borders of cells, once.
 //! - [`Simulation::frame`] asks the policy which memories are due for an update at a position of the eye, and passes
 //!   the work to the renderer.
-//! - An ideal renderer draws within the same frame. A renderer of limited speed draws memories in ascending order. It
-//!   shows complete updates in the next frame and counts incomplete ones.
+//! - An ideal renderer draws within the same frame. A renderer of limited speed draws memories in ascending order. The
+//!   renderer shows complete updates in the next frame and counts incomplete updates.
 //! - A memory holds the data from which it is drawn ([`Content`]). Its faces are drawn only when they are read
 //!   ([`Faces`]).
-//! - [`walk()`] counts the updates, draws and tears of a whole walk. [`Report`] writes them as JSON.
+//! - [`walk()`] counts the updates, draws and tears (gaps between memories) of a whole walk. [`Report`] writes them as
+//!   JSON.
 //! - [`WalkOutcome`] holds the results of one plan. [`compare()`] simulates a walk with every policy and kind of
 //!   warping.
-//! - [`figures`] compares the papers' figures with the simulated ones. [`pictures`] draws pictures.
+//! - [`figures`] compares the papers' figures with the simulated figures. [`pictures`] draws pictures.
 //!
-//! Units are metres, seconds and radians unless a name says otherwise. A frame is 1/60 s. Results are bit-identical on
-//! every host.
+//! Units are metres, seconds and radians unless a name contains another unit. A frame is 1/60 s. Results are
+//! bit-identical on every host.
 //!
 //! # Not here
 //!

@@ -10,7 +10,7 @@ use image::{Rgb, RgbImage};
 /// Cube faces of all memories, drawn only when a view needs them.
 #[derive(Clone, Debug)]
 pub struct Faces {
-    /// Cube faces of each display memory. They are empty before the memory's first update.
+    /// Cube faces of each display memory. The faces are empty before the memory's first update.
     pub memories: Vec<FaceSet>,
     /// Counts of the triangles drawn into the faces.
     pub drawing: Drawing,
@@ -67,8 +67,8 @@ impl Faces {
         Ok((picture(table.width(), &pixels, |colour| *colour), stats))
     }
 
-    /// Returns the picture's width and, for each pixel row by row, the memory that is shown. A pixel is `None` if all
-    /// memories are empty there.
+    /// Returns the picture's width and, for each pixel row by row, the index of the memory whose colour is shown. A
+    /// pixel at which all memories are empty has `None`.
     ///
     /// # Errors
     ///

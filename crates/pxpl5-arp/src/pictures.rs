@@ -1,5 +1,5 @@
-//! Pictures of a viewer's walk: unfolded cube faces, views, the memory shown at each pixel, tears, errors, a plan of
-//! cells, and updates.
+//! Pictures of a viewer's walk: unfolded cube faces, views, the memory shown at each pixel, tears (gaps between
+//! memories), errors, a plan of cells, and updates.
 
 mod colours;
 mod faces;
@@ -46,13 +46,13 @@ pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
     ("E10", "5, 6 and 8 to 11", &["cells", "eye-flat", "objects", "cells-seen", "cuts"]),
 ];
 
-/// Returns all pictures of the walk with tears and of the walk with warping.
+/// Returns all pictures of the walk with tears (gaps between memories) and of the walk with warping.
 ///
 /// The chosen frame and direction show a tear that uncovers much of the scene behind it.
 ///
 /// # Errors
 ///
-/// Returns [`WalkError`] if a lens, scene or number is invalid. The built-in ones are valid.
+/// Returns [`WalkError`] if a lens, scene or number is invalid. The built-in lenses, scenes and numbers are valid.
 pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, WalkError> {
     let (scene, path) = gallery()?;
     let world = World::new(&scene, experiments.fits[0].cell_m)?;
@@ -65,7 +65,8 @@ pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, WalkError> {
 /// Returns all pictures of a walk at a speed of `m_per_s`.
 ///
 /// The picture `eye` is the view through the display's lens. `eye-flat` and `cuts` show the view without a lens, and
-/// are omitted if the view is too wide for a plane. The other pictures are flat where possible.
+/// are omitted if the view is too wide for a plane. All other pictures are drawn without lens distortion, unless the
+/// view is too wide for a plane.
 ///
 /// The chosen frame and direction uncover most of the scene behind the widest tear. If no memories meet in a cut, the
 /// view is along the path at the end of the walk.
@@ -122,7 +123,7 @@ pub(crate) fn ahead(path: &Walk, way_m: f64) -> DQuat {
 
 /// Returns pictures of one frame: cube faces, views, the memory shown at each pixel, and errors.
 ///
-/// The faces include those of a reference memory, which holds the whole scene. Views are drawn with and without the
+/// The faces include the faces of a reference memory, which holds the whole scene. Views are drawn with and without the
 /// lens.
 fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<Picture>, WalkError> {
     let faces = Faces::of(simulation)?;
@@ -160,16 +161,17 @@ fn tinted(mut world: World, settings: &Settings, eye: DVec3, orientation: DQuat)
     Ok(pictures)
 }
 
-/// Background colour that is visible through tears.
+/// Background colour that is visible through tears (gaps between memories).
 const WHITE: u32 = 0x00FF_FFFF;
 
 /// Largest number of frames to try, and smallest number of frames between two tried frames.
 const TRIED: u64 = 63;
 const EVERY: u64 = 29;
 
-/// Returns the frame and orientation at which a tear shows the largest number of background pixels.
+/// Returns the frame and orientation at which a tear (gap between two memories) shows the largest number of background
+/// pixels.
 ///
-/// Each tried frame is viewed towards its widest tear in an upright surface. Returns `None` if nothing tears.
+/// Each tried frame is viewed towards its widest tear in an upright surface. Returns `None` if there is no tear.
 fn best_tear_view(
     world: &World,
     torn: &Settings,
@@ -198,7 +200,7 @@ fn best_tear_view(
     Ok((best.2 > 0).then_some((best.0, best.1)))
 }
 
-/// Returns the position of the widest tear, except tears in the floor and the ceiling.
+/// Returns the position of the widest tear (gap between two memories), except tears in the floor and the ceiling.
 fn widest_upright(world: &World, simulation: &Simulation<'_>) -> Option<DVec3> {
     let is_upright =
         |segment: usize| !["floor", "ceiling"].contains(&world.objects[world.segments[segment].object].name.as_str());
@@ -208,8 +210,8 @@ fn widest_upright(world: &World, simulation: &Simulation<'_>) -> Option<DVec3> {
     Some(world.vertices[vertex as usize])
 }
 
-/// Returns views of one frame against a white background: with tears, warped, and without cuts. A last picture is the
-/// difference of the first two.
+/// Returns views of one frame against a white background: with tears (gaps between memories), warped, and without cuts.
+/// A last picture is the difference of the first two pictures.
 fn gaps(
     world: &World,
     torn: &Settings,

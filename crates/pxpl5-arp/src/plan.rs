@@ -48,15 +48,17 @@ pub struct Plan {
     has_cascade: Option<bool>,
     threshold: Option<ThresholdChoice>,
     route: Route,
-    said: BTreeMap<String, String>,
+    given: BTreeMap<String, String>,
 }
 
-/// A threshold in pixels or texels. It becomes an angle once the display's resolution is known.
+/// A threshold in pixels or texels. The threshold becomes an angle when the display's resolution is set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ThresholdChoice {
-    /// Threshold in pixels of the display. One pixel is the horizontal angle divided by the number of pixels of a line.
+    /// Threshold in pixels of the display. One pixel is the horizontal angle of view divided by the number of pixels in
+    /// a line.
     Pixels(f64),
-    /// Threshold in texels of a face. One texel is 90 degrees divided by the texels of an edge.
+    /// Threshold in texels of a face. One texel is 90 degrees divided by the number of texels along an edge of the
+    /// face.
     Texels(f64),
 }
 
@@ -95,7 +97,7 @@ impl Plan {
             has_cascade: None,
             threshold: None,
             route: Route::Scene,
-            said: BTreeMap::new(),
+            given: BTreeMap::new(),
         }
     }
 
@@ -125,8 +127,8 @@ impl Plan {
 
     /// Returns the settings that the user gave explicitly, by path.
     #[must_use]
-    pub const fn said(&self) -> &BTreeMap<String, String> {
-        &self.said
+    pub const fn given(&self) -> &BTreeMap<String, String> {
+        &self.given
     }
 
     /// Sets the setting at a path. `place` names the source of the value in errors, such as `--set`.
@@ -150,7 +152,7 @@ impl Plan {
         };
         done.map_err(|expected| wrong(path, text, place, expected))?;
         // Record the setting for the report.
-        self.said.insert(path.to_owned(), text.to_owned());
+        self.given.insert(path.to_owned(), text.to_owned());
         Ok(())
     }
 
@@ -158,7 +160,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Self::set`]. Returns [`WalkError::Value`] without an equals sign.
+    /// Fails in the same cases as [`Self::set`]. Returns [`WalkError::Value`] if the text has no equals sign.
     pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), WalkError> {
         match assignment.split_once('=') {
             Some((path, text)) => self.set(path.trim(), text.trim(), place),
@@ -170,7 +172,7 @@ impl Plan {
     #[must_use]
     pub fn behind(mut self, lens: Lens, name: &str) -> Self {
         self.chosen.display.lens = lens;
-        self.said.insert("arp.lens".to_owned(), format!("table:{name}"));
+        self.given.insert("arp.lens".to_owned(), format!("table:{name}"));
         self
     }
 

@@ -29,15 +29,15 @@ pub struct Report {
     pub matrix_loads: Option<u64>,
     /// Number of matrices that were refused because they were not rotations. Null without a tracker.
     pub matrix_refused: Option<u64>,
-    /// Number of pixels whose footprint has a texel on another face. Null if no view was drawn.
+    /// Number of pixels whose footprint (its four texels) has a texel on another face. Null if no view was drawn.
     pub footprints_split: Option<u64>,
-    /// Number of pixels whose footprint has two texels in one memory bank. Null if no view was drawn.
+    /// Number of pixels whose footprint (its four texels) has two texels in one memory bank. Null if no view was drawn.
     pub bank_conflicts: Option<u64>,
     pub memories: Vec<MemoryReport>,
     /// Results of the policy that decides when each memory is drawn.
     pub priority: PriorityReport,
-    /// Widths of the tears where different memories meet, in texels (90 degrees divided by the texels of a face's
-    /// edge). Null if no memories meet.
+    /// Widths of the tears (gaps where different memories meet), in texels (90 degrees divided by the texels of a
+    /// face's edge). Null if no memories meet.
     pub tears_px: TearsReport,
     /// Time from reading a known orientation to displaying the pixel, in ms, averaged over all pixels. The time does
     /// not include tracker and host.
@@ -58,7 +58,7 @@ pub struct MemoryReport {
     pub updates_hz: f64,
     /// Mean number of frames between two updates of the memory. Null without updates.
     pub period_frames: Option<f64>,
-    /// Number of segments in the memory, averaged over frames.
+    /// Number of segments (parts of objects) in the memory, averaged over frames.
     pub segments: f64,
     /// Mean number of triangles per update. Null without updates.
     pub triangles: Option<f64>,
@@ -79,7 +79,8 @@ pub struct MemoryReport {
 /// Results of a policy, which decides when each memory is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PriorityReport {
-    /// Name of the policy that decides which segments are drawn in which frames: `full`, `objects` or `cells`.
+    /// Name of the policy that decides which segments (parts of objects) are drawn in which frames: `full`, `objects`
+    /// or `cells`.
     pub policy: &'static str,
     /// Largest accepted image error, in degrees. Null if the policy draws everything in every frame.
     pub theta_deg: Option<f64>,
@@ -91,13 +92,13 @@ pub struct PriorityReport {
     pub saved_percent: f64,
     /// Number of times that an object changed to another memory. Null unless the policy is `objects`.
     pub moved_objects: Option<u64>,
-    /// Number of times that cells were assigned to memories anew. Null without cells.
+    /// Number of times that cells (squares of the floor) were assigned to memories anew. Null without cells.
     pub redeals: Option<u64>,
     /// Number of faces that a triangle covers, averaged over the last update of each memory. Null if no view was drawn.
     pub faces_per_primitive: Option<f64>,
 }
 
-/// Widths of the tears between memories.
+/// Widths of the tears: gaps in the view where different memories meet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TearsReport {
     /// Widths that the tears would have without warping.
@@ -191,7 +192,7 @@ fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
     let mut sum = 0.0;
     for y in 0..scan.height() {
         let field = PeriodNumber(u64::from(y % 2));
-        // All pixels of a line have equal distances, so the first and the last one give the mean.
+        // All pixels of a line have equal distances, so the first and the last pixel give the mean.
         for x in [0, scan.width() - 1] {
             let latched = scan.latches(from, x, y, field)?;
             sum += ms(scan.lights(x, y, field)?.since(latched)) - ms(display.timing.depth());

@@ -6,7 +6,7 @@ use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{ArpConfig, ArpTiming};
 use serde::{Deserialize, Serialize};
 
-/// The policy that decides which segments are drawn in which frames.
+/// The policy that decides which segments (parts of objects) are drawn in which frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PolicyKind {
@@ -62,7 +62,8 @@ pub struct Settings {
     pub policy: PolicyKind,
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
-    /// Decrease of the warp from the border to a slower memory. [`Falloff::None`] disables warping, so cuts tear.
+    /// Rule by which the displacement by warping decreases with the distance from the border to a slower memory.
+    /// [`Falloff::None`] disables warping, so gaps appear at cuts.
     pub falloff: Falloff,
     /// True if an update of a memory makes all faster memories due for an update.
     pub has_cascade: bool,

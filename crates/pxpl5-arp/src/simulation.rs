@@ -50,7 +50,7 @@ pub struct FrameOutcome {
     pub swapped: Vec<bool>,
     /// For each memory, true if its update was incomplete at the retrace.
     pub missed: Vec<bool>,
-    /// True if cells were newly assigned to memories in this frame.
+    /// True if cells (squares of the floor) were newly assigned to memories in this frame.
     pub deals_anew: bool,
 }
 

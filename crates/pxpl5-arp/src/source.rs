@@ -1,4 +1,4 @@
-//! A renderer of limited speed. It draws memories in ascending order and shows only complete updates.
+//! A renderer of limited speed, which draws memories in ascending order and shows only complete updates.
 
 use crate::content::Content;
 
@@ -9,11 +9,12 @@ pub(crate) struct Job {
     /// Time that the renderer needs to draw the whole update, in seconds.
     pub(crate) work_s: f64,
     pub(crate) left_s: f64,
-    /// Bit mask of the memories that must be shown in the same frame as this memory. 0 if the memory is independent.
+    /// Bit mask of the memories that must be shown in the same frame as this memory. The mask is 0 if the memory is
+    /// independent.
     pub(crate) together: u8,
 }
 
-/// Updates that are being drawn, and updates that wait for them.
+/// Updates that are being drawn, and updates that wait until these updates are finished.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue {
     running: Vec<Option<Job>>,
@@ -25,8 +26,8 @@ impl Queue {
         Self { running: vec![None; memories], waiting: vec![None; memories] }
     }
 
-    /// Adds an update of a memory. The new update replaces an update that has not begun, or waits for one that has
-    /// begun.
+    /// Adds an update of a memory. If an update of this memory has begun, the new update waits until that update is
+    /// finished. Otherwise the new update replaces the earlier update.
     pub(crate) fn put(&mut self, memory: usize, job: Job) {
         let has_begun = self.running[memory].as_ref().is_some_and(|running| running.left_s < running.work_s);
         let place = if has_begun { &mut self.waiting[memory] } else { &mut self.running[memory] };

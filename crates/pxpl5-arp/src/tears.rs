@@ -4,7 +4,7 @@ use crate::content::{Content, angle};
 use crate::world::World;
 use serde::Serialize;
 
-/// Angles of the tears at vertices that several memories share, in one frame.
+/// Angles of the tears (gaps between memories) at vertices that several memories share, in one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tears {
     /// Angles of all tears without warping, in radians. A tear's angle lies between the two directions in which two
@@ -19,7 +19,7 @@ pub struct Tears {
     pub widest: Option<(f64, u32)>,
 }
 
-/// Returns for each segment the index of the memory that shows it, or `None`.
+/// Returns for each segment (part of an object) the index of the memory that shows the segment, or `None`.
 fn holders(world: &World, shown: &[Option<Content>]) -> Vec<Option<usize>> {
     let mut holders = vec![None; world.segments.len()];
     for (memory, content) in shown.iter().enumerate() {

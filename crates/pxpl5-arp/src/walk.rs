@@ -15,18 +15,18 @@ pub struct MemoryTally {
     pub updates: u64,
     /// Number of retraces at which an update was incomplete.
     pub missed: u64,
-    /// Number of segments drawn, summed over all updates.
+    /// Number of segments (parts of objects) drawn, summed over all updates.
     pub segments_drawn: u64,
     /// Number of triangles drawn, summed over all updates.
     pub triangles_drawn: u64,
-    /// Number of segments in the memory, summed over frames.
+    /// Number of segments (parts of objects) in the memory, summed over frames.
     pub segment_frames: u64,
     /// Distance between the eye and the position from which the memory was drawn, summed over frames, in metres.
     pub age_m: f64,
     /// Number of frames in which the memory showed any update.
     pub shown_frames: u64,
-    /// Age of the eye position from which the shown update was drawn, in frames. It is summed over the frames that
-    /// showed an update.
+    /// Age of the eye position from which the shown update was drawn, in frames. The sum covers the frames that showed
+    /// an update.
     pub age_frames: u64,
     /// Part of `age_frames` that passed before each update was first shown.
     pub drawing_frames: u64,
@@ -40,14 +40,14 @@ pub struct WalkTally {
     pub frames: u64,
     /// Counters of each memory.
     pub memories: Vec<MemoryTally>,
-    /// Number of times that cells were assigned to memories anew.
+    /// Number of times that cells (squares of the floor) were assigned to memories anew.
     pub redeals: u64,
     /// Number of times that an object changed to another memory, or `None` unless the policy is `objects`.
     pub moved_objects: Option<u64>,
-    /// Angles of the tears at shared vertices, over all frames.
+    /// Angles of the tears (gaps between memories) at shared vertices, over all frames.
     pub tears: Tears,
-    /// For each frame, the width in radians of the widest tear as displayed, and the index of its vertex. `None` if no
-    /// memories meet.
+    /// For each frame, the width in radians of the widest displayed tear (gap between two memories), and the index of
+    /// its vertex. `None` if no memories meet.
     pub widest: Vec<Option<(f64, u32)>>,
     /// Memories that were due, showed an update, or missed the retrace, for each frame.
     pub outcomes: Vec<FrameOutcome>,
@@ -60,7 +60,7 @@ impl WalkTally {
         self.memories.iter().map(|memory| memory.updates as f64 * frame_hz / self.frames as f64).collect()
     }
 
-    /// Returns the number of segments drawn per second.
+    /// Returns the number of segments (parts of objects) drawn per second.
     #[must_use]
     pub fn draws_per_s(&self, frame_hz: f64) -> f64 {
         let draws: u64 = self.memories.iter().map(|memory| memory.segments_drawn).sum();

@@ -119,12 +119,12 @@ impl World {
         Ok(())
     }
 
-    /// Returns the cells that contain segments. A cell is repeated for each of its segments.
+    /// Returns the cells that contain segments (parts of objects). A cell is repeated for each of its segments.
     pub fn cells(&self) -> impl Iterator<Item = Cell> {
         self.segments.iter().map(|segment| segment.cell)
     }
 
-    /// Returns the triangles of some segments. `place` is a function from a vertex to the position at which it is
+    /// Returns the triangles of some segments (parts of objects). `place` returns the position at which a vertex is
     /// drawn.
     pub fn triangles<'a>(
         &'a self,
@@ -150,7 +150,8 @@ impl World {
         }
     }
 
-    /// Returns the centre of the bounding box of some segments, and the distance to their farthest vertex in metres.
+    /// Returns the centre of the bounding box of some segments (parts of objects), and the distance to their farthest
+    /// vertex in metres.
     #[must_use]
     pub fn bounding_sphere(&self, segments: Range<usize>) -> (DVec3, f64) {
         let corners = self.segments[segments].iter().flat_map(|segment| segment.triangles.iter().flatten());

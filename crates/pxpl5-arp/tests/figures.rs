@@ -1,7 +1,7 @@
 //! Tests of the papers' figures: fitted numbers, checked numbers, and the generated document.
 
 use pxpl5_arp::figures::{
-    Experiments, RATE_FITTED, RATES_HZ, Row, Rules, Situation, Standing, all, definitions, markdown,
+    Experiments, Provenance, RATE_FITTED, RATES_HZ, Row, Rules, Situation, all, definitions, markdown,
 };
 use pxpl5_arp::pictures::{OF_FIGURES, Picture, all as all_pictures};
 use std::collections::BTreeSet;
@@ -15,7 +15,7 @@ fn rows(id: &str) -> Vec<&'static Row> {
 
 #[test]
 fn the_side_of_a_cell_is_fitted_to_memory_1_and_the_threshold_to_the_width_of_tears() {
-    let fitted: Vec<&Row> = FIGURES.1.iter().filter(|row| row.standing == Standing::Fitted).collect();
+    let fitted: Vec<&Row> = FIGURES.1.iter().filter(|row| row.provenance == Provenance::Fitted).collect();
     assert_eq!(fitted.iter().map(|row| row.id).collect::<Vec<_>>(), ["A12", "A15"]);
     assert_eq!(fitted[0].published, RATES_HZ[RATE_FITTED]);
     assert!(fitted.iter().all(|row| row.is_met), "{fitted:?}");

@@ -19,7 +19,7 @@ use std::sync::Arc;
 // ANCHOR_END: imports
 
 // ANCHOR: pipeline
-/// One processor, one frame at a time: the simplest thing that can work.
+/// A simple pipeline: one processor draws one frame at a time.
 #[derive(Debug)]
 struct OneAtATime {
     shading: Shading,
@@ -39,7 +39,7 @@ impl OneAtATime {
 // ANCHOR_END: pipeline
 
 // ANCHOR: firmware
-/// The firmware. Every `.await` costs simulated time or waits.
+/// The firmware. Every `.await` takes simulated time or waits.
 async fn firmware(
     gp: Gp,
     ports: Ports,
@@ -50,7 +50,7 @@ async fn firmware(
     let share = Share::new(list, 0, 1);
     let frame_buffer = ports.display()[0];
     for frame in PictureNumber::FIRST.onwards() {
-        // TRANSFORM: what is computed is real, its time comes from the timing table.
+        // TRANSFORM: the code transforms the triangles. The timing table gives the time of this work.
         gp.begin(Stage::Sample, frame, None);
         gp.begin(Stage::Transform, frame, None);
         let view = view(ViewNumber::taken_for(frame), gp.now());
@@ -60,7 +60,7 @@ async fn firmware(
         gp.spend(Span::from_ns(gp.timing().bin_entry_ns) * pass.entries()).await;
         gp.end(Stage::Transform, frame, None);
 
-        // RENDER and COPY: every region goes to one renderer, which copies it when it is drawn and tells us.
+        // RENDER and COPY: one renderer draws each region, copies the region and sends an acknowledgement.
         let grid = picture.viewport.grid();
         let buffer = (frame.next().0 % 2) as u8;
         for region in (0..grid.regions() as u16).map(RegionId) {
@@ -83,7 +83,7 @@ async fn firmware(
             gp.receive().await;
         }
 
-        // Swap at the next retrace, and wait for it.
+        // Request the swap at the next retrace, and wait for the swap.
         let request = gp.send(frame_buffer, 2, Body::Words(swap_request(buffer))).await;
         gp.accepted(request).await;
         gp.until("the swap", || (gp.status(frame_buffer) > frame.0).then_some(())).await;

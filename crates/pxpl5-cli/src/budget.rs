@@ -31,8 +31,8 @@ const MOST_MEGABYTES: u64 = 16_000;
 /// Default time limit in seconds. Assumed: one day.
 const MOST_SECONDS: u64 = 86_400;
 
-/// Numbers of simulated fields after which an early run is compared with its limits. After the last of these fields,
-/// each report of progress is compared.
+/// Numbers of simulated fields after which the cost of a run is compared with its limits. After the last of these
+/// fields, the cost is compared at each report of progress.
 pub(crate) const EARLY_CHECK_FIELDS: [u64; 6] = [1, 2, 4, 8, 16, 32];
 
 /// Seconds that a run must have taken before its total time is extrapolated. The first seconds are not typical, because
@@ -70,7 +70,8 @@ impl BudgetArgs {
     }
 
     /// Returns an error if the estimate of a set of runs exceeds the budget, before the first run starts. The estimated
-    /// time is the sum divided by `threads`. The estimated memory is the memory of the largest run times `threads`.
+    /// time is the sum of the times of all runs divided by `threads`. The estimated memory is the memory of the largest
+    /// run times `threads`.
     ///
     /// # Errors
     ///
@@ -80,8 +81,8 @@ impl BudgetArgs {
         self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    /// Returns an error if a fixed set of experiments exceeds the budget, before it starts. `advice` tells the user how
-    /// to reduce the work.
+    /// Returns an error if a fixed set of experiments exceeds the budget, before it starts. `advice` is a text for the
+    /// user: how to reduce the work.
     ///
     /// # Errors
     ///
@@ -91,8 +92,8 @@ impl BudgetArgs {
         self.admit_estimate(study.estimate(threads), advice)
     }
 
-    /// Returns an error if the estimate of a command exceeds the budget. `advice` tells the user how to reduce the
-    /// work.
+    /// Returns an error if the estimate of a command exceeds the budget. `advice` is a text for the user: how to reduce
+    /// the work.
     ///
     /// # Errors
     ///
@@ -154,9 +155,10 @@ impl Taken {
 
 impl BudgetArgs {
     /// Returns the reason to stop a run, if any. `before` is the cost before the extrapolated part of the run. `taken`
-    /// is the cost of the fraction `part` of this part. The remaining fields are assumed to cost the same.
+    /// is the cost of the finished fraction of this part, and `part` is this fraction (0 to 1). The remaining fields
+    /// are assumed to cost the same.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
-        // Short runs and small ones say too little about the rest.
+        // The costs of short and small runs are too inaccurate to extrapolate.
         let megabytes = if taken.bytes > MIN_EXTRAPOLATED_BYTES { taken.bytes / part / 1e6 } else { 0.0 };
         let seconds = if taken.seconds > MIN_EXTRAPOLATED_SECONDS { taken.seconds / part } else { 0.0 };
         self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")

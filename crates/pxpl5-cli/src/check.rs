@@ -40,7 +40,8 @@ pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
     ))
 }
 
-/// Maximum number of points of a sweep that are checked. Assumed, because checking so many points takes some seconds.
+/// Maximum number of points of a sweep that are checked. Assumed, because checking this number of points takes some
+/// seconds.
 const MOST_CHECKED: u64 = 1_000;
 
 /// Returns the first valid point of a sweep, and comment lines about the sweep. Returns an error for every sweep that

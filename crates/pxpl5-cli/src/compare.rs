@@ -171,7 +171,7 @@ fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
     Ok(file)
 }
 
-/// Sets the length of the runs. Prints a warning if a recording is shorter than the settings ask.
+/// Sets the length of the runs. Prints a warning if a recording is shorter than the settings require.
 fn set_length(query: &mut CompareQuery, quiet: bool) -> Result<(), CliError> {
     if let Some(RecordedLength { fields, asked: Some(asked) }) = query.set_length()? {
         let [asked, fields] = [asked, fields].map(|fields| count_of(fields, "field"));

@@ -111,7 +111,7 @@ fn closing(runs: &[Run], args: &DemoArgs) -> String {
             told.push(&report.pipeline);
         }
     }
-    // A published quantity can differ from the latency above it, which is that of the whole picture.
+    // A published quantity can differ from the latency above it, which is the latency of the whole picture.
     let mut defined = Vec::new();
     for quantity in runs.iter().filter_map(|run| Some(&run.comparison.as_ref()?.quantity)) {
         if let Ok(measure) = Measure::named(quantity)

@@ -10,13 +10,13 @@
 //!
 //! A volume needs `samples (SLICE_S slices primitives + DRAWN_S drawn) + WORD_S slices width height / 8` seconds.
 //!
-//! If simulated renderers of Pixel-Planes 5 draw the volume, it takes `PLANES` times as long and `PLANES_BYTES` more
-//! memory.
+//! If simulated renderers of Pixel-Planes 5 draw the volume, the volume takes `PLANES` times as long and `PLANES_BYTES`
+//! more memory.
 //!
 //! A walk needs `BASE + TEXEL 6 face_texels^2 + FRAME frames + WALKED primitives` bytes and `FACE_S 6 face_texels^2 +
 //! FRAME_S frames primitives` seconds.
 //!
-//! The constants are measured: peak memory and processor time of the runs in the tests below, rounded up.
+//! The constants come from measured runs, which the tests below repeat: peak memory and processor time, rounded up.
 
 use pxpl5::arp::Plan as WalkPlan;
 pub(crate) use pxpl5::lab::estimate::{Estimate, Study, Work};
@@ -62,7 +62,7 @@ const AREAS: f64 = 2.0;
 const SLICE_S: f64 = 30e-9;
 /// Seconds to process one covered pixel.
 const DRAWN_S: f64 = 100e-9;
-/// Seconds to pack eight pixels of a slice into a byte, and to read it.
+/// Seconds to pack eight pixels of a slice into a byte, and to read this byte.
 const WORD_S: f64 = 1e-9;
 
 /// Factor on the time if simulated renderers of Pixel-Planes 5 draw the volume.

@@ -148,7 +148,7 @@ pub(crate) fn family_rows(rows: &[Row]) -> String {
             row.id,
             row.ours,
             row.unit,
-            row.standing.text(),
+            row.provenance.text(),
             row.statement
         );
     }
@@ -165,14 +165,15 @@ fn own(rows: &[FigureRow]) -> String {
     rows.iter().fold(HEADER.to_owned(), |text, row| text + &row_text(row))
 }
 
-/// Width of the chart in millimetres: the text of a page.
+/// Width of the chart in millimetres, which is the width of the text on a page.
 const CHART_MM: f64 = 165.0;
 
-/// Returns a chart of the errors of all rows, in percent of the published values. The intervals are relative too.
+/// Returns a chart of the errors of all rows, in percent of the published values. The intervals are also in percent of
+/// the published values.
 fn chart(rows: &[FigureRow]) -> Chart {
     let series = |name: &str, is_free: bool| {
         // Each row keeps the position of its number, so that the two series share the axis.
-        let chosen = rows.iter().enumerate().filter(|(_, row)| (row.standing == "free") == is_free);
+        let chosen = rows.iter().enumerate().filter(|(_, row)| (row.provenance == "free") == is_free);
         let points = chosen.map(|(place, row)| ChartPoint {
             at: (place as f64, row.error_percent),
             interval: row.interval.map_or((f64::NAN, f64::NAN), |ends| relative(ends, row.published)),
@@ -205,7 +206,7 @@ fn row_text(row: &FigureRow) -> String {
     let miss = if row.misses() { "miss: " } else { "" };
     format!(
         "{:<4} {:>10.2} {:>10.2}  {:<13} {:>+7.1}%  {interval:<22} {:<10} {miss}{}\n",
-        row.id, row.published, row.simulated, row.unit, row.error_percent, row.standing, row.statement
+        row.id, row.published, row.simulated, row.unit, row.error_percent, row.provenance, row.statement
     )
 }
 
@@ -213,7 +214,7 @@ fn row_text(row: &FigureRow) -> String {
 mod tests {
     use super::*;
 
-    fn row(id: &'static str, standing: &'static str, interval: Option<[f64; 2]>) -> FigureRow {
+    fn row(id: &'static str, provenance: &'static str, interval: Option<[f64; 2]>) -> FigureRow {
         FigureRow {
             id,
             published: 50.0,
@@ -222,7 +223,7 @@ mod tests {
             error_percent: 2.0,
             analytic: None,
             interval,
-            standing,
+            provenance,
             spread: None,
             fitted: "",
             source: String::new(),

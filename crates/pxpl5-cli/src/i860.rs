@@ -102,7 +102,7 @@ struct Warnings {
 }
 
 impl Warnings {
-    fn tell(&self, program: &Program) {
+    fn print(&self, program: &Program) {
         let is_allowed = |rule: Rule| self.allow.iter().any(|name| name == "all" || name == rule.name());
         let told: Vec<String> =
             program.warnings.iter().filter(|warning| !is_allowed(warning.rule)).map(ToString::to_string).collect();
@@ -114,14 +114,14 @@ impl Warnings {
 ///
 /// # Errors
 ///
-/// Returns the message to print before a non-zero exit.
+/// Returns the message that the command prints before it ends with an exit code above 0.
 pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
         Command::Asm { file, base, output, warnings } => asm(&file, base, output.as_deref(), &warnings),
         Command::Disasm { file, base } => print(&listing(base, &words_of(&read(&file).map_err(CliError::failure)?))),
         Command::Run { file, base, entry, stop, budget, memory, show, json, quiet, warnings } => {
             let program = load(&file, base).map_err(CliError::failure)?;
-            warnings.tell(&program);
+            warnings.print(&program);
             let options = RunOptions { entry, stop, budget, memory, show, json, quiet };
             let (report, result) = execute(&program, &options).map_err(CliError::failure)?;
             // The report is printed even if the program did not reach its end.
@@ -153,7 +153,8 @@ fn text_of(file: &Path, bytes: Vec<u8>) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// Assembles a file. Returns the program and its source text. Comments in the source may have any text encoding.
+/// Assembles a file. Returns the assembled program and the source text. Comments in the source text may have any text
+/// encoding.
 fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
     let source = String::from_utf8_lossy(&read(file)?).into_owned();
     let program = assemble(&file.display().to_string(), base, &source).map_err(|e| e.to_string())?;
@@ -162,7 +163,7 @@ fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
 
 fn asm(file: &Path, base: u32, output: Option<&Path>, warnings: &Warnings) -> Result<(), CliError> {
     let (program, source) = assembled(file, base).map_err(CliError::failure)?;
-    warnings.tell(&program);
+    warnings.print(&program);
     match output {
         Some(path) => OutputFile::open(path, "-o")?.write(&program.bytes),
         None => print(&program.listing(Some(&source))),
@@ -330,7 +331,7 @@ mod tests {
         RunOptions { entry: None, stop: None, budget: 100, memory: 0x2000, show: Vec::new(), json: false, quiet: false }
     }
 
-    /// A program that stores the number 7 in the second word of a table behind its code.
+    /// A program that stores the number 7 in the second word of a table, which follows the program's code.
     const STORE: &str = "start: mov 7, r5\nmov table, r6\nst.l r5, 4(r6)\nend: nop\ntable: .long 1, 2, 3";
 
     #[test]

@@ -123,7 +123,7 @@ fn one_text(machine: &MachineConfig) -> String {
         let _ = writeln!(text, "{pipeline:<42} {said}");
     }
     text.push('\n');
-    // Parameters of the machine come first, those of tracking second.
+    // Parameters of the machine come first, parameters of tracking second.
     machine.parameters().iter().for_each(|parameter| line(&mut text, parameter));
     text.push_str("\nWith a tracked head (head.motion, --head), on every machine:\n\n");
     tracking_parameters().iter().for_each(|parameter| line(&mut text, parameter));
@@ -136,6 +136,6 @@ fn line(text: &mut String, Parameter { path, info, value, read_only }: &Paramete
     let _ = writeln!(
         text,
         "{path:<42} {value:>12} {:<8} {:<9} {low}..{high}: {}{fixed}",
-        info.unit, info.standing, info.source
+        info.unit, info.provenance, info.source
     );
 }

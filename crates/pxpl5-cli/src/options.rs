@@ -13,7 +13,7 @@ pub(crate) fn know(registry: Arc<Registry>) {
     let _ = REGISTRY.set(registry);
 }
 
-/// Returns the pipelines and displays of this process, by default the built-in ones.
+/// Returns the pipelines and displays of this process, by default the built-in pipelines and displays.
 pub(crate) fn registry() -> Arc<Registry> {
     Arc::clone(REGISTRY.get_or_init(pxpl5::registry))
 }

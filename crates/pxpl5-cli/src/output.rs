@@ -34,21 +34,22 @@ const MOST_TRIES: u32 = 100;
 /// The relation of the written files to the manifest (the list of a run's files) in the folder.
 #[derive(Debug)]
 enum Listing {
-    /// The manifest does not list the written files, because they do not belong to its run.
+    /// The manifest does not list the written files, because these files do not belong to the manifest's run.
     None,
-    /// The written files are all files of one run. They replace the files of the previous run in the folder.
+    /// The written files are all files of one run. These files replace the files of the previous run in the folder.
     Own(Manifest),
-    /// The written files derive from the results in the folder. If the folder has a manifest, they are added to it.
+    /// The written files derive from the results in the folder. If the folder has a manifest, the written files are
+    /// added to the manifest.
     Added(Manifest),
 }
 
 impl OutputFolder {
-    /// Returns an output folder for all files of one run. They replace all files of the previous run.
+    /// Returns an output folder for all files of one run. These files replace all files of the previous run.
     ///
     /// # Errors
     ///
-    /// Fails when the path is not a folder, or cannot be created or written. Fails when the folder holds a sweep, whose
-    /// rows may be the work of hours.
+    /// Fails when the path is not a folder, or cannot be created or written. Fails when the folder holds a sweep,
+    /// because its rows may have taken hours.
     pub(crate) fn of_run(path: &Path, command: &str) -> Result<Self, CliError> {
         before(path)?;
         Self::begin(path, Place::folder("--out"), Listing::Own(Manifest::new(command)))
@@ -72,8 +73,8 @@ impl OutputFolder {
         Self::begin(path, Place::folder(option), added_to(path, results))
     }
 
-    /// Checks that the folder is writable, before hours of simulation. Folders created for this check are then removed,
-    /// so that an interrupted run leaves no empty folder.
+    /// Checks that the folder is writable before the simulation begins, which may take hours. Folders created for this
+    /// check are then removed, so that an interrupted run leaves no empty folder.
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
         let batch = Batch::new(place.clone());
         let mut folder = Self { path: path.to_path_buf(), place, made: Vec::new(), batch, listing };
@@ -126,8 +127,8 @@ impl OutputFolder {
         }
     }
 
-    /// Locks the folder against other processes. Returns `None` on a file system without locks: there, results without
-    /// protection are better than none.
+    /// Locks the folder against other processes. Returns `None` on a file system without locks, where results without
+    /// protection are better than no results.
     fn lock(&self) -> Option<File> {
         let folder = File::open(&self.path).ok()?;
         folder.lock().ok()?;
@@ -152,7 +153,7 @@ impl OutputFolder {
         self.in_folder(|batch| batch.put(target, bytes))
     }
 
-    /// Renames all files to their final names, or none of them. Processes that commit to the same folder take turns.
+    /// Renames all files to their final names, or no file. Processes that commit to the same folder take turns.
     ///
     /// # Errors
     ///
@@ -218,7 +219,7 @@ fn added_to(folder: &Path, results: &Path) -> Listing {
     }
 }
 
-/// Removes the temporary files of an uncommitted folder, and any still empty folders that were created for them.
+/// Removes the temporary files of an uncommitted folder, and any still empty folders that were created for these files.
 impl Drop for OutputFolder {
     fn drop(&mut self) {
         self.batch.discard();
@@ -227,7 +228,7 @@ impl Drop for OutputFolder {
 }
 
 /// A single output file, written completely or not at all. A device or pipe is never replaced: the bytes are written
-/// into it.
+/// into the device or pipe.
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     target: Target,
@@ -238,7 +239,7 @@ pub(crate) struct OutputFile {
 }
 
 impl OutputFile {
-    /// Resolves the path given by an option. Checks that the path is writable, if this check leaves no trace.
+    /// Resolves the path given by an option. Checks that the path is writable, unless the path is a device or a pipe.
     ///
     /// # Errors
     ///

@@ -194,7 +194,7 @@ impl PlotArgs {
     }
 }
 
-/// Writes all three files of a plot, or none of them.
+/// Writes all three files of a plot, or no file.
 fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) -> Result<(), CliError> {
     // The three files differ only in their extension.
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());

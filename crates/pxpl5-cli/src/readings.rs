@@ -77,8 +77,8 @@ fn text(readings: &Readings, rows: usize) -> String {
     // The summary gives the number of interpretations that are as good as the best one.
     let _ = writeln!(
         text,
-        "\n{} interpretations are as good as the best within the printed digits ({:.2} % of a mean error).",
-        readings.as_good, readings.rounding_percent
+        "\nThe number of interpretations that equal the best one within the printed digits ({:.2} % of a mean error) is {}.",
+        readings.rounding_percent, readings.as_good
     );
     let _ = writeln!(text, "\nEach figure, predicted by the interpretation that fits the other figures best:");
     readings.left_out.iter().for_each(|one| text.push_str(&left_out(one)));

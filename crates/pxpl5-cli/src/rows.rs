@@ -175,7 +175,7 @@ fn name_of(value: &Value) -> Option<String> {
     }
 }
 
-/// Returns the current name of a comparison column that has been renamed, or `None`.
+/// Returns the current name of a comparison column that has been renamed. Returns `None` for all other names.
 pub(crate) fn renamed(old: &str) -> Option<String> {
     let new = match old {
         "updates_hz" => "updates_hz.mean",

@@ -86,7 +86,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
         print(&text((&plan, &results, report), args.explain, written))?;
         print(&more.map(|more| more_text(&more)).unwrap_or_default())?;
     }
-    // The exit code tells scripts that the report lacks a latency.
+    // The exit code shows scripts that the report lacks a latency.
     match too_short {
         Some(error) => Err(error),
         None if report.shown == 0 => Err(nothing_shown(report)),
@@ -94,7 +94,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns the effect on latency and update rate of 10 % more of each resource.
+/// Returns the latency and update rate that 10 % more of a resource would give, for each resource of the machine.
 fn more(plan: &Plan) -> Result<Vec<WhatIf>, CliError> {
     let experiment = plan.experiment(crate::scenes::load(plan, false)?);
     what_if(&plan.registry, &experiment).map_err(CliError::from)

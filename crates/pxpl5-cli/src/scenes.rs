@@ -23,12 +23,12 @@ pub(crate) struct ScenesArgs {
 /// Fails when the scene does not exist or its file cannot be read.
 pub(crate) fn load(plan: &Plan, quiet: bool) -> Result<Arc<Scene>, CliError> {
     let scene = plan.load_scene()?;
-    tell(&scene, quiet);
+    print_warnings(&scene, quiet);
     Ok(scene)
 }
 
 /// Prints warnings about parts of a scene's file that the importer has changed.
-pub(crate) fn tell(scene: &Scene, quiet: bool) {
+pub(crate) fn print_warnings(scene: &Scene, quiet: bool) {
     let named: Vec<String> = scene.warnings().iter().map(|warning| format!("{}: {warning}", scene.name())).collect();
     warn(&named, quiet);
 }

@@ -53,7 +53,7 @@ pub(crate) struct SettingArgs {
     /// Distance from the eye, in metres, at which pixel errors are evaluated; default: the distance of the scene's
     /// content.
     #[arg(long, value_name = "METRES")]
-    judge_at: Option<f64>,
+    evaluate_at: Option<f64>,
     /// Tracker of the head: optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal;
     /// default optical.
     #[arg(long)]
@@ -139,7 +139,7 @@ impl SettingArgs {
         for (key, option, value) in numbers {
             value.map(|value| file.set(key, value, option)).transpose()?;
         }
-        self.judge_at.map(|metres| file.set("head.judge_at", metres, "--judge-at")).transpose()?;
+        self.evaluate_at.map(|metres| file.set("head.evaluate_at", metres, "--evaluate-at")).transpose()?;
         // `--columns` sets one key for each column.
         for column in self.columns.iter().flat_map(|columns| columns.split(',')) {
             let (field, name) = column.split_once('=').unwrap_or((column, ""));

@@ -170,7 +170,7 @@ pub(crate) struct Written {
 }
 
 impl Written {
-    /// Returns the message that tells the user which jobs were written and how to submit them.
+    /// Returns a message for the user: which jobs were written and how to submit them.
     pub(crate) fn text(&self) -> String {
         let Resources { tasks, threads, minutes, megabytes, .. } = self.resources;
         format!(

@@ -112,7 +112,8 @@ impl SnapshotArgs {
         Ok(Snapshot::read(text, &name)?)
     }
 
-    /// Simulates the plan. Saves or restores a checkpoint at its field, if an option requests this.
+    /// Simulates the plan. If an option requests a checkpoint, the checkpoint is saved or restored at the field that
+    /// the option or the checkpoint states.
     ///
     /// # Errors
     ///

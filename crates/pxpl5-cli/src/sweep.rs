@@ -159,7 +159,8 @@ fn again(args: &SweepArgs) -> String {
     words.join(" ")
 }
 
-/// Prints the number of failed points of a shard, and the error of the first one. Returns the number of failed points.
+/// Prints the number of failed points of a shard, and the error of the first failed point. Returns the number of failed
+/// points.
 pub(crate) fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
     if let Some(point) = store.failed(shard).next() {

@@ -6,7 +6,7 @@ use pxpl5::Plan;
 use pxpl5::scene::Scene;
 use std::sync::Arc;
 
-/// Length of a short run in display fields: one second. If a pipeline needs no more fields than this to show a picture,
+/// Length of a short run in display fields: one second. If a pipeline can show a picture within this number of fields,
 /// no warning is given, even for a shorter run.
 const SHORT_RUN: u64 = 60;
 

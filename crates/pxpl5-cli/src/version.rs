@@ -8,7 +8,7 @@ pub(crate) const LONG_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (comm
 
 /// Returns the commit from which the command was built. Returns `None` if the build script found none.
 ///
-/// `-modified` follows the commit if the sources differed from it when the command was compiled.
+/// `-modified` follows the commit if the sources differed from this commit when the command was compiled.
 pub(crate) fn commit() -> Option<&'static str> {
     Some(commit_text()).filter(|commit| *commit != "unknown")
 }

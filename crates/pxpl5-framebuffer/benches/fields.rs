@@ -1,4 +1,5 @@
-//! Host time of a board: a field of ten regions (what Slats sends an eye), an idle field, a picture.
+//! Host time of a board for three cases: a field of ten regions (as Slats sends for an eye), a field without messages,
+//! and a picture.
 
 #![allow(missing_docs, reason = "the macros of criterion make public functions without any")]
 

@@ -24,7 +24,7 @@ pub struct FrameBuffer {
     displayed: u8,
     /// Field that is being scanned, or `None` before the first retrace.
     scanning: Option<PeriodNumber>,
-    /// Swap requests that have not taken effect: the arrival time and the requested buffer of each.
+    /// Swap requests that have not taken effect. Each entry has the arrival time and the requested buffer.
     swaps: Vec<(Time, u8)>,
     seen: VecDeque<ScannedField>,
     stats: FrameBufferStats,
@@ -36,7 +36,7 @@ impl FrameBuffer {
     ///
     /// # Errors
     ///
-    /// [`FrameBufferConfigError`] names the parameter that is out of range.
+    /// Returns a [`FrameBufferConfigError`] with the name of the parameter that is out of range.
     pub fn new(config: FrameBufferConfig, node: NodeId) -> Result<Self, FrameBufferConfigError> {
         config.check()?;
         Ok(Self {
@@ -92,7 +92,7 @@ impl FrameBuffer {
     }
 
     /// Returns a field as it was scanned. Returns `None` before the end of the field, and after the board has discarded
-    /// it.
+    /// the field.
     #[must_use]
     pub fn seen(&self, field: PeriodNumber) -> Option<ScannedField> {
         self.seen.iter().find(|seen| seen.field == field).cloned()
@@ -104,8 +104,8 @@ impl FrameBuffer {
         self.seen.back().cloned()
     }
 
-    /// Returns the current field as scanned up to `now`. Pixels that arrive after `now` are not included. Returns
-    /// `None` before the first retrace.
+    /// Returns the current field as it was scanned up to `now`. Pixels that arrive after `now` are not included.
+    /// Returns `None` before the first retrace.
     #[must_use]
     pub fn current_scan(&self, now: Time) -> Option<ScannedField> {
         let buffer = self.displayed;
@@ -147,11 +147,11 @@ impl FrameBuffer {
         }
         let found = target.buffer;
         let buffer = self.buffers.get_mut(usize::from(found)).ok_or(FrameBufferFault::NoSuchBuffer { found })?;
-        // Record the arrival in the region, which is new for a first message.
+        // Record the arrival in the region. The first message of a region adds the region to the buffer.
         let place = arriving(buffer, pixels, &self.video)?;
         buffer.region_mut(place).arrive(pixels.part, context.now());
         self.stats.messages += 1;
-        // The region is complete: hide the older region below it and report its arrival.
+        // The region is complete. Hide the older region with the same pixels, and report the arrival.
         if let Some(last_part_at) = buffer.region(place).last_at() {
             self.stats.regions += 1;
             if let Some(older) = buffer.hide_below(place) {
@@ -181,7 +181,7 @@ impl FrameBuffer {
         if let Some(scanned) = self.scanning {
             self.remember(scanned, now);
         }
-        // Forget hidden regions, then swap and begin the next field.
+        // Discard hidden regions, then swap and begin the next field.
         for buffer in &mut self.buffers {
             buffer.prune(self.video.width(), self.video.height());
         }
@@ -197,7 +197,7 @@ impl FrameBuffer {
     }
 
     fn remember(&mut self, field: PeriodNumber, ends_at: Time) {
-        // Forget the oldest field if the memory is full.
+        // Discard the oldest field if the greatest number of fields is kept.
         if self.seen.len() == self.fields_kept {
             self.seen.pop_front();
         }
@@ -214,7 +214,7 @@ impl FrameBuffer {
 
     fn swap(&mut self, field: PeriodNumber, context: &mut Out) {
         let now = context.now();
-        // Requests that arrived before this instant take effect, and the last one wins.
+        // Of the requests that arrived before this instant, the last one takes effect.
         let due = self.swaps.iter().filter(|swap| swap.0 < now).max().copied();
         let Some((_, buffer)) = due else { return };
         self.swaps.retain(|swap| swap.0 >= now);
@@ -239,7 +239,8 @@ fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result
     Err(unexpected_part(pixels))
 }
 
-/// Returns the fault of an unexpected message: its number does not exist in the region, or the message arrived before.
+/// Returns the fault of an unexpected message. The message has a number that does not exist in the region, or has
+/// already arrived.
 const fn unexpected_part(pixels: &RegionPixels) -> FrameBufferFault {
     FrameBufferFault::Part { target: pixels.target, found: pixels.part, parts: pixels.parts }
 }

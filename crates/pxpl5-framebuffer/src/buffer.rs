@@ -1,4 +1,5 @@
-//! One of the two pixel buffers of a board. A buffer keeps the data of a region until none of its pixels can be seen.
+//! One of the two pixel buffers of a board. A buffer keeps the data of a region as long as a pixel of the region can be
+//! seen.
 
 use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};
@@ -11,8 +12,8 @@ use std::sync::Arc;
 /// The regions in a buffer as they are passed to readers of pictures, oldest region first.
 pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
 
-/// Number of kept regions above which the buffer searches, pixel by pixel, for regions that newer ones cover
-/// completely.
+/// Number of kept regions above which the buffer searches for regions to discard. The search finds, pixel by pixel, the
+/// regions that newer regions cover completely.
 const FEW: usize = 128;
 
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ pub(crate) struct Buffer {
     /// at a time.
     arriving: Vec<usize>,
     /// Index of the newest complete region for each cut, the key returned by [`cut`]. Regions with the same cut fill
-    /// the same pixels, so the older ones are hidden.
+    /// the same pixels, so the newest region hides the older regions.
     newest: BTreeMap<[u32; 6], usize>,
     scans: Scans,
 }
@@ -74,29 +75,29 @@ impl Buffer {
         self.scans.begin(field);
     }
 
-    /// Handles the completion of a region, which hides an older region with the same pixels. Returns the index of the
-    /// older region if its pixels were overwritten.
+    /// Handles the completion of a region, which hides an older region with the same pixels. If there is such an older
+    /// region, the function returns its index.
     pub(crate) fn hide_below(&mut self, place: usize) -> Option<usize> {
         self.arriving.retain(|other| *other != place);
         let newest = self.newest.entry(cut(&self.held[place].region.target)).or_insert(place);
         if *newest == place {
             return None;
         }
-        // The region with the higher index is the newer one, also if an older one completes later.
+        // The region with the higher index is the newer region, even if the older region completes later.
         let older = place.min(*newest);
         self.held[older].hidden = true;
         *newest = place.max(*newest);
         (older != place).then_some(older)
     }
 
-    /// Returns the number of lines of region `older` that were never shown completely. Region `newer`, with the same
-    /// pixels, has overwritten these lines before the beam had shown all their pixels.
+    /// Returns the number of lines of region `older` that were never shown completely. Region `newer` has the same
+    /// pixels, and overwrote these lines before the beam had shown all their pixels.
     pub(crate) fn lines_never_shown(&self, older: usize, newer: usize, video: &Video, word: Span) -> u64 {
         let [older, newer] = [older, newer].map(|place| self.region(place));
         self.scans.lines_never_shown(&Overwritten { older, newer, video, word })
     }
 
-    /// Recomputes the indices of the arriving and of the newest regions, because regions were removed.
+    /// Recomputes the indices of the arriving and the newest regions after the removal of regions.
     fn index(&mut self) {
         self.arriving.clear();
         self.newest.clear();
@@ -119,14 +120,14 @@ impl Buffer {
         self.shared.clone().unwrap_or_else(|| regions_of(&self.held))
     }
 
-    /// Removes regions none of whose pixels can be seen any more.
+    /// Removes regions without visible pixels, whose pixels no later scan can show.
     pub(crate) fn prune(&mut self, width: u32, height: u32) {
         if self.held.iter().any(|held| held.hidden) {
             self.held.retain(|held| !held.hidden);
             self.shared = None;
             self.index();
         }
-        // The search by pixels is slow, so it runs only after many regions have come.
+        // The search by pixels is slow, so the buffer searches only after the arrival of many regions.
         if self.held.len() > self.search_above {
             self.forget_covered(width, height);
             self.search_above = FEW.max(2 * self.held.len());
@@ -134,10 +135,12 @@ impl Buffer {
     }
 
     /// Removes regions whose pixels are all covered by newer regions. Regions with different borders can cover each
-    /// other in part, so the search compares single pixels. A region that is still arriving is the newest one, because
-    /// a port receives one region at a time. No other region covers it.
+    /// other in part, so the search compares single pixels.
+    ///
+    /// A port receives one region at a time. A region that is still arriving is therefore the newest region, and no
+    /// other region covers it.
     fn forget_covered(&mut self, width: u32, height: u32) {
-        // Go from the newest region to the oldest and mark the pixels of each.
+        // Go from the newest region to the oldest and mark the pixels of each region.
         let mut covered = vec![false; (width * height) as usize];
         for held in self.held.iter_mut().rev() {
             held.hidden = true;
@@ -220,8 +223,8 @@ mod tests {
         frame
     }
 
-    /// A search removes exactly the regions of which no pixel is visible. The number of kept regions stays below the
-    /// number of visible regions plus twice the number of regions that the last search kept.
+    /// A search removes exactly the regions without a visible pixel. The number of kept regions stays below the number
+    /// of visible regions plus twice the number of regions that the last search kept.
     #[test]
     fn discarded_regions_are_exactly_those_that_later_regions_cover() {
         let video = Video::new(crate::FrameBufferConfig::NTSC.video).expect("valid");

@@ -12,19 +12,20 @@ pub struct FrameBufferConfig {
     pub video: VideoTiming,
     /// Timing of the board's port on the ring.
     pub port: PortTiming,
-    /// Number of scanned fields that the board remembers, 1 to 1,000. An interlaced picture needs at least two.
+    /// Number of scanned fields that the board keeps, 1 to 1,000. An interlaced picture needs at least two.
     pub fields_kept: u64,
 }
 
 impl FrameBufferConfig {
-    /// The NTSC frame buffer of TR94. The board remembers the last two fields.
+    /// The NTSC frame buffer of TR94. The board keeps the last two fields.
     pub const NTSC: Self = Self { video: VideoTiming::PAPERS, port: PortTiming::PAPERS, fields_kept: 2 };
 
     /// Checks that a board can be built from these parameters.
     ///
     /// # Errors
     ///
-    /// [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found value.
+    /// Returns [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found
+    /// value.
     pub fn check(&self) -> Result<(), FrameBufferConfigError> {
         self.video.check()?;
         self.port.check()?;

@@ -1,4 +1,5 @@
-//! The frame buffers of Pixel-Planes 5: NTSC video, or a panel described by parameters. Each has two buffers.
+//! The frame buffers of Pixel-Planes 5: NTSC video, or a panel described by parameters. Each frame buffer has two pixel
+//! buffers.
 //!
 //! ```text
 //!   ring --Pixels--> port --+--> buffer 0 (even and odd field) --+
@@ -12,17 +13,17 @@
 //! 1. A region arrives as messages of 1,024 pixels (the last may be shorter), row by row. The port accepts every word
 //!    immediately. The words of a message arrive one word time apart. The last word arrives at the time of the event
 //!    [`FrameBufferEvent::Pixels`]. The last message of a region causes [`FrameBufferOutput::RegionArrived`].
-//! 2. A target names buffer, region and lines. The rows of a [`Lines::Frame`](pxpl5_wire::Lines) picture are lines of
-//!    the frame. Row `r` of a field picture is line `2 r` (even) or `2 r + 1` (odd).
+//! 2. A target states the buffer, the region and the lines. The rows of a [`Lines::Frame`](pxpl5_wire::Lines) picture
+//!    are lines of the frame. Row `r` of a field picture is line `2 r` (even) or `2 r + 1` (odd).
 //! 3. At every retrace, and at no other time, the buffer requested last is displayed ([`FrameBufferOutput::Swapped`]).
 //!    A request that arrives at the instant of a retrace waits for the next retrace.
 //! 4. Field `n` scans the even lines of the displayed buffer if `n` is even, else the odd lines. A pixel shows the
-//!    contents of the buffer when the beam reaches the pixel. A word that arrives at this instant is shown; a word that
-//!    arrives later is not. If a region arrives too late, the viewer sees it torn, word by word.
-//!    [`ScannedField::late_regions`] lists such regions.
+//!    contents of the buffer when the beam reaches the pixel. A word that arrives at this instant is shown, and a later
+//!    word is not. If a region arrives too late, the viewer sees old words in a part of the region, and new words in
+//!    the other part. [`ScannedField::late_regions`] lists such regions.
 //! 5. [`FrameBufferStats::lines_never_shown`] counts lines that a newer region overwrites before the beam has shown all
 //!    of their pixels. Only regions that fill exactly the same pixels are compared.
-//! 6. Two boards scan in lock-step because the wiring gives both the same retraces.
+//! 6. Two boards scan in lock-step because both receive the same retraces.
 //! 7. An impossible event (pixels for another board, a region outside the frame, a repeated message) is a counted fault
 //!    without effect: [`FrameBuffer::faults`].
 //!
@@ -42,15 +43,15 @@
 //! | first visible line of an odd field | 22.5 lines after its retrace |
 //! | pixel `x` of a line | (140 + `x`) pixel periods of 11/135 us after its start |
 //!
-//! The half line interlaces the fields on a screen. The first line of an odd field is scanned half a line later in its
-//! field, and so half a line pitch lower.
+//! The half line interlaces the fields on a screen. The first line of an odd field is scanned half a line time later in
+//! its field. This line therefore appears half a line pitch lower.
 //!
 //! **Not modelled:**
 //!
 //! - the colour encoder and its subcarrier, gamma and the phosphor
 //! - the 9 pre-equalising and synchronising lines, except for their time
-//! - two simultaneous transfers into one board (the port forbids them; if they overlap, the later one hides the other)
-//! - contention of scan and port for the video RAM
+//! - two simultaneous transfers into one board (the port permits only one transfer at a time)
+//! - conflicts between the scan and the port over the video RAM
 //!
 //! A [`Panel`] is the other kind of frame buffer: a display of any size and rate, described by parameters. A panel
 //! keeps whole pictures.

@@ -124,7 +124,7 @@ impl Display for NtscDisplay {
         let board = self.boards.get(surface)?;
         let now = self.video.field_at(time);
         board.seen(now)?;
-        // A screen shows parts of up to three fields.
+        // The lines on a screen belong to up to three fields.
         let oldest = now.before(2).unwrap_or(PeriodNumber::FIRST);
         let fields: Vec<ScannedField> = oldest.until(now.next()).filter_map(|field| board.seen(field)).collect();
         Some(seen_at(&self.video, time, &fields))
@@ -165,9 +165,9 @@ impl Display for NtscDisplay {
 }
 
 /// Returns the screen as a viewer sees it at `time`, which must lie in the field that was scanned last. Above the beam
-/// the screen shows the lines of the current field. Below the beam it shows the lines of the field two before the
-/// current one. Between these lines it shows the lines of the previous field. Fields that are missing from `fields` are
-/// black. A screen keeps each line until the beam comes again, because the model's phosphor does not fade.
+/// the screen shows the lines of the current field. Below the beam the screen shows the lines of the field that was
+/// scanned two fields earlier. Between these lines are the lines of the previous field. Fields that are missing from
+/// `fields` are black. A screen keeps each line until the beam comes again, because the model's phosphor does not fade.
 #[must_use]
 pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     let now = video.field_at(time);
@@ -182,12 +182,12 @@ pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
                 row[bytes.clone()].copy_from_slice(&field.as_raw()[first..][bytes]);
             }
         };
-        // This line belongs to the other parity.
+        // The current field does not scan this line.
         if video.when(0, y, now).is_none() {
             copy(1, 0..row_bytes);
             continue;
         }
-        // The beam moves from left to right, so it has passed all pixels up to some x.
+        // The beam moves from left to right, so the pixels that the beam has passed are at the start of the line.
         let has_been = |x: u32| video.when(x, y, now).is_some_and(|scanned_at| scanned_at <= time);
         let scanned = first_without(video.width(), has_been) as usize * 3;
         copy(0, 0..scanned);
@@ -196,8 +196,8 @@ pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     screen
 }
 
-/// Returns the first number below `count` for which `has` is false, or `count` if there is none. `has` must be true for
-/// all smaller numbers and false for all greater ones.
+/// Returns the lowest number below `count` for which `has` is false, or `count` if there is no such number. `has` must
+/// be true for all lower numbers and false for all higher numbers.
 fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (0, count);
     while low < high {

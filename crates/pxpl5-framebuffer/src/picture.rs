@@ -25,7 +25,7 @@ impl Canvas {
         Self { width, words }
     }
 
-    /// Returns `length` pixels of a row. The first pixel is at [x, y]. All of them must lie in the canvas.
+    /// Returns `length` pixels of a row. The first pixel is at [x, y]. All pixels must lie in the canvas.
     pub(crate) fn row(&mut self, [x, y]: [u32; 2], length: u32) -> CanvasRow<'_> {
         let begin = (y * self.width + x) as usize;
         CanvasRow(&mut self.words[begin..begin + length as usize])
@@ -45,7 +45,7 @@ impl Canvas {
 impl CanvasRow<'_> {
     /// Paints the pixels of a segment. The image is computed only if at least one pixel is not painted yet.
     pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment) {
-        // An image that is too short leaves the rest black.
+        // If the image is too short, the remaining pixels stay black.
         for (word, pixel) in self.missing(image, segment) {
             *word = if *word & PUT == 0 { pixel | PUT } else { *word };
         }
@@ -65,7 +65,8 @@ impl CanvasRow<'_> {
         }
     }
 
-    /// Returns all pixels together with the pixels of the image, or nothing if all pixels are already painted.
+    /// Returns the pixels of a segment together with the pixels of the image. Returns nothing if all pixels of the
+    /// segment are already painted.
     fn missing<'a, I: Deref<Target = Arc<[Word]>>>(
         self,
         image: &'a I,

@@ -56,10 +56,10 @@ pub enum FrameBufferFault {
     WrongBoard {
         /// Port of this board.
         expected: NodeId,
-        /// Frame buffer port that the sender of the pixels has named.
+        /// Frame buffer port in the message of the sender.
         found: NodeId,
     },
-    /// A swap request names a buffer that is neither 0 nor 1.
+    /// A swap request asks for a buffer that is neither 0 nor 1.
     #[error("expected buffer 0 or 1, found {found}")]
     NoSuchBuffer {
         /// Number of the requested buffer.
@@ -71,7 +71,7 @@ pub enum FrameBufferFault {
         target.region.0, target.grid, target.lines, frame[0], frame[1]
     )]
     Region {
-        /// Frame buffer, region and picture for which the pixels were meant.
+        /// Frame buffer, region and picture of the pixels according to the sender.
         target: CopyTarget,
         /// Width and height of the frame in pixels.
         frame: [u32; 2],
@@ -79,7 +79,7 @@ pub enum FrameBufferFault {
     /// The number of messages given by the sender does not match the number of pixels in the region.
     #[error("region {} needs {expected} messages of pixels, found {found}", target.region.0)]
     Parts {
-        /// Frame buffer, region and picture for which the pixels were meant.
+        /// Frame buffer, region and picture of the pixels according to the sender.
         target: CopyTarget,
         /// Number of messages that a region of this size needs.
         expected: u32,
@@ -89,21 +89,21 @@ pub enum FrameBufferFault {
     /// The number of the message does not exist in its region, or the same message has already arrived.
     #[error("message {found} of {parts} of region {} does not exist or has arrived already", target.region.0)]
     Part {
-        /// Frame buffer, region and picture for which the pixels were meant.
+        /// Frame buffer, region and picture of the pixels according to the sender.
         target: CopyTarget,
         /// Number of the message within its region, counted from 0.
         found: u32,
         /// Number of messages of which the region consists.
         parts: u32,
     },
-    /// A retrace came at a time that differs from the video timing.
+    /// A retrace occurred at a time that differs from the video timing.
     #[error("retrace {field} expected at {expected}, found at {found}")]
     Retrace {
         /// Number of the field that begins.
         field: PeriodNumber,
         /// Time of the retrace according to the video timing.
         expected: Time,
-        /// Time at which the retrace came.
+        /// Time at which the retrace occurred.
         found: Time,
     },
 }

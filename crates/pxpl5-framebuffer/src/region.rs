@@ -21,7 +21,7 @@ pub(crate) struct RegionWrite {
     arrived: [Time; MAX_PARTS],
 }
 
-/// The pixels of one line of a region that came in the same message.
+/// Pixels of one line of a region. All pixels of a segment arrived in the same message.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
     /// Line of the frame that contains the pixels.
@@ -97,7 +97,8 @@ impl RegionWrite {
         self.is_complete().then(|| arrived.iter().copied().max())?
     }
 
-    /// Iterates over the pixels that have arrived, line by line. A line that comes in two messages is split.
+    /// Iterates over the pixels that have arrived, line by line. A line that arrives in two messages is split into two
+    /// segments.
     pub(crate) fn segments(&self, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, _, height] = self.rectangle;
         (0..height).flat_map(move |row| self.row(row, word)).filter(|segment| segment.message_at != NEVER)
@@ -108,7 +109,7 @@ impl RegionWrite {
         let [_, _, width, _] = self.rectangle;
         let begin = row * width;
         let end = begin + width;
-        // A row may belong to two messages.
+        // The pixels of a row can be in two messages.
         let parts = begin / MAX_MESSAGE_WORDS..=(end - 1) / MAX_MESSAGE_WORDS;
         parts.map(move |part| {
             let first = begin.max(part * MAX_MESSAGE_WORDS);
@@ -123,7 +124,7 @@ impl RegionWrite {
 
     fn segment(&self, row: u32, part: u32, words: Range<u32>, word: Span) -> Segment {
         let [left, top, width, height] = self.rectangle;
-        // The words before the last one have arrived one word time apart.
+        // The words of a message arrive one word time apart, and the last word arrives at `message_at`.
         let message_at = self.arrived[part as usize];
         let message_end = (width * height).min((part + 1) * MAX_MESSAGE_WORDS);
         let before_end = word * u64::from(message_end - 1 - words.start);

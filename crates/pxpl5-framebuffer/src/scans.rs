@@ -1,4 +1,5 @@
-//! Record of the fields that showed a buffer. The record tells which lines were shown before they were overwritten.
+//! A record of the fields that showed a buffer. The record determines the lines that were shown before they were
+//! overwritten.
 
 use crate::region::RegionWrite;
 use crate::video::Video;
@@ -6,7 +7,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber};
 use std::collections::VecDeque;
 
-/// Number of remembered fields: the newest two of each parity. One field of each parity is not enough, because the beam
+/// Number of recorded fields: the newest two of each parity. One field of each parity is not enough, because the beam
 /// may not have reached a line in the current field yet.
 const REMEMBERED: usize = 4;
 
@@ -37,17 +38,17 @@ impl Scans {
         pair.older.rows().filter(|row| !self.shows_row(*row, pair)).count() as u64
     }
 
-    /// Returns true if one field has shown the whole older region. The test compares only the outermost lines: the
-    /// field must show them after the older write and before the newer write. All lines between them were then shown
-    /// too.
+    /// Returns true if one field has shown the whole older region. The test compares only the first and the last line.
+    /// The field must show both lines after the older write and before the newer write. All lines between them were
+    /// then shown as well.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };
-        // The last word of a message comes at most this long after its first.
+        // The first word of a message arrives at most this much earlier than its last word.
         let overwritten =
             Time(pair.newer.first_at().0.saturating_sub((pair.word * u64::from(MAX_MESSAGE_WORDS - 1)).0));
         let rows = pair.older.rows();
-        // In a region of a frame, every second row lies in the other field.
+        // In a region of a frame, every second row belongs to the other field.
         rows.clone().take(2).all(|first| {
             let last = rows.clone().skip(first as usize).step_by(2).next_back().unwrap_or(first);
             let shows = |(at, field)| scan(at, field, pair).is_some_and(|scan| written <= scan && scan < overwritten);
@@ -79,8 +80,10 @@ fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item 
 }
 
 /// Iterates over the end pixels of each message's part of a row, with the arrival times of their words. The region must
-/// be complete. Both the words of a message and the beam advance evenly, so only the end pixels need a check. Between
-/// two messages there is a pause.
+/// be complete.
+///
+/// Only the end pixels need a check, because both the words of a message and the beam advance at constant rates.
+/// Between two messages there is a pause.
 fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
     region.row(row, word).flat_map(move |segment| {
         [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))

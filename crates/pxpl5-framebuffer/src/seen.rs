@@ -9,7 +9,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 
-/// One field as it was scanned. Its pixels are computed when they are read. A clone is cheap, and later events do not
+/// One field as it was scanned. The pixels are computed when they are read. A clone is cheap, and later events do not
 /// change the field.
 #[derive(Clone, Debug)]
 pub struct ScannedField {
@@ -21,20 +21,21 @@ pub struct ScannedField {
     pub(crate) regions: Regions,
 }
 
-/// A region that arrived too late: some pixels were scanned before they had arrived, so older pixels are seen instead.
-/// The board does not know the field for which the region was meant. Compare `target.picture` to find out.
+/// A region that arrived too late. Some pixels were scanned before they had arrived, so the viewer sees older pixels
+/// instead. The board cannot determine the field for which the region was drawn. The number of the picture in
+/// `target.picture` identifies this field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScannedLateRegion {
     /// Frame buffer and region of the pixels, and number of the picture to which the region belongs.
     pub target: CopyTarget,
     /// Arrival time of the region's last message, or `None` if that message arrived after the end of the field.
     pub arrived_at: Option<Time>,
-    /// First line of the frame in which an older pixel is seen.
+    /// First line of the frame in which the viewer sees an older pixel.
     pub first_line: u32,
-    /// Number of lines of this field in which an older pixel is seen.
+    /// Number of lines of this field in which the viewer sees an older pixel.
     pub lines: u32,
-    /// Longest time from the scan of a pixel to the arrival of the pixel. If the pixel's message did not end in this
-    /// field, the time from the scan to the end of the field is used.
+    /// Longest time from the scan of a pixel to the arrival of the pixel. For a message that did not end in this field,
+    /// the end of the field replaces the arrival.
     pub lateness: Span,
 }
 
@@ -79,7 +80,7 @@ impl ScannedField {
         canvas.into_image()
     }
 
-    /// Returns the regions that came too late for this field, in the order of their arrival.
+    /// Returns the regions that arrived too late for this field, in the order of their arrival.
     #[must_use]
     pub fn late_regions(&self) -> Vec<ScannedLateRegion> {
         let during = self.regions.iter().filter(|region| self.may_be_late(region));
@@ -101,7 +102,7 @@ impl ScannedField {
                     continue;
                 };
                 let row = canvas.row([segment.x, row_of(segment.y)], segment.length);
-                // If the last word was in time, all words of the segment were.
+                // If the last word of the message was in time, all words of the segment were in time.
                 if segment.message_at <= scanned_at {
                     row.put(&pixels, &segment);
                 } else {
@@ -115,9 +116,11 @@ impl ScannedField {
         self.lateness(segment, i) == Some(Span::ZERO)
     }
 
-    /// Returns the delay of a pixel's word behind the beam. Returns `None` if the field does not scan the pixel. The
-    /// board learns only of whole messages. If a message has not ended at the end of the field, all its words therefore
-    /// count as missing. On the published ring, which is faster than the beam, none of these words is in time anyway.
+    /// Returns the delay of a pixel's word behind the beam. Returns `None` if the field does not scan the pixel.
+    ///
+    /// The board gets an event only at the end of a message. If a message has not ended at the end of the field, all
+    /// its words therefore count as missing. On the published ring, which is faster than the beam, none of these words
+    /// would be in time anyway.
     fn lateness(&self, segment: &Segment, i: u32) -> Option<Span> {
         let scanned_at = self.video.when(segment.x + i, segment.y, self.field)?;
         let has_come = segment.message_at < self.ends_at;
@@ -134,7 +137,7 @@ impl ScannedField {
             lateness: Span::ZERO,
         };
         for row in region.rows() {
-            // Beam and words both advance evenly, so the worst pixel is at one end of a segment.
+            // The beam and the words both advance at constant rates, so the latest pixel is at one end of a segment.
             let ends = region.row(row, self.word).flat_map(|s| [(s, 0), (s, s.length - 1)]);
             let worst = ends.filter_map(|(s, i)| Some((s.y, self.lateness(&s, i)?))).max_by_key(|w| w.1);
             if let Some((y, lateness)) = worst.filter(|w| w.1 > Span::ZERO) {

@@ -7,12 +7,12 @@ pub struct FrameBufferStats {
     pub fields: u64,
     /// Number of received messages of pixels.
     pub messages: u64,
-    /// Number of regions of which all messages were received.
+    /// Number of regions for which all messages were received.
     pub regions: u64,
     /// Number of swap requests that took effect.
     pub swaps: u64,
-    /// Number of lines that were overwritten before the beam had shown all of their pixels. There are three causes. The
-    /// newer region came too early. The older region came too late. Or the buffer was shown for only one field, which
-    /// scans every second line.
+    /// Number of lines that were overwritten before the beam had shown all of their pixels. There are three causes: the
+    /// newer region arrived too early, the older region arrived too late, or the buffer was shown for only one field. A
+    /// field scans every second line.
     pub lines_never_shown: u64,
 }

@@ -10,7 +10,7 @@ pxpl5_sim::parameters::parameter_table! {
     pub struct VideoTiming {
         /// Period of the pixel clock, multiplied by the parameter `pixel_divisor`.
         pixel_ps: 11_000_000, "ps", Derived, 11000000..=11000000 in 1..=MAX, "NTSC square pixels: 135/11 MHz = 12.2727 MHz, 640 in 52.15 us";
-        /// Divisor of `pixel_ps`; the quotient is the period of the pixel clock.
+        /// Divisor of `pixel_ps`. The quotient is the period of the pixel clock.
         pixel_divisor: 135, "1", Derived, 135..=135 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
         /// Number of pixel periods in a line.
         line_pixels: 780, "pixels", Derived, 780..=780 in 1..=16_384, "(4004/63 us) x (135/11 MHz)";
@@ -22,8 +22,9 @@ pxpl5_sim::parameters::parameter_table! {
         visible_lines: 240, "lines", Published, 240..=240 in 1..=16_384, "TR94: 480 lines in two fields";
         /// Number of blanked pixel periods at the start of a line, before its visible pixels.
         left_blanking: 140, "pixels", Assumed, 0..=140 in 0..=16_384, "all of the horizontal blanking comes first";
-        /// Number of blanked whole lines after a retrace. In an odd field the remaining half line is blanked too. Its
-        /// first line is therefore scanned half a line later than the first line of an even field.
+        /// Number of blanked whole lines after a retrace. In an odd field, the half line after the retrace is blanked
+        /// too. The first line of an odd field is therefore scanned half a line later than the first line of an even
+        /// field.
         top_blanking: 22, "lines", Assumed, 0..=22 in 0..=16_384, "all of the vertical blanking comes first";
     }
 }
@@ -31,7 +32,7 @@ pxpl5_sim::parameters::parameter_table! {
 pxpl5_sim::parameters::parameter_table! {
     /// Timing of the board's port on the ring.
     pub struct PortTiming {
-        /// Time in which a ring port receives one word. The last word of a message arrives together with the message's
+        /// Time in which a ring port receives one word. The last word of a message arrives at the time of the message's
         /// event.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
     }
@@ -39,11 +40,13 @@ pxpl5_sim::parameters::parameter_table! {
 
 impl VideoTiming {
     /// Checks that a picture can be scanned with these parameters. Each parameter must lie within its limits. The
-    /// visible pixels must fit into a line with their blanking, and the visible lines into a field with theirs.
+    /// visible pixels and their blanking must fit into a line. The visible lines and their blanking must fit into a
+    /// field.
     ///
     /// # Errors
     ///
-    /// [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found value.
+    /// Returns [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found
+    /// value.
     pub fn check(&self) -> Result<(), FrameBufferConfigError> {
         ParameterTable::check(self)?;
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;

@@ -21,7 +21,7 @@ impl Video {
     ///
     /// # Errors
     ///
-    /// The errors of [`VideoTiming::check`], and [`FrameBufferConfigError::Clock`].
+    /// Returns the errors of [`VideoTiming::check`], and [`FrameBufferConfigError::Clock`].
     pub fn new(timing: VideoTiming) -> Result<Self, FrameBufferConfigError> {
         timing.check()?;
         Ok(Self {
@@ -65,9 +65,9 @@ impl Video {
         Some(self.pixel.edge(blanked.saturating_add(u64::from(x))))
     }
 
-    /// Returns the time at which the beam reaches the first pixel of a region in a field. To be shown completely, the
-    /// region must have arrived by this time. Returns `None` for a region outside the frame, or for a region without a
-    /// line in this field.
+    /// Returns the time at which the beam reaches the first pixel of a region in a field. The region is shown
+    /// completely if all its pixels have arrived by this time. Returns `None` for a region outside the frame, or for a
+    /// region without a line in this field.
     #[must_use]
     pub fn reaches(&self, target: &CopyTarget, field: PeriodNumber) -> Option<Time> {
         let [left, top, _, height] = rectangle(self, target)?;
@@ -99,7 +99,7 @@ impl Video {
         if y >= self.height() || y % 2 != parity.first_line() {
             return None;
         }
-        // An odd field begins in the middle of a line; its first whole line counts.
+        // An odd field begins in the middle of a line. Lines of the field are counted from its first whole line.
         let start = field.0.saturating_mul(self.timing.frame_lines).div_ceil(2);
         Some(start + self.timing.top_blanking + u64::from(y / 2))
     }

@@ -98,7 +98,8 @@ fn rows_of_a_field_region_fill_the_lines_of_that_field() {
     board.retraces(0..=3);
     board.run();
     let frame = board.device.displayed_frame().picture();
-    // Region 6 is the second of the bottom row: its first row is row 120 of the field, line 241 of the frame.
+    // Region 6 is the second region of the bottom row. Its first row is row 120 of the field, which is line 241 of the
+    // frame.
     assert_eq!(word(&frame, 128, 241), 1);
     assert_eq!(word(&frame, 255, 241), 128);
     assert_eq!(word(&frame, 128, 243), 129);
@@ -124,8 +125,8 @@ fn two_fields_make_an_interlaced_frame_in_either_order() {
     assert_eq!([0, 1].map(|y| word(&alone, 0, y)), [RED, 0]);
 }
 
-/// The last pixel of a message arrives at the time of the message: message 0 of a field region ends with row 7, pixel
-/// 127.
+/// The last pixel of a message arrives at the time of the message. Message 0 of a field region ends with pixel 127 of
+/// row 7.
 #[test]
 fn a_word_that_arrives_with_the_beam_is_seen_and_one_a_picosecond_later_is_not() {
     for (late, expected) in [(0, GREEN), (1, RED)] {
@@ -136,12 +137,12 @@ fn a_word_that_arrives_with_the_beam_is_seen_and_one_a_picosecond_later_is_not()
         board.run();
         let picture = board.device.seen(PeriodNumber(2)).expect("kept").picture();
         assert_eq!(word(&picture, 127, 7), expected);
-        // The pixel before it is 50 ns earlier on the ring but 81 ns earlier under the beam.
+        // The previous pixel arrives 50 ns earlier, but the beam reaches it 81 ns earlier.
         assert_eq!(word(&picture, 126, 7), RED);
     }
 }
 
-/// Words come faster than the beam moves, so a region is in time if its first word is.
+/// Words arrive faster than the beam moves. A region is therefore in time if its first word is in time.
 #[test]
 fn a_region_is_late_from_a_picosecond_after_its_first_pixel_was_scanned() {
     for late in [0, 1] {
@@ -174,8 +175,8 @@ fn a_region_that_misses_its_field_shows_the_old_picture_on_all_its_lines() {
     let seen = board.device.seen(PeriodNumber(2)).expect("kept");
     let listed = seen.late_regions();
     assert_eq!((listed[0].lines, listed[0].arrived_at), (120, None));
-    // Message 0 came 13 messages before the end of the field, its first word 1,023 words earlier: the latest of all,
-    // since words come faster than the beam moves.
+    // Message 0 arrived 13 messages before the end of the field, and its first word 1,023 words earlier. This word has
+    // the greatest lateness, because words arrive faster than the beam moves.
     let first_scan = board.device.video().reaches(&top, PeriodNumber(2)).expect("scanned");
     assert_eq!(listed[0].lateness, end - first_scan - MESSAGE * 13 - WORD * 1_023);
     assert!((0..120).all(|y| word(&seen.picture(), 64, y) == RED));
@@ -204,7 +205,7 @@ fn two_boards_with_the_same_retraces_scan_in_lock_step() {
 fn retraces_of_a_million_fields_are_where_the_board_expects_them() {
     let mut board = Board::new();
     for field in 0..1_000_000 {
-        // Exactly n x 1001/60000 s, rounded down.
+        // The exact time is n x 1001/60000 s, rounded down.
         let at = Time(field * 1_001_000_000_000 / 60);
         board.feed(at, FrameBufferEvent::Retrace { field: PeriodNumber(field) });
         if field % 1_000 == 0 {
@@ -255,7 +256,7 @@ fn regions_that_cannot_be_seen_are_discarded() {
         board.run();
     }
     let alive = images.iter().filter(|image| image.strong_count() > 0).count();
-    // Two buffers hold two fields of ten regions each; the two remembered fields hold older ones.
+    // Two buffers hold two fields of ten regions each. The two recorded fields hold older regions.
     assert!((40..=80).contains(&alive), "{alive}");
 }
 
@@ -347,7 +348,8 @@ fn a_board_that_cannot_be_built_says_why() {
     assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
 }
 
-/// Writes region 0 of a field several times, complete at the given times. Returns the number of lines never shown.
+/// Writes region 0 of a field several times. The writes are complete at the given times. Returns the number of lines
+/// never shown.
 fn never_shown(parity: FieldParity, at: &[Time]) -> u64 {
     let mut board = Board::new();
     board.retraces(0..=8);
@@ -365,16 +367,16 @@ fn lines_that_are_overwritten_before_their_scan_are_counted_one_by_one() {
     let beam = |row: u32, field| video.when(0, 2 * row, PeriodNumber(field)).expect("scanned");
     let retrace = |field| video.retrace(PeriodNumber(field));
     let span = MESSAGE * 15;
-    // No line is lost if each picture has a field of its parity, whether the region comes early or late in the other
-    // field.
+    // No line is lost if each picture is shown in a field of its parity. The region may arrive early or late in the
+    // field of the other parity.
     let shown = [retrace(1) + span, retrace(3) + span, retrace(5)];
     assert_eq!(never_shown(FieldParity::Even, &shown), 0);
-    // Two pictures between two fields of their parity: all 120 lines of the first are lost.
+    // Two pictures arrive between two fields of their parity, so all 120 lines of the first picture are lost.
     let early = [retrace(1) + span, retrace(1) + span * 2, retrace(3) + span];
     assert_eq!(never_shown(FieldParity::Even, &early), 120);
-    // A region complete when the beam is at its row 60, its words 15 messages of 8 rows long: the rows that were there
-    // before the beam stay to be shown; those that came after it are overwritten before the next field. Row k came at
-    // last - (119 - k) rows of 6.5 us; the beam passes it at begin + k x 63.556 us.
+    // A region is complete when the beam is at its row 60. The region has 15 messages of 8 rows each. Rows that arrived
+    // before the beam are shown. Rows that arrived after the beam are overwritten before the next field. Row k arrives
+    // at last - (119 - k) x 6.5 us, and the beam passes row k at begin + k x 63.556 us.
     let last = beam(60, 2);
     let late_rows = (0..120).filter(|row| {
         let message_at = Time(last.0 - (MESSAGE * (14 - row / 8)).0);
@@ -398,7 +400,7 @@ fn a_buffer_that_is_not_displayed_shows_nothing() {
             &colour(RED),
         );
     }
-    // Picture 0 is overwritten before it is shown; picture 1 is shown in fields 4 and 5.
+    // Picture 0 is overwritten before it is shown. Picture 1 is shown in fields 4 and 5.
     board.swap(Time(retrace(4).0 - 1), 1);
     board.swap(Time(retrace(6).0 - 1), 0);
     board.run();

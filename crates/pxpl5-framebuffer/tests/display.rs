@@ -1,5 +1,5 @@
-//! Tests of the NTSC display through its interface. An independent model of beam and screen gives the expected
-//! pictures.
+//! Tests of the NTSC display through its interface. An independent model of the beam and the screen computes the
+//! expected pictures.
 
 mod support;
 
@@ -94,13 +94,13 @@ impl Rig {
     }
 }
 
-/// Returns the number of the picture that is sent to the left eye before the first line of a field is scanned.
+/// Returns the number of the picture that is sent to the left eye before the beam scans the first line of a field.
 const fn picture_of(field: u64) -> u8 {
     10 + field as u8
 }
 
-/// Makes a display with fields 0 to `last`, each with a picture of its own for the left eye. Field `last` has begun,
-/// but no pixel of it is scanned.
+/// Makes a display with fields 0 to `last`, each with a different picture for the left eye. Field `last` has begun, but
+/// none of its pixels is scanned.
 fn coloured(last: u64) -> Rig {
     let mut rig = Rig::new();
     for field in 0..=last {
@@ -168,7 +168,7 @@ fn a_port_takes_pixels_and_requests_for_its_own_eye() {
     rig.tick(1);
     let retrace = rig.display.tick(PeriodNumber(1));
     rig.run_to(retrace);
-    // 16 messages for each region of 128 x 128 and 12 for those of the last 96 rows.
+    // 16 messages for each region of 128 x 128 pixels, and 12 messages for each region in the last 96 rows.
     let counts = ["fields", "messages", "regions", "swaps", Counter::LINES_NEVER_SHOWN].map(|name| rig.count(name));
     assert_eq!(counts, [2, 15 * 16 + 5 * 12, 20, 1, 0]);
     let swapped = DisplayOutput::Swapped { surface: 1, buffer: 1, tick: PeriodNumber(1) };

@@ -1,5 +1,5 @@
-//! Compares the number of lines overwritten before the beam had shown them with a model. For every pixel the model
-//! checks that at the scan its old word was there and its new word was not.
+//! Compares the number of lines that were overwritten before the beam had shown them with a model. The model checks
+//! every pixel: when the beam scans the pixel, the old word must have arrived and the new word must not.
 
 mod support;
 
@@ -11,11 +11,12 @@ use support::{Board, MESSAGE, colour, n_parts, target};
 /// Number of fields of a test.
 const FIELDS: u64 = 8;
 
-/// The time of a region, given by the meeting of the beam with one of its words.
+/// The arrival time of a region, given by one word of the region. `later` is the time from the beam to this word.
 #[derive(Clone, Copy, Debug)]
 struct Met {
     field: u64,
-    /// Row in thousandths of the region's height, and true for the last pixel of the row instead of the first.
+    /// Row of the word, in thousandths of the region's height. The next field, `last`, selects the last pixel of the
+    /// row instead of the first pixel.
     row: u32,
     last: bool,
     /// Delay of the word after the beam, in picoseconds.
@@ -37,7 +38,7 @@ impl Place {
         self.0.grid.rectangle(self.0.region)
     }
 
-    /// Line of the frame.
+    /// Returns the line of the frame for a row of the region.
     fn line(self, row: u32) -> u32 {
         let row = self.rectangle()[1] + row;
         match self.0.lines {
@@ -47,8 +48,8 @@ impl Place {
         }
     }
 
-    /// Returns the arrival time of the word of pixel `i` in picoseconds after the last word of the first message.
-    /// Messages follow each other and end with their last word; earlier words come a word time apart.
+    /// Returns the arrival time of the word of pixel `i` in picoseconds after the last word of the first message. The
+    /// time of a message is the arrival time of its last word. The earlier words arrive one word time apart.
     fn comes(self, i: u32) -> i64 {
         let [_, _, width, height] = self.rectangle();
         let message_end = (width * height).min((i / 1_024 + 1) * 1_024);
@@ -56,8 +57,8 @@ impl Place {
         slowness * (MESSAGE.0 as i64 * i64::from(i / 1_024) - 50_000 * i64::from(message_end - 1 - i))
     }
 
-    /// Returns the arrival time of the first message of a picture, so that one word meets the beam as [`Met`]
-    /// describes.
+    /// Returns the arrival time of the first message of a picture. With this time, one word has the distance from the
+    /// beam that [`Met`] gives.
     fn begins(self, board: &Board, met: Met) -> i64 {
         let [left, _, width, height] = self.rectangle();
         let row = met.row * height / 1_000;
@@ -68,7 +69,7 @@ impl Place {
         beam.expect("one of two fields has the line").0 as i64 + met.later - self.comes(row * width + column)
     }
 
-    /// Returns the number of rows of the older picture of which no field has shown every pixel.
+    /// Returns the number of rows of the older picture that no field has shown completely.
     fn never_shown(self, board: &Board, [older, newer]: [i64; 2]) -> u64 {
         let [left, _, width, height] = self.rectangle();
         let shows = |field, row: u32| {
@@ -89,7 +90,7 @@ fn places() -> impl Strategy<Value = Place> {
         Just((Lines::Field(FieldParity::Even), RegionGrid::FIELD)),
         Just((Lines::Field(FieldParity::Odd), RegionGrid::FIELD)),
         Just((Lines::Field(FieldParity::Odd), cut)),
-        // Regions of one message. The beam may meet any of its rows during the arrival.
+        // Regions of one message. During the arrival, the beam can reach any row of the region.
         (1..9_u32).prop_map(|region_height| {
             (Lines::Field(FieldParity::Even), RegionGrid { region_height, ..RegionGrid::FIELD })
         }),

@@ -1,5 +1,5 @@
-//! Tests of panels through their interface. Times are fractions of a period; a model that paints whole regions gives the
-//! expected pictures.
+//! Tests of panels through their interface. Times are fractions of a period. A model that paints whole regions computes
+//! the expected pictures.
 
 use image::{Rgb, RgbImage};
 use pxpl5_framebuffer::{HiResConfig, LcdConfig, OledConfig, PanelConfig, PanelNumbers};
@@ -14,9 +14,9 @@ use std::sync::Arc;
 const NODES: [NodeId; 2] = [NodeId(40), NodeId(41)];
 const SIZE: [u32; 2] = [1280, 1024];
 const GRID: RegionGrid = RegionGrid { width: 1280, height: 1024, region_width: 128, region_height: 128 };
-/// A word of the ring.
+/// Time of a word on the ring.
 const WORD: Span = Span::from_ns(50);
-/// Picoseconds of a second.
+/// Number of picoseconds in a second.
 const SECOND: u128 = 1_000_000_000_000;
 
 /// A pixel source whose colours encode region and row.
@@ -51,7 +51,7 @@ impl Rig {
         at
     }
 
-    /// Sends a region to the buffer of a port, its messages a nanosecond apart.
+    /// Sends a region to the buffer of a port. The messages of the region arrive one nanosecond apart.
     fn region(&mut self, at: Time, port: usize, buffer: u8, region: u16) -> CopyTarget {
         let (frame_buffer, region) = (NODES[port], RegionId(region));
         let picture = PictureNumber(3);
@@ -145,7 +145,7 @@ fn a_picture_is_shown_from_the_scan_after_it_was_asked_for() {
     assert_eq!(rig.display.shown(1), Some(painted(&[37])));
     assert_eq!(rig.display.shown(0), Some(painted(&[])));
     assert_eq!(rig.display.shown(2), None);
-    // Three scans have begun and two are over. The display remembers the last of these.
+    // Three scans have begun and two have ended. The display keeps the second scan.
     assert_eq!(rig.display.last_seen(), Some(PeriodNumber(1)));
     assert_eq!(rig.display.seen(1, PeriodNumber(1)), Some(painted(&[37])));
     assert_eq!([0, 2].map(|scan| rig.display.seen(1, PeriodNumber(scan))), [None, None]);
@@ -182,7 +182,7 @@ fn built(config: PanelConfig) -> Box<dyn Display> {
     config.build(&[NodeId(1)]).expect("it can be built")
 }
 
-/// When some pixels light in the second period, in microseconds from its begin.
+/// Returns the times at which some pixels light in the second period, in microseconds from the start of the period.
 fn lit_us(config: PanelConfig, pixels: &[(u32, u32)]) -> Vec<Option<u64>> {
     let display = built(config);
     let begin = display.tick(PeriodNumber(1));
@@ -190,7 +190,8 @@ fn lit_us(config: PanelConfig, pixels: &[(u32, u32)]) -> Vec<Option<u64>> {
     lit.map(|at| at.map(|at| at.since(begin).0.div_ceil(1_000_000))).collect()
 }
 
-/// 5,000 pixels in 8,000 us are 1.6 us each: a line of 100 takes 160 us, a column of 50 takes 80.
+/// 5,000 pixels light in 8,000 us, 1.6 us for each pixel. A line of 100 pixels takes 160 us, and a column of 50 pixels
+/// takes 80 us.
 #[test]
 fn a_scan_goes_the_way_that_its_direction_says_and_a_global_one_lights_at_its_end() {
     let corners = [(0, 0), (1, 0), (0, 1), (99, 49)];
@@ -292,7 +293,7 @@ fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
     ] {
         assert_eq!(DisplayConfig::check(&config).expect_err("refused").to_string(), expected);
     }
-    // The rules between numbers also hold for numbers without a table.
+    // The rules that relate several numbers also apply to numbers without a table.
     for (zero, name) in [
         (PanelConfig { width: 0, ..PanelConfig::PAPERS }, "width"),
         (PanelConfig { height: 0, ..PanelConfig::PAPERS }, "height"),
@@ -308,7 +309,7 @@ fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
     assert!(error.starts_with("panel.refresh_hz") && error.contains('0') && error.contains("1000"), "{error}");
 }
 
-/// The centre of 2 ms of light that follows with 0.1 ms is 1.1 ms after its begin.
+/// The centre of a light of 2 ms with a time constant of 0.1 ms is 1.1 ms after its start.
 #[test]
 fn presets_are_lit_as_their_sources_say() {
     let light = OledConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();

@@ -1,4 +1,5 @@
-//! Compares scanned fields pixel by pixel with a model that finds for every pixel the last word that had arrived.
+//! Compares scanned fields with a model, pixel by pixel. For every pixel, the model finds the last word that had
+//! arrived.
 
 mod support;
 
@@ -34,8 +35,9 @@ impl Copied {
         }
     }
 
-    /// Returns the arrival time of the word of pixel `i`. The last word of a message arrives with it, earlier words a
-    /// word time apart. Words of a message that has not ended at the end of the field do not count.
+    /// Returns the arrival time of the word of pixel `i`. The last word of a message arrives at the time of the
+    /// message. The earlier words arrive one word time apart. Words of a message that has not ended at the end of the
+    /// field do not count.
     fn arrival(&self, i: u32) -> u64 {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         let message_end = (width * height).min((i / 1_024 + 1) * 1_024);
@@ -55,8 +57,8 @@ impl Copied {
     }
 }
 
-/// Returns the time at which odd field 5 scans a pixel, from the standard. Before field 5 come two frames of 525 lines
-/// and an even field of 262.5 lines. Field 5 begins with 22 blank lines.
+/// Returns the time at which odd field 5 scans a pixel, computed from the NTSC standard. Before field 5 come two frames
+/// of 525 lines and an even field of 262.5 lines. Field 5 begins with 22 blank lines.
 fn scanned_at(x: u32, y: u32) -> Option<u64> {
     let line = 2 * 525 + 263 + 22 + u64::from(y / 2);
     (y % 2 == 1).then(|| (line * 780 + 140 + u64::from(x)) * 11_000_000 / 135)
@@ -101,7 +103,7 @@ fn seen(copies: &[Copied], shuffle: u64) -> ScannedField {
     board.device.seen(PeriodNumber(FIELD)).expect("kept")
 }
 
-/// Returns for each pixel the newest word that had arrived when it was scanned.
+/// Returns for each pixel the newest word that had arrived when the pixel was scanned.
 fn model_picture(copies: &[Copied]) -> Vec<u32> {
     let mut words = vec![0; 640 * 240];
     for copy in copies {
@@ -127,7 +129,7 @@ fn model_late(copy: &Copied) -> Option<ScannedLateRegion> {
     });
     lines.dedup();
     let last_at = copy.first_at + copy.gap * u64::from(n_parts(&copy.target) - 1);
-    // A region counts as unknown if its first message has not ended at the end of the field.
+    // The board has no record of a region whose first message has not ended at the end of the field.
     (copy.first_at < ENDS && !lines.is_empty()).then(|| ScannedLateRegion {
         target: copy.target,
         arrived_at: (last_at < ENDS).then_some(Time(last_at)),
@@ -178,7 +180,7 @@ fn simultaneous_events_commute() {
     assert!(results.iter().all(|result| *result == results[0]));
 }
 
-/// Makes a board that remembers more than two fields.
+/// Makes a board that keeps more than two fields.
 fn remembering() -> Board {
     Board::with(FrameBufferConfig { fields_kept: 8, ..FrameBufferConfig::NTSC })
 }
@@ -256,8 +258,8 @@ fn a_field_knows_which_buffer_was_scanned_and_the_last_one_is_the_last_scanned()
 /// A region is late only if it arrives while the field is scanned.
 #[test]
 fn late_is_what_came_while_its_field_was_scanned() {
-    // The first of its 16 messages comes 15 messages before the last. At the end of the field, either event may come
-    // first.
+    // The first of the region's 16 messages arrives 15 messages before the last. At the end of the field, either event
+    // can come first.
     let begins_at_the_end = ENDS + MESSAGE.0 * 15;
     let cases = [(BEGINS, false), (BEGINS + MESSAGE.0 * 60, true), (begins_at_the_end, false)];
     for ((last, is_late), shuffle) in cases.into_iter().flat_map(|case| (0..8).map(move |shuffle| (case, shuffle))) {
@@ -272,8 +274,8 @@ fn late_is_what_came_while_its_field_was_scanned() {
     }
 }
 
-/// The second message of a region comes exactly at the end of the field. In either order of events, its words count as
-/// missing.
+/// The second message of a region arrives exactly at the end of the field. In either order of events, its words count
+/// as missing.
 #[test]
 fn a_message_that_comes_with_the_end_of_a_field_has_not_come() {
     let grid = RegionGrid { region_height: 16, ..RegionGrid::FIELD };

@@ -1,4 +1,5 @@
-//! Retraces, lines and pixels to the picosecond. Expected values are exact rationals of the NTSC standard.
+//! Tests of retraces, lines and pixels with an accuracy of one picosecond. Expected values are exact fractions from the
+//! NTSC standard.
 
 mod support;
 
@@ -13,14 +14,14 @@ fn ntsc() -> Video {
     Video::new(VideoTiming::PAPERS).expect("valid")
 }
 
-/// floor(n x 1001/60000 s) in picoseconds.
+/// Returns floor(n x 1001/60000 s) in picoseconds.
 fn retrace_ps(n: u64) -> u64 {
     (u128::from(n) * 1_001_000_000_000_000 / 60_000) as u64
 }
 
-/// floor(lines x 4004/63 us + pixels x 11/135 us) in picoseconds.
+/// Returns floor(lines x 4004/63 us + pixels x 11/135 us) in picoseconds.
 fn beam_ps(lines: u64, pixels: u64) -> u64 {
-    // Over the common denominator 945 = 63 x 15 = 135 x 7.
+    // The common denominator is 945 = 63 x 15 = 135 x 7.
     let us_945 = u128::from(lines) * 4_004 * 15 + u128::from(pixels) * 11 * 7;
     (us_945 * 1_000_000 / 945) as u64
 }
@@ -56,7 +57,7 @@ fn an_even_field_begins_on_a_line_and_an_odd_one_in_the_middle_of_a_line() {
         assert_eq!(even.0, beam_ps(525 * frame + 22, 0));
         let odd = video.line_start(1, odd_field).expect("odd");
         assert_eq!(odd.0, beam_ps(525 * frame + 262 + 23, 0));
-        // 22 lines and 22.5 lines of 4004/63 us; each instant is rounded down to a picosecond.
+        // 22 lines and 22.5 lines of 4004/63 us. Each instant is rounded down to a picosecond.
         let blank_even = even - video.retrace(even_field);
         let blank_odd = odd - video.retrace(odd_field);
         assert!(blank_even.0.abs_diff(22 * 4_004_000_000 / 63) <= 1, "{blank_even}");
@@ -72,7 +73,7 @@ fn the_visible_pixels_of_a_line_take_the_published_52_15_us() {
     let visible = (last - first).0 + 11_000_000 / 135;
     assert!(visible.abs_diff(52_150_000) < 5_000, "{visible} ps");
     let blanked = first - video.line_start(100, PeriodNumber(8)).expect("scanned");
-    // 140 + 640 = 780 pixel periods are the whole line; three instants and a period are rounded down.
+    // 140 + 640 = 780 pixel periods are a whole line. Three instants and a period are rounded down.
     assert!((blanked.0 + visible).abs_diff(4_004_000_000 / 63) <= 2, "{blanked} + {visible} ps");
 }
 

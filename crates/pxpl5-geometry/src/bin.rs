@@ -7,10 +7,10 @@
 //! - For each edge, some point of the region's *pixel-centre box* is on the inner side, with the tie rule of the edge.
 //!   The box is the smallest rectangle that contains the centres of the region's pixels.
 //!
-//! Together, the conditions test all sides of the Minkowski sum of triangle and box. So they are true exactly if the
-//! triangle, without its right and bottom edges, meets the pixel-centre box. Every region with a covered pixel is
-//! touched. A touched region can be without covered pixels, if the triangle passes between its pixel centres. A
-//! triangle that lies between two columns or two rows of pixel centres touches no region there.
+//! Together, the conditions test all sides of the Minkowski sum of triangle and box. Both conditions are therefore true
+//! exactly if the triangle, without its right and bottom edges, meets the pixel-centre box. Every region with a covered
+//! pixel is touched. A touched region can have no covered pixel, if the triangle passes between the pixel centres of
+//! the region. A triangle between two adjacent columns or rows of pixel centres touches no region.
 
 use crate::outline::{Outline, extent};
 use crate::regions::RegionMask;
@@ -29,8 +29,8 @@ impl Range {
         self.first > self.last
     }
 
-    /// Returns the pixels whose centres lie in [low, high), given in subpixels. By the tie rule, a pixel with its
-    /// centre at `high` is not drawn.
+    /// Returns the pixels whose centres lie in the interval [low, high), with both limits in subpixels. By the tie
+    /// rule, a pixel with its centre at `high` is not drawn.
     #[inline(always)]
     pub(crate) const fn of_centres(low: i32, high: i32) -> Self {
         Self { first: (low + 7) >> 4, last: (high - 9) >> 4 }
@@ -42,7 +42,8 @@ impl Range {
     }
 }
 
-/// The division of a picture into regions, with reciprocals of the region's size to find the region of a pixel quickly.
+/// The division of a picture into regions. Reciprocals of the region's size make the search for the region of a pixel
+/// fast.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binner {
     pub(crate) width: i32,
@@ -58,7 +59,7 @@ pub(crate) struct Binner {
 
 /// Returns a reciprocal such that `n / size == n * reciprocal(size) >> 20`, for n below 2^13 and sizes up to 128.
 ///
-/// The reciprocal is too large by less than `size / 2^20`. Times n, this excess stays below `1 / size`.
+/// The reciprocal divided by 2^20 exceeds `1 / size` by less than 2^-20. The excess times n stays below `1 / size`.
 const fn reciprocal(size: u32) -> u32 {
     (1_u32 << 20).div_ceil(size)
 }
@@ -88,7 +89,7 @@ impl Binner {
         self.columns
     }
 
-    /// Returns the rows of the picture that are among a range of frame lines.
+    /// Returns the rows of the picture whose frame lines are in a given range.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
@@ -133,8 +134,8 @@ impl Binner {
 
     /// Returns the regions that a triangle touches, among the regions with pixels in the columns `x` and rows `y`.
     ///
-    /// The parameters are only the corners' positions. With the whole outline as a parameter, callers that need no
-    /// depths would still compute them.
+    /// The function takes only the positions of the corners instead of an [`Outline`]. Callers that need no depths then
+    /// do not compute depths.
     #[inline(never)]
     pub(crate) fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
         let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
@@ -146,8 +147,8 @@ impl Binner {
         })
     }
 
-    /// Returns the regions with pixels in the columns `x` and rows `y`, as far as `test` is true for them. The
-    /// arguments of `test` are a region's column and row in the grid of regions.
+    /// Returns the regions for which `test` returns true, among the regions with pixels in the columns `x` and rows
+    /// `y`. The arguments of `test` are a region's column and row in the grid of regions.
     fn cells(&self, x: Range, y: Range, test: impl Fn(i32, i32) -> bool) -> RegionMask {
         let columns = [x.first, x.last].map(|n| quotient(n, self.column_reciprocal));
         let rows = [y.first, y.last].map(|n| quotient(n, self.row_reciprocal));
@@ -160,7 +161,7 @@ impl Binner {
         RegionMask::with_bits(mask)
     }
 
-    /// Returns the first and last pixel, along x, of a column of regions.
+    /// Returns the first and last pixel column of a column of regions.
     #[inline(always)]
     pub(crate) fn column_box(&self, column: i32) -> (i32, i32) {
         let left = column * self.region_width;
@@ -198,14 +199,15 @@ impl Outline {
     }
 }
 
-/// Returns the pixels whose centres lie between the smallest and the largest of three corners, given in subpixels.
+/// Returns the pixels whose centres lie between the smallest and the largest of three coordinates, which are in
+/// subpixels.
 fn pixels_between(corners: &[i32; 3]) -> Range {
     let [low, high] = extent(corners);
     Range::of_centres(low, high)
 }
 
-/// Returns the largest value of an edge expression over a rectangle of pixels. The computation cannot overflow: see
-/// [`crate::GUARD_PIXELS`].
+/// Returns the largest value of an edge expression over a rectangle of pixels. The computation cannot overflow (see
+/// [`crate::GUARD_PIXELS`]).
 fn greatest(edge: &Linear, (left, right): (i32, i32), (top, bottom): (i32, i32)) -> i32 {
     let x = if edge.a > 0 { right } else { left };
     let y = if edge.b > 0 { bottom } else { top };

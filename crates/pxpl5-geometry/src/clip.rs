@@ -1,28 +1,28 @@
-//! Clipping in homogeneous clip coordinates, before the divide by w.
+//! Clipping in homogeneous clip coordinates, before the division by w.
 //!
 //! Triangles are clipped only as far as the number formats require. The clip planes are the near plane (z = 0), the far
-//! plane (z = w), and four planes of a guard band. The guard band extends some 4,000 px beyond the picture. A triangle
-//! that leaves the picture but not the guard band is not clipped; edge expressions handle it.
+//! plane (z = w), and four planes of a guard band. The guard band extends about 4,000 px beyond the picture. A triangle
+//! outside the picture but inside the guard band is not clipped, because edge expressions can represent the triangle.
 //!
-//! If two triangles share an edge, both cut it at exactly the same point, bit for bit. The ends of an edge have a fixed
-//! order, given by their clip coordinates. The cut is computed from the lesser to the greater end. So the winding of a
-//! triangle has no effect, and the cut opens no gap.
+//! If two triangles share an edge, both cut it at exactly the same point, bit for bit. The two ends of an edge have a
+//! fixed order, which follows from their clip coordinates. The cut is computed from the first end to the second end.
+//! The winding of a triangle thus has no effect, and the cut opens no gap.
 //!
 //! Cuts are computed in double precision until they are on the screen. Close to the eye, the small coordinates of a
-//! long edge are differences of large numbers. With a cut that is some pixels off, the pieces of a triangle could fold
-//! over.
+//! long edge are differences of large numbers. If a cut had an error of several pixels, the pieces of a triangle could
+//! overlap.
 
 use crate::newton;
 use std::cmp::Ordering;
 
-/// Largest allowed absolute value of a clip coordinate. Triangles with larger coordinates, infinities or NaN are
-/// dropped, so no step overflows.
+/// Largest allowed absolute value of a clip coordinate. Triangles with larger coordinates, infinities or NaN are not
+/// drawn, so no step overflows.
 pub const MAX_CLIP: f32 = 1e30;
 
-/// Smallest w for the division. The reciprocal of w, times a clip coordinate, is then finite.
+/// Smallest w for the division. With this limit, the product of a clip coordinate and the reciprocal of w is finite.
 pub(crate) const MIN_W: f32 = 1e-30;
 
-/// Largest number of corners of a triangle after cuts by six planes.
+/// Largest number of corners of a triangle after clipping against six planes.
 const MAX_CORNERS: usize = 9;
 
 /// A vertex in clip coordinates, with `N` surface values that vary linearly over the triangle.
@@ -49,7 +49,7 @@ pub(crate) struct Corner<const N: usize> {
 }
 
 impl<const N: usize> Corner<N> {
-    /// Returns the corner at a vertex of the triangle.
+    /// Makes a corner from a vertex of the triangle.
     fn at_vertex(vertex: &ClipVertex<N>) -> Self {
         Self { clip: vertex.clip.map(f64::from), extra: vertex.extra.map(f64::from), cut: false }
     }
@@ -72,8 +72,8 @@ impl<const N: usize> Polygon<N> {
         &self.corners[..self.len]
     }
 
-    /// Adds a corner. Rounding can make a polygon slightly concave, and then give more corners. Corners beyond the
-    /// ninth are dropped.
+    /// Adds a corner. Because of rounding, a polygon can be slightly concave and then have more than nine corners.
+    /// Corners after the ninth are left out.
     fn push(&mut self, corner: Corner<N>) {
         if let Some(slot) = self.corners.get_mut(self.len) {
             *slot = corner;
@@ -83,8 +83,8 @@ impl<const N: usize> Polygon<N> {
 }
 
 impl Guard {
-    /// Returns the signed distance of a point from one of the six planes. It is negative if the point is outside this
-    /// plane.
+    /// Returns the signed distance of a point from one of the six planes. The distance is negative if the point is
+    /// outside this plane.
     fn distance(self, plane: usize, [x, y, z, w]: [f64; 4]) -> f64 {
         let [right, top] = [self.x, self.y].map(f64::from);
         match plane {
@@ -97,7 +97,8 @@ impl Guard {
         }
     }
 
-    /// Returns true if a vertex needs no clipping. For NaN and for coordinates beyond [`MAX_CLIP`], returns false.
+    /// Returns true if a vertex needs no clipping. Returns false for NaN and for coordinates whose absolute value
+    /// exceeds [`MAX_CLIP`].
     #[inline(always)]
     pub(crate) fn contains(self, [x, y, z, w]: [f32; 4]) -> bool {
         let across = (x.abs() <= self.x * w) & (y.abs() <= self.y * w);
@@ -109,7 +110,7 @@ impl Guard {
     pub(crate) fn clip<const N: usize>(self, triangle: &[ClipVertex<N>; 3]) -> Polygon<N> {
         let mut polygon = Polygon::empty();
         triangle.iter().for_each(|v| polygon.push(Corner::at_vertex(v)));
-        // Most triangles cross few planes. So cut only by planes that have a corner outside.
+        // Most triangles cross few planes. Clip only against planes that have a corner outside.
         for plane in 0..6 {
             if polygon.corners().iter().any(|corner| self.distance(plane, corner.clip) < 0.0) {
                 polygon = self.cut(plane, &polygon);
@@ -134,8 +135,8 @@ impl Guard {
         out
     }
 
-    /// Returns the point where an edge crosses a plane. The ends are taken in the order of their clip coordinates, so
-    /// that both triangles at a shared edge get the same point.
+    /// Returns the point where an edge crosses a plane. The function sorts the ends by their clip coordinates, so that
+    /// both triangles at a shared edge get the same point.
     fn crossing<const N: usize>(self, plane: usize, one: &Corner<N>, other: &Corner<N>) -> Corner<N> {
         let (from, to) = match order(&one.clip, &other.clip) {
             Ordering::Greater => (other, one),
@@ -162,7 +163,7 @@ fn order(a: &[f64; 4], b: &[f64; 4]) -> Ordering {
     a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-/// Returns true if one of the six planes of the view volume has all three corners outside.
+/// Returns true if all three corners are outside the same plane of the view volume.
 pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     let beyond_a_side: [fn(&[f32; 4]) -> bool; 6] = [
         |[x, _, _, w]| x > w,

@@ -3,8 +3,8 @@
 use crate::newton::{reciprocal_double, reciprocal_root, root, whole};
 use pxpl5_wire::Quadratic;
 
-/// Number of bits of a silhouette's absolute value within its regions. With the sign it has 47 bits, one less than the
-/// renderer evaluates.
+/// Number of bits of a silhouette's absolute value within its regions. With the sign, the value has 47 bits. The
+/// renderer evaluates 48 bits.
 const VALUE_BITS: i32 = 46;
 
 /// Largest number of bits of a square root in the renderer.
@@ -13,14 +13,14 @@ pub(crate) const ROOT_BITS: i32 = 12;
 /// Largest number of low bits of a silhouette expression that the root can ignore.
 const MAX_ROOT_SHIFT: i32 = 24;
 
-/// Largest left shift of a root, in bits, before its subtraction from a depth.
+/// Largest left shift of a root in bits. The root is shifted before its subtraction from a depth.
 const MAX_DEPTH_SHIFT: i32 = 20;
 
 /// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`. The offset (dx, dy) is in pixels from
 /// `origin`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Conic {
-    /// Origin in pixels of the frame; (0, 0) is the centre of the top left pixel.
+    /// Origin in pixels of the frame. The centre of the top left pixel is (0, 0).
     pub(crate) origin: [f64; 2],
     pub(crate) constant: f64,
     pub(crate) x: f64,
@@ -30,7 +30,8 @@ pub(crate) struct Conic {
     pub(crate) yy: f64,
 }
 
-/// A conic in fixed point: `Q = 2^root_shift (bulge / 2^depth_shift)^2`.
+/// A conic in fixed point. Its value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`, with `bulge` as in
+/// [`crate::ScreenSphere`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FixedConic {
     pub(crate) quadratic: Quadratic,
@@ -38,7 +39,7 @@ pub(crate) struct FixedConic {
     pub(crate) depth_shift: u8,
 }
 
-/// Returns 2 to the power `exponent`, which is limited to -1022 to 1023. The result is exact.
+/// Returns 2 to the power `exponent`. The exponent is limited to the range from -1022 to 1023. The result is exact.
 pub(crate) fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52)
 }
@@ -65,8 +66,8 @@ impl Ellipse {
         self.half_squares.map(reciprocal_root)
     }
 
-    /// Returns the smallest and largest x and y, in pixels of the frame. Returns `None` if the conic is no ellipse:
-    /// NaN, overflow or size 0.
+    /// Returns the smallest and largest x and y, in pixels of the frame. Returns `None` if the conic is not an ellipse,
+    /// for example because of NaN, an overflow or a size of 0.
     pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let [x, y] = self.peak;
         let [half_x, half_y] = self.half_squares.map(root);
@@ -112,7 +113,7 @@ impl Conic {
         4.0 * self.xx * self.yy - self.xy * self.xy
     }
 
-    /// Returns the position, value and size of the conic as an ellipse. They are meaningless for other conics.
+    /// Returns the position, value and size of the conic as an ellipse. For other conics, the result has no meaning.
     pub(crate) fn ellipse(&self) -> Ellipse {
         let inverse = reciprocal_double(self.determinant());
         let dx = (self.xy * self.y - 2.0 * self.yy * self.x) * inverse;
@@ -129,10 +130,10 @@ impl Conic {
     /// Rounds the conic to fixed point, for evaluation at the frame's pixels in `rectangle`. The rectangle is given by
     /// its first and last pixel along x, and along y.
     ///
-    /// The values are scaled by the largest power of two with which they fit 46 bits on the whole rectangle. The
-    /// coefficients are rounded with pixel (px, py) as origin, then converted exactly to pixel (0, 0) as origin. So the
-    /// rounding error is smallest at (px, py) and grows with the distance from this pixel. Callers pass the pixel at
-    /// which the value is greatest (`peak`), so that even a small sphere covers a pixel.
+    /// The values are scaled by a power of two: the largest power with which the values fit into 46 bits on the whole
+    /// rectangle. The coefficients are rounded with pixel (px, py) as origin, then converted exactly to pixel (0, 0) as
+    /// origin. The rounding error is therefore smallest at (px, py) and grows with the distance from this pixel.
+    /// Callers pass the pixel at which the value is greatest (`peak`), so that even a small sphere covers a pixel.
     pub(crate) fn fixed(&self, peak: f64, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
         let local = self.around([f64::from(px), f64::from(py)]);
         let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);
@@ -147,8 +148,8 @@ impl Conic {
         }
     }
 
-    /// Returns the greatest absolute value at the corners of a rectangle. In the rectangle, a concave conic is at most
-    /// the larger of two values: this value and the conic's peak.
+    /// Returns the greatest absolute value at the corners of a rectangle. In the rectangle, the absolute value of a
+    /// concave conic is at most the larger of two values: the returned value and the conic's peak.
     fn greatest_on(&self, [across, down]: [[i32; 2]; 2]) -> f64 {
         let values = across.into_iter().flat_map(|x| down.map(|y| self.at_pixel(x, y).abs()));
         values.fold(0.0, f64::max)
@@ -177,8 +178,8 @@ impl Conic {
     }
 }
 
-/// Converts a quadratic over frame lines to one over rows, which are every `step`-th line from line `first` on. The
-/// values at the pixels stay exactly the same.
+/// Converts a quadratic expression over frame lines to an expression over the rows of a picture. The rows are every
+/// `step`-th line from line `first` on. The values at the pixels stay exactly the same.
 pub(crate) fn for_rows(frame: Quadratic, step: i64, first: i64) -> Quadratic {
     Quadratic {
         xx: frame.xx,

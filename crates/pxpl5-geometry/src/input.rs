@@ -1,4 +1,4 @@
-//! Primitives in the form in which the display list holds them.
+//! Primitives in the form of the display list.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Triangle {
     /// Positions of the corners in world coordinates. The corners can run clockwise or counterclockwise.
     pub positions: [Vec3; 3],
-    /// Normals at the corners. They can have any length. A zero normal counts as facing the eye.
+    /// Normals at the corners. The normals can have any length. A zero normal counts as a normal that faces the eye.
     pub normals: [Vec3; 3],
     /// Red, green and blue at the corners, 0 to 255 each.
     pub colours: [[u8; 3]; 3],
@@ -25,15 +25,15 @@ pub struct WorldSphere {
     pub colour: [u8; 3],
 }
 
-/// A directional light. A surface shows a share of its colour: `ambient + diffuse * max(0, n . l)`, limited to 1. Here
-/// n is the surface's unit normal and l is `direction`.
+/// A directional light. A surface shows this fraction of its colour: `ambient + diffuse * max(0, n . l)`, limited to 1.
+/// Here n is the surface's unit normal and l is `direction`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Light {
     /// Unit vector towards the light, in eye coordinates.
     pub direction: [f32; 3],
-    /// Share of the colour that is visible without the light, 0 to 1.
+    /// Fraction of the colour that is visible without the light, 0 to 1.
     pub ambient: f32,
-    /// Share of the colour that light perpendicular to the surface adds, 0 to 1.
+    /// Fraction of the colour that light perpendicular to the surface adds to the ambient light, 0 to 1.
     pub diffuse: f32,
 }
 

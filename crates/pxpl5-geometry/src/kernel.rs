@@ -4,7 +4,7 @@
 //! commands and writes the commands into bins, one bin for each region. Its steps are: transform, guard band test,
 //! light or normals, snapping to subpixels, planes, conversion of a frame's lines to a field's rows, and regions.
 //! Triangles that are not wholly inside the guard band go to the clipper, a separate program. The kernel replaces steep
-//! planes by flat ones only for pieces of clipped triangles.
+//! planes by flat planes only for pieces of clipped triangles.
 //!
 //! ```text
 //!   display list (96 bytes a triangle, --+
@@ -16,7 +16,7 @@
 //! ```
 //!
 //! The native code makes the same computation, so both give the same words, bit for bit. The reciprocal of w is
-//! computed from a first approximation by two Newton steps, in single precision. A matrix turns the normals, and they
+//! computed from a first approximation by two Newton steps, in single precision. A matrix rotates the normals, which
 //! are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
 //! registers and memory layouts. A [`Kernel`] concatenates source files, like a linker, and defines constants. The
 //! conditions in the files (`.if`) use these constants to select lines. This crate neither assembles nor runs the
@@ -35,17 +35,17 @@ use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid, Word};
 /// Optimization level of the kernel's code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Schedule {
-    /// Code like the output of a compiler without optimization: every statement loads its operands from the stack frame
+    /// Code like the output of a compiler without optimization. Every statement loads its operands from the stack frame
     /// and stores its result there. All functions are inlined, so the code exceeds the instruction cache.
     Straight,
-    /// Code like the output of a good compiler of about 1990: functions, loops, local variables in registers, scalar
-    /// operations (kernels/compiled_rules.md).
+    /// Code like the output of a good compiler of about 1990. The code has functions, loops, local variables in
+    /// registers, and scalar operations (kernels/compiled_rules.md).
     Compiled,
-    /// Hand-written code in dual-instruction mode: two loops over batches of vertices or triangles. Each loop fits the
-    /// instruction cache.
+    /// Hand-written code in dual-instruction mode. The code has two loops over batches of vertices or triangles. Each
+    /// loop fits the instruction cache.
     ///
-    /// Most of the source is linear code: single operations in order, without a choice of clocks and pipelines. The
-    /// i860's assembler does not support linear code. This project's assembler first schedules the linear code.
+    /// Most of the source is linear code: single operations in order, without an assignment to clocks and pipelines.
+    /// The i860's assembler does not support linear code. This project's assembler first schedules the linear code.
     Dual,
 }
 
@@ -65,7 +65,7 @@ pub enum KernelSurface {
 pub enum KernelList {
     /// Triangles with three corners each ([`display_list_words`]).
     Triangles,
-    /// Strips: each vertex makes a triangle with the two vertices before it ([`vertex_words`]).
+    /// Strips. Each vertex makes a triangle with the two previous vertices ([`vertex_words`]).
     Strips,
 }
 
@@ -76,8 +76,8 @@ pub enum KernelPicture {
     Frame,
     /// An NTSC field: 640 x 240 in regions of 128 x 120.
     Field,
-    /// A frame in regions of 128 x 128, for example a face of a cube or another display. The parameter block gives its
-    /// size.
+    /// A frame in regions of 128 x 128, for example a face of a cube or another display. The parameter block gives the
+    /// size of the frame.
     Grid,
 }
 
@@ -95,7 +95,7 @@ pub struct Kernel {
     /// True if the kernel puts commands into the bins of the touched regions. False if it lists all commands for every
     /// region.
     pub binned: bool,
-    /// True if the kernel drops back faces.
+    /// True if the kernel leaves out back faces.
     pub culls: bool,
     /// True if a kernel without bins also stores the bounding box of each command.
     ///
@@ -120,17 +120,18 @@ pub const TRIANGLE_WORDS: usize = 24;
 /// Number of words that a strip's vertex takes in the display list.
 pub const VERTEX_WORDS: usize = 8;
 
-/// Number of words of the parameter block.
+/// Number of words of a kernel's parameter block.
 pub const PARAMETER_WORDS: usize = 128;
 
-/// Single-precision constant 1.5 * 2^23. A number that is added to it is rounded to an integer in the low bits of the
-/// sum.
+/// Single-precision constant 1.5 * 2^23. If a number is added to this constant, the low bits of the sum hold the number
+/// rounded to an integer.
 const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
 /// 2^18: greater than any distance between two corners within the guard band, in subpixels.
 const TWO_18: f32 = 262_144.0;
 
-/// Minuend that reverses the order of biased integers: the larger integer gives the smaller difference.
+/// Constant that reverses the order of biased integers. The integers are subtracted from this constant, so the larger
+/// integer gives the smaller difference.
 const FLIP: Word = 0x9700_0000;
 
 const PARAMETERS: &str = include_str!("../kernels/parameters.s");
@@ -292,8 +293,8 @@ impl Kernel {
         words.0
     }
 
-    /// Returns two numbers each for the front and the back of a triangle: the scale from surface values to plane
-    /// values, and half a unit minus the bias.
+    /// Returns two pairs of numbers, for the front and the back of a triangle. The first number is the scale from
+    /// surface values to plane values. The second number is half a unit minus the bias.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
@@ -309,7 +310,7 @@ impl Kernel {
             KernelSurface::Gouraud | KernelSurface::Precomputed => two_52,
             KernelSurface::Phong => two_52 + two_31,
         };
-        // The order is that of kernels/parameters.s.
+        // The order is defined in kernels/parameters.s.
         [
             2.0,
             f64::from(DEPTH_FAR - DEPTH_NEAR),
@@ -329,7 +330,7 @@ impl Kernel {
 }
 
 impl KernelPicture {
-    /// Returns the kind of picture of `viewport`, or `None` if no kernel supports it.
+    /// Returns the kind of picture of `viewport`, or `None` if no kernel supports this viewport.
     pub(crate) fn of(viewport: &Viewport) -> Option<Self> {
         let grid = viewport.grid();
         match viewport.lines() {
@@ -342,8 +343,8 @@ impl KernelPicture {
     }
 }
 
-/// Returns the last subpixel of a picture along x, its last subpixel along y in the frame, and its number of regions
-/// along x.
+/// Returns three numbers: the last subpixel of a picture along x, its last subpixel along y in the frame, and its
+/// number of regions along x.
 pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
     let grid = viewport.grid();
     [16 * grid.width - 1, 16 * viewport.frame_lines() - 1, grid.columns()]
@@ -352,8 +353,9 @@ pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
 /// Returns a distance from pixel (0, 0), in subpixels. Every point whose x and y are at most this far away is inside
 /// the guard band.
 ///
-/// The guard band ends one pixel before [`screen::GUARD_PIXELS`] on the right and below. It is symmetric around the
-/// middle of the picture, so its left and top ends are nearer by the picture's size. One pixel is left for rounding.
+/// The guard band ends one pixel before [`screen::GUARD_PIXELS`] on the right and at the bottom. The band is symmetric
+/// around the middle of the picture. Its left and top ends are therefore nearer to pixel (0, 0) by the picture's size.
+/// One pixel is reserved for rounding.
 fn safe_distance(viewport: &Viewport) -> Word {
     let size = viewport.grid().width.max(viewport.frame_lines());
     16 * (screen::GUARD_PIXELS as u32 - 2 - size)
@@ -376,7 +378,8 @@ impl ParameterWords {
     }
 }
 
-/// Returns two masks, for XOR and AND, that make the high word of the area negative if the triangle is culled.
+/// Returns a mask for XOR and a mask for AND. After both operations, the high word of the area is negative if the
+/// triangle is culled.
 const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     const SIGN: Word = 1 << 31;
     match dropped {
@@ -387,8 +390,8 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     }
 }
 
-/// Returns the source of the work before the triangles of a pass. Its labels are `edit`, `reset` and `place`
-/// (kernels/place.s).
+/// Returns the source of the work before the triangles of a pass. The labels of the source are `edit`, `reset` and
+/// `place` (kernels/place.s).
 ///
 /// The code at `place` writes all parameters that depend on a view or a light, for [`Kernel::parameters`] and for
 /// [`crate::sphere_kernel`].
@@ -398,7 +401,7 @@ pub fn place_source() -> String {
     [PARAMETERS, spheres, NEWTON, place].join("\n")
 }
 
-/// Returns a row of the matrix that turns normals, scaled to the units of normals in commands.
+/// Returns a row of the matrix that rotates normals. The row is scaled to the units of normals in commands.
 fn normal_row(row: [f32; 3]) -> [f32; 4] {
     let [x, y, z] = row.map(|v| v * f32::from(NORMAL_UNIT));
     [x, y, z, 0.0]
@@ -423,7 +426,7 @@ pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
 /// Returns a strip's vertex in the format of the display list, with a normal of unit length.
 ///
 /// `begins` is true for the first two vertices of a strip, which make no triangle. The corners of a triangle are the
-/// two vertices before this one, in their order, and this vertex. The order is the same for both windings.
+/// two previous vertices, in their order, and this vertex. The order is the same for both windings.
 #[must_use]
 pub fn vertex_words(position: Vec3, normal: Vec3, colour: [u8; 3], begins: bool) -> [Word; VERTEX_WORDS] {
     let [x, y, z] = position.to_array().map(f32::to_bits);

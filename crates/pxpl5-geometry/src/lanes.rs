@@ -1,8 +1,8 @@
 //! Set-up of several triangles together, each in one lane of a vector unit.
 //!
 //! Every lane computes the same bits as [`crate::ScreenTriangle`] and [`crate::plane`] compute for one triangle.
-//! Products of two differences of corner coordinates are below 2^34, so they do not fit 32 bits. They are held as
-//! doubles, which represent them exactly. The loops are plain Rust, compiled once for each vector unit (see
+//! Products of two differences of corner coordinates need up to 34 bits. The code computes such products in double
+//! precision, which represents them exactly. The loops are plain Rust, compiled once for each vector unit (see
 //! [`mod@multiversion`]). All operations in the loops give the same result on every unit.
 
 use crate::newton;
@@ -118,8 +118,8 @@ impl CornerValues {
     }
 }
 
-/// Replaces the expressions by `constant` in the lanes where `there` is 0. In the other lanes all bits of `there` must
-/// be 1.
+/// Replaces the expressions by `constant` in the lanes where `there` is 0. In all other lanes, `there` must have all
+/// bits set.
 #[inline(always)]
 fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> LinearLanes {
     for (i, there) in there.iter().enumerate() {
@@ -136,7 +136,7 @@ struct Expressions {
     edges: [LinearLanes; 3],
     /// Expressions of depth and of three components of colour or normal, in this order.
     planes: [LinearLanes; 4],
-    /// For each triangle, the number of planes that were too steep and became flat.
+    /// For each triangle, the number of planes that were too steep and were replaced by flat planes.
     flattened: EachLane<u8>,
 }
 
@@ -201,15 +201,13 @@ impl PhongLanes {
 }
 
 impl Transform {
-    /// Sets up each triangle like [`Self::gouraud`], including edges and planes, but without a search for touched
-    /// regions.
+    /// Computes edges and planes of each triangle like [`Self::gouraud`], but without a search for touched regions.
     #[must_use]
     pub fn gouraud_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> GouraudLanes {
         GouraudLanes(self.set_up_lanes(triangles, 0.0, stats))
     }
 
-    /// Sets up each triangle like [`Self::phong`], including edges and planes, but without a search for touched
-    /// regions.
+    /// Computes edges and planes of each triangle like [`Self::phong`], but without a search for touched regions.
     #[must_use]
     pub fn phong_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> PhongLanes {
         PhongLanes(self.set_up_lanes(triangles, screen::NORMAL_HALF, stats))
@@ -290,7 +288,7 @@ fn set_up(triangles: &TriangleLanes<'_>, half: f32, rows: PictureRows) -> Expres
     Expressions { edges, planes: planes_through, flattened }
 }
 
-/// Returns true for each triangle whose three normals, on average, face away from the eye. The rule is that of
+/// Returns true for each triangle whose three normals, on average, face away from the eye. The rule is the same as in
 /// [`crate::light::turned`].
 #[inline(always)]
 fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
@@ -340,7 +338,8 @@ fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
 
 /// Returns the corners in clockwise order. In the lanes where `swapped` is all ones, two corners are exchanged.
 ///
-/// Masks exchange the values. With a conditional expression, compilers would choose between addresses, which is slow.
+/// The code exchanges the values with masks. For a conditional expression, compilers select between addresses, which is
+/// slower.
 #[inline(always)]
 fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLane<i32>; 3] {
     let mut second = [0; LANES];
@@ -371,14 +370,15 @@ fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> Linea
     out
 }
 
-/// Divides an integer below 2^34 by 16 and rounds down: it rounds the quotient minus 15/32 to the nearest integer.
+/// Divides an integer below 2^34 by 16 and rounds down. For this, the function subtracts 15/32 from the quotient and
+/// rounds the difference to the nearest integer.
 #[inline(always)]
 fn sixteenth(k: f64) -> i32 {
     const _: () = assert!(1 << format::SUBPIXEL_BITS == 16);
     plane::rounded(k * (1.0 / 16.0) - 15.0 / 32.0)
 }
 
-/// Values that all planes of a triangle have in common, for each triangle; see [`plane::Planes`].
+/// Values that all planes of a triangle have in common, for each triangle (see [`plane::Planes`]).
 struct LanePlanes {
     twice_area: EachLane<f64>,
     x: [EachLane<f64>; 2],
@@ -389,8 +389,8 @@ struct LanePlanes {
 }
 
 impl LanePlanes {
-    /// Computes the values that all planes of a triangle have in common. Either winding gives the same planes, since it
-    /// changes the signs of the cross products and of the area.
+    /// Computes the values that all planes of a triangle have in common. Both windings give the same planes, because
+    /// the other winding changes the signs of both the cross products and the area.
     #[inline(always)]
     fn through_corners(corners: &CornerValues, rows: PictureRows) -> Self {
         let [p, q, r] = &corners.x;
@@ -409,7 +409,7 @@ impl LanePlanes {
     }
 
     /// Returns the plane through three corner values of each triangle, over the frame's pixels. Counts the planes that
-    /// became flat.
+    /// were replaced by flat planes.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();
@@ -430,7 +430,7 @@ impl LanePlanes {
             out.b[i] = b;
             out.c[i] = plane::rounded(there).wrapping_sub(back);
         }
-        // Steep planes are rare, so they are replaced after the loop.
+        // Steep planes are rare, so the code replaces them after the loop.
         if flat.iter().fold(false, |any, flat| any | flat) {
             flatten([p, q, r], &flat, &mut out, flattened);
         }

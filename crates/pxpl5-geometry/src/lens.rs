@@ -1,4 +1,4 @@
-//! The part of a projection with which spheres are projected.
+//! The projection of spheres: the part of a projection matrix that spheres need.
 
 use crate::newton::reciprocal_double;
 use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
@@ -6,26 +6,27 @@ use crate::view::Columns;
 
 /// Mapping from eye coordinates to pixels and depths, as needed for spheres.
 ///
-/// Depth is `constant + slope u`, between 0 and 1. Let t be the distance along -Z. Then u is 1/t under a perspective
-/// projection, and -t under a parallel projection.
+/// Depth is `constant + slope u`, between 0 and 1. Let t be the distance along -Z. With a perspective projection, u is
+/// 1/t. With a parallel projection, u is -t.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
     /// True if the projection is parallel, so that distance does not change sizes.
     pub(crate) parallel: bool,
-    /// Eye units per pixel along x and y, at distance 1 under perspective. The step along y is negative, since y grows
-    /// downwards for pixels and upwards for the eye.
+    /// Eye units per pixel along x and y, at distance 1 under perspective. The step along y is negative, because y
+    /// increases downwards for pixels and upwards for the eye.
     pub(crate) step: [f64; 2],
     /// Pixels per eye unit along x and y, at distance 1 under perspective.
     pub(crate) rate: [f64; 2],
-    /// Eye x and y of the centre of the frame's pixel (0, 0), at distance 1 under perspective.
+    /// Eye x and y of the centre of the frame's pixel (0, 0), at distance 1 for a perspective projection.
     pub(crate) corner: [f64; 2],
     /// Coefficients of t and 1 in a linear expression of the distance t. The expression `near` is negative before the
     /// near plane, and the expression `far` is positive behind the far plane.
     ///
-    /// Under a parallel projection, they are depth and depth - 1. Under perspective, they are these values times t.
+    /// With a parallel projection, the expressions are depth and depth - 1. With perspective, the expressions are these
+    /// values times t.
     pub(crate) near: [f64; 2],
     pub(crate) far: [f64; 2],
-    /// Largest distance t along -Z that counts as behind the eye.
+    /// Largest distance t along -Z at which a point counts as a point behind the eye.
     pub(crate) least: f64,
     /// Coefficients of the depth `base + reach u`, in units of the depth expression. [`Lens`] defines u.
     pub(crate) base: f64,
@@ -46,7 +47,7 @@ pub(crate) fn half_frame(width: u32, lines: u32) -> [f64; 2] {
 }
 
 impl Lens {
-    /// Creates a lens from a perspective or parallel projection along -Z. The projection can be off centre. Returns
+    /// Creates a lens from a perspective or parallel projection along -Z. The projection may be off centre. Returns
     /// `None` for other matrices.
     pub(crate) fn from_projection(projection: &Columns, width: u32, lines: u32) -> Option<Self> {
         // Only matrices without rotation and shear are supported.
@@ -83,7 +84,7 @@ impl Lens {
         (scale.iter().all(|scale| *scale > 0.0) && slope < 0.0).then_some(lens)
     }
 
-    /// Returns true if a point at distance t along -Z is before the near plane or behind the eye.
+    /// Returns true if a point at distance t along -Z is between the eye and the near plane, or behind the eye.
     pub(crate) fn is_before_near(&self, t: f64) -> bool {
         t <= self.least || self.near[0] * t + self.near[1] < 0.0
     }

@@ -6,27 +6,27 @@
 //!                   +--> ScreenVertex --> TriangleLanes -+   (shared vertices once, several triangles together)
 //! Sphere ----> Transform ---> ScreenSphere -----> GouraudSphere, PhongSphere
 //!                   |
-//!              SetupStats: everything that was dropped, cut or limited
+//!              SetupStats: counts of dropped, cut and limited primitives
 //! ```
 //!
-//! # Behaviour, in the order of the signal
+//! # Behaviour, in the order of the steps
 //!
 //! 1. **Transform** in 32-bit floating point to clip coordinates: right-handed, looking along -Z, depth 0 to 1.
 //!    Positions are relative to the eye, so models far from the origin lose no precision.
 //! 2. **Light**: Gouraud shading lights each vertex by a directional, two-sided [`Light`]. Phong shading keeps normals
-//!    in eye coordinates. Normals get unit length once, when the display list takes them. A matrix then turns them
-//!    without a new normalization, as in the processors' code.
-//! 3. **Clip** by the near and far planes and a guard band of [`GUARD_PIXELS`], before the divide. The sides of the
-//!    picture clip nothing. A shared edge is cut at the same point for both of its triangles.
-//! 4. **Divide** by w without a divider: a seed of 8 bits and two Newton steps in single precision. **Snap** to 1/16 px
-//!    of the *frame*. A field is exactly the even or odd lines of its frame. The vertices are the same, and the
-//!    expressions are converted to every second line.
+//!    in eye coordinates. Normals get unit length once, when they enter the display list. A matrix then rotates the
+//!    normals without a new normalization, as in the processors' code.
+//! 3. **Clip** by the near and far planes and a guard band of [`GUARD_PIXELS`], before the division. Triangles are not
+//!    clipped at the sides of the picture. A shared edge is cut at the same point for both of its triangles.
+//! 4. **Divide** by w without a division instruction: a first approximation of 8 bits (seed) and two Newton steps in
+//!    single precision. **Snap** to 1/16 px of the *frame*. A field is exactly the even or odd lines of its frame. The
+//!    vertices are the same, and the expressions are converted to every second line.
 //! 5. **Drop** triangles without area and, on request, back faces ([`Culling`]).
-//! 6. **Bin**: the edges give the exact set of touched regions ([`RegionMask`]). A triangle inside one region, the
-//!    common case, needs one comparison per side. [`Transform::bin`] and [`Transform::touched`] stop here.
-//! 7. **Set up** on demand. Edge values are exact integers, and are at least 0 inside. They include the tie rule, so
-//!    that each pixel of a shared edge is drawn once. Planes give depth, colour or normal. A sphere is one quadratic,
-//!    with a root for depth.
+//! 6. **Bin**: the edges give the exact set of touched regions ([`RegionMask`]). Most triangles lie inside one region
+//!    and need only one comparison per side. [`Transform::bin`] and [`Transform::touched`] end with this step.
+//! 7. **Set up** on demand. Edge values are exact integers, and are at least 0 inside the triangle. The edges include
+//!    the tie rule, so that each pixel of a shared edge is drawn once. Planes give depth, colour or normal. A sphere is
+//!    one quadratic, with a root for depth.
 //!
 //! # Formats and limits
 //!
@@ -34,8 +34,8 @@
 //! |---|---|---|
 //! | vertex | 2^16 subpixels from pixel (0, 0) | [`GUARD_PIXELS`] |
 //! | edge at any pixel | 2^30 | tests/setup.rs |
-//! | depth plane | right to `(abs dx + abs dy) / 2 + 1` of 2^-8 unit; never wraps at a covered pixel | tests/setup.rs |
-//! | colour plane | the same of 2^-12 unit; never wraps at a covered pixel | tests/setup.rs |
+//! | depth plane | error up to `(abs dx + abs dy) / 2 + 1` units of 2^-8; no wrap at covered pixels | tests/setup.rs |
+//! | colour plane | the same error in units of 2^-12; no wrap at covered pixels | tests/setup.rs |
 //! | slope | up to [`MAX_SLOPE`], kept modulo 2^32; steeper planes are made flat and counted | tests/setup.rs |
 //! | sphere | silhouette below 2^47 in its regions, root of 12 bits | tests/input.rs |
 //!
@@ -72,14 +72,15 @@
 //! # Not modelled
 //!
 //! - Perspective-correct colour: planes are linear on the screen, as on the machine.
-//! - Spheres that the near or far plane cuts, which are not drawn but counted; shadows; specular light on vertices.
+//! - Spheres that the near or far plane cuts (these spheres are counted but not drawn), shadows, and specular light on
+//!   vertices.
 //! - The time of this work on an i860. [`kernel`] and [`sphere_kernel`] provide the same computation as i860 code for
 //!   other crates to run.
 //!
 //! # Sources
 //!
-//! TR94 (triangle recipe, regions, fields), F89 (quadratic expressions). The formats are assumed; see
-//! `pxpl5_wire::format`.
+//! TR94 (steps of triangle set-up, regions, fields), F89 (quadratic expressions). The formats are assumed (see
+//! `pxpl5_wire::format`).
 
 mod bin;
 mod clip;

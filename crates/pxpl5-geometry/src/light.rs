@@ -11,10 +11,11 @@ pub(crate) struct ModelLight<'a> {
     light: &'a Light,
 }
 
-/// A matrix that turns unit normals from world to eye coordinates. The results are not normalized again.
+/// A matrix that rotates unit normals from world to eye coordinates. The results are not normalized again.
 ///
-/// The matrix is the one for points, divided by the length of its longest row. So with any uniform scale, turned
-/// normals keep unit length. For any matrix, no component exceeds 1. The renderer normalizes the normal at each pixel.
+/// The matrix is the matrix for points, divided by the length of its longest row. With any uniform scale, rotated
+/// normals therefore keep unit length. With any matrix, no component exceeds 1. The renderer normalizes the normal at
+/// each pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalRows {
     pub(crate) rows: [[f32; 3]; 3],
@@ -45,7 +46,7 @@ impl NormalRows {
     }
 
     /// Returns the cosine between a unit normal at `position` and the direction to the eye, times the distance to the
-    /// eye. It is negative if the normal faces away.
+    /// eye. The result is negative if the normal faces away from the eye.
     #[inline(always)]
     fn towards_eye(&self, position: Vec3, normal: [f32; 3]) -> f32 {
         let relative = [position.x - self.origin.x, position.y - self.origin.y, position.z - self.origin.z];
@@ -58,12 +59,12 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
-/// Returns a normal scaled to unit length, as the display list holds it. Returns +Z if the normal has no direction.
+/// Returns a normal scaled to unit length, as the display list stores it. Returns +Z for a normal of length zero.
 #[inline(always)]
 pub(crate) fn unit_normal(normal: Vec3) -> [f32; 3] {
     let [x, y, z] = [f64::from(normal.x), f64::from(normal.y), f64::from(normal.z)];
     let square = view::dot([x, y, z], [x, y, z]);
-    // Compute the root for all inputs, since a branch would prevent vectorization.
+    // Compute the root for all inputs, because a branch would prevent vectorization.
     let inverse = 1.0 / square.sqrt();
     let unit = [(x * inverse) as f32, (y * inverse) as f32, (z * inverse) as f32];
     if (square > 0.0) & (square < f64::INFINITY) { unit } else { [0.0, 0.0, 1.0] }
@@ -75,7 +76,7 @@ impl<'a> ModelLight<'a> {
     }
 
     /// Returns the lit colour in 1/256 of a colour unit, 0 to 255 * 256. Lighting is two-sided: a normal that faces
-    /// away is reversed.
+    /// away from the eye is reversed.
     #[inline(always)]
     pub(crate) fn colour(&self, position: Vec3, normal: Vec3, colour: [u8; 3]) -> [f32; 3] {
         let n = unit_normal(normal);
@@ -93,7 +94,7 @@ impl<'a> ModelLight<'a> {
         self.colour(triangle.positions[corner], triangle.normals[corner], triangle.colours[corner])
     }
 
-    /// Returns the share of the colour that is visible, 0 to 1. NaN gives 0.
+    /// Returns the fraction of the colour that is visible, 0 to 1. NaN gives 0.
     #[inline(always)]
     fn intensity(&self, cosine: f32) -> f32 {
         let sum = self.light.ambient + self.light.diffuse * cosine.max(0.0);

@@ -8,22 +8,22 @@ pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
 
 /// Corners and depths of a triangle on the screen, and the regions that the triangle touches.
 ///
-/// The corners run clockwise on the screen (y grows downwards), whether the input is clockwise or not.
+/// The corners run clockwise on the screen (y increases downwards), for both windings of the input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outline {
     /// Distance of each corner from the picture's left border, in 1/16 px.
     pub x: [i32; 3],
-    /// Distance of each corner from the frame's top border, in 1/16 px. For a field too, the distance is measured on
-    /// the whole frame.
+    /// Distance of each corner from the frame's top border, in 1/16 px. The distance refers to the whole frame, also
+    /// for a field.
     pub y: [i32; 3],
     /// Depth of each corner, from [`crate::DEPTH_NEAR`] to [`crate::DEPTH_FAR`].
     pub z: [u32; 3],
-    /// Regions that the triangle touches. Their renderers receive its commands.
+    /// Regions that the triangle touches. The renderers of these regions receive the triangle's commands.
     pub regions: RegionMask,
 }
 
 impl Outline {
-    /// Returns twice the area, in 1/256 square px. It is positive unless the corners are on one line.
+    /// Returns twice the area, in 1/256 square px. The result is positive unless the corners are on one line.
     #[inline(always)]
     pub(crate) fn twice_area(&self) -> i64 {
         let x = &self.x;
@@ -41,9 +41,9 @@ impl Outline {
     /// Returns the edge between two corners. Its value at a pixel is twice the area of the triangle (from, to, pixel
     /// centre), in 1/16 square px, rounded down.
     ///
-    /// In 1/256 square px, the value at pixel (x, y) is `16 (dx y - dy x) + k`. It is at least 0 exactly if `dx y - dy
-    /// x + floor(k / 16)` is at least 0, so rounding changes no covered pixel. A pixel whose centre is on the line
-    /// belongs to the triangle only if the edge is a top or left edge. For other edges, k is reduced by one.
+    /// In 1/256 square px, the value at pixel (x, y) is `16 (dx y - dy x) + k`. This value is at least 0 exactly if `dx
+    /// y - dy x + floor(k / 16)` is at least 0, so rounding changes no covered pixel. A pixel whose centre is on the
+    /// line belongs to the triangle only if the edge is a top or left edge. For other edges, k is reduced by one.
     #[inline(always)]
     fn edge(&self, from: usize, to: usize) -> Linear {
         let dx = self.x[to] - self.x[from];

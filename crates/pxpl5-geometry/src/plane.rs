@@ -1,34 +1,34 @@
 //! Planes: linear expressions that pass through one value at each of three corners.
 //!
-//! Slopes are rounded to integers. Let (dx, dy) be the distance from the reference pixel. The error of a plane's value
-//! is at most `(|dx| + |dy|) (1/2 + 2^-15) + 1`, in units of the expression's last bit. Rounding the slopes adds 1/2
-//! for each pixel of distance. Rounding the constant adds 1/2. The 64-bit floating-point steps add 1/2, and 2^-15 for
-//! each pixel (see [`MAX_SLOPE`]). The reference pixel is in the middle of the visible part of the triangle's bounding
-//! box. So
-//! |dx| + |dy| is at most half the sum of the picture's width and height. On the largest picture, the error is below
-//! 1,026.
+//! Slopes are rounded to integers. Let (dx, dy) be the distance of a pixel from the reference pixel. The error of a
+//! plane's value is at most `(|dx| + |dy|) (1/2 + 2^-15) + 1`, in units of the expression's last bit. Rounding the
+//! slopes adds 1/2 for each pixel of distance. Rounding the constant adds 1/2. The 64-bit floating-point steps add 1/2,
+//! and 2^-15 for each pixel (see [`MAX_SLOPE`]). The reference pixel is in the middle of the visible part of the
+//! triangle's bounding box. The sum |dx| + |dy| is therefore at most half the sum of the picture's width and height. On
+//! the largest picture, the error is below 1,026.
 //!
 //! A depth slope can need more than 32 bits. For example, the depth of a wall seen edge-on can change by the whole
-//! range, 2^32, within a pixel. Expressions are evaluated modulo 2^32 at integer pixel positions. So coefficients
-//! modulo 2^32 give the right value wherever the true value fits 32 bits. These pixels include every covered pixel.
+//! range, 2^32, within a pixel. Expressions are evaluated modulo 2^32 at integer pixel positions. Coefficients modulo
+//! 2^32 therefore give the right value at every pixel whose true value fits 32 bits. Such pixels include all covered
+//! pixels.
 
 use crate::newton::reciprocal_double;
 use crate::outline::Outline;
 use crate::stats::SetupStats;
 use pxpl5_wire::Linear;
 
-/// Steepest slope of a plane, in units of the expression's last bit per pixel: the whole range of 32 bits within one
-/// subpixel.
+/// Steepest slope of a plane, in units of the expression's last bit per pixel. With this slope, the value changes by
+/// the whole range of 32 bits within one subpixel.
 ///
-/// Only a triangle thinner than a subpixel can have a steeper plane. Such a plane becomes *flat*: at every pixel, it
-/// has the mean of its values at the corners. [`SetupStats::flattened_planes`] counts such planes.
+/// Only a triangle thinner than a subpixel can have a steeper plane. Such a plane is replaced by a *flat* plane, whose
+/// value at every pixel is the mean of the values at the corners. [`SetupStats::flattened_planes`] counts such planes.
 ///
-/// The relative error of a slope is 2^-51, since Newton steps compute the reciprocal of the area. For slopes up to this
-/// limit, the absolute error is 2^-15. A corner is at most 2^13 px away from the reference pixel. Over this distance,
-/// no intermediate result exceeds 2^50, and the error of all steps together is less than 1/2.
+/// The relative error of a slope is 2^-51, because Newton steps compute the reciprocal of the area. For slopes up to
+/// this limit, the absolute error is 2^-15. A corner is at most 2^13 px away from the reference pixel. Over this
+/// distance, no intermediate result exceeds 2^50, and the error of all steps together is less than 1/2.
 pub const MAX_SLOPE: f64 = 68_719_476_736.0;
 
-/// 1.5 * 2^52. Adding it rounds a number below 2^51 in absolute value to an integer, ties to even.
+/// The constant 1.5 * 2^52. Its addition rounds a number below 2^51 in absolute value to an integer, ties to even.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Returns the integer nearest to a number below 2^51 in absolute value, modulo 2^32.
@@ -37,7 +37,8 @@ pub(crate) fn rounded(value: f64) -> i32 {
     (value + ROUND).to_bits() as i32
 }
 
-/// Returns the flat plane that replaces a too steep plane. Its value is the mean of the values `v` at the corners.
+/// Returns the flat plane that replaces a plane that is too steep. Its value is the mean of the values `v` at the
+/// corners.
 pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }

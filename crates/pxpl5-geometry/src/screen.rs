@@ -1,4 +1,4 @@
-//! Screen triangles: the result of the transform and the input of the set-up.
+//! Triangles on the screen, which are the result of the transform and the input of the set-up.
 
 use crate::newton::ROUND_DOUBLE;
 use crate::outline::{Outline, SUBPIXELS, extent};
@@ -10,14 +10,15 @@ use pxpl5_wire::{Linear, format};
 /// Largest distance of a screen triangle's vertex from pixel (0, 0), in pixels, along x and along y.
 ///
 /// For a triangle inside the square of side 2 x 4096 px, twice the area is at most `(2^17)^2 = 2^34` in units of 1/256
-/// square px. Edge expressions are in units of 1/16 square px. So their values at any pixel inside the square are at
-/// most 2^30, and no sum exceeds 32 bits.
+/// square px. Edge expressions are in units of 1/16 square px. Their values at any pixel inside the square are
+/// therefore at most 2^30, and no sum exceeds 32 bits.
 pub const GUARD_PIXELS: i32 = 4096;
 
 /// Depth of the near plane: 8 units of pixel depth, with [`format::Z_FRACTION_BITS`] fraction bits.
 ///
-/// At both ends of the range, a margin of 8 units is free. It is larger than the rounding error of a plane on a picture
-/// of [`crate::MAX_PICTURE`] (below 1,026). So a depth never wraps from near to far.
+/// At both ends of the range, 8 units of pixel depth (2,048 units of the expression) are unused. This margin is larger
+/// than the rounding error of a plane on a picture of [`crate::MAX_PICTURE`] (below 1,026 units of the expression). A
+/// depth therefore never wraps around from near to far.
 pub const DEPTH_NEAR: u32 = 8 * DEPTH_ONE;
 
 /// Depth of the far plane, in the units of [`DEPTH_NEAR`].
@@ -26,7 +27,7 @@ pub const DEPTH_FAR: u32 = u32::MAX - 8 * DEPTH_ONE;
 /// One unit of the pixels' 24-bit depth, in the units of [`DEPTH_NEAR`].
 pub(crate) const DEPTH_ONE: u32 = 1 << format::Z_FRACTION_BITS;
 
-/// 1.5 * 2^23. Adding it rounds a number below 2^22 in absolute value to an integer, ties to even.
+/// The constant 1.5 * 2^23. Its addition rounds a number below 2^22 in absolute value to an integer, ties to even.
 const ROUND: f32 = 12_582_912.0;
 
 /// Returns the integer nearest to a number below 2^22 in absolute value.
@@ -87,7 +88,7 @@ pub struct VertexColours(pub [[u16; 3]; 3]);
 pub struct SurfaceNormals {
     /// x, y and z of each corner's normal, in units of 1/2^14.
     pub normals: [[i16; 3]; 3],
-    /// Red, green and blue of the whole triangle. They are those of its first corner.
+    /// Red, green and blue of the whole triangle, which are the colour of its first corner.
     pub colour: [u8; 3],
 }
 
@@ -97,7 +98,7 @@ pub const NORMAL_UNIT: i16 = 1 << 14;
 /// The linear expressions of a Gouraud triangle over the picture's pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GouraudTriangle {
-    /// Edge expressions; a pixel is covered where all three are at least 0.
+    /// Edge expressions. A pixel is covered if all three values are at least 0.
     pub edges: [Linear; 3],
     /// Depth with [`format::Z_FRACTION_BITS`] fraction bits.
     pub z: Linear,
@@ -108,12 +109,12 @@ pub struct GouraudTriangle {
 /// The linear expressions of a Phong triangle over the picture's pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhongTriangle {
-    /// Edge expressions; a pixel is covered where all three are at least 0.
+    /// Edge expressions. A pixel is covered if all three values are at least 0.
     pub edges: [Linear; 3],
     /// Depth with [`format::Z_FRACTION_BITS`] fraction bits.
     pub z: Linear,
-    /// x, y and z of the normal in eye coordinates, with [`format::NORMAL_FRACTION_BITS`] fraction bits. A component of
-    /// 1.0 has [`format::NORMAL_ONE_BITS`] bits.
+    /// x, y and z of the normal in eye coordinates, with [`format::NORMAL_FRACTION_BITS`] fraction bits. The integer
+    /// part of an expression is the component in units of 1/2^[`format::NORMAL_ONE_BITS`].
     pub normal: [Linear; 3],
     /// Red, green and blue of the whole triangle, 0 to 255 each.
     pub colour: [u8; 3],
@@ -154,8 +155,8 @@ impl Outline {
         [for_rows(a, viewport), for_rows(b, viewport), for_rows(c, viewport)]
     }
 
-    /// Returns four planes over the picture's pixels. They pass through the depths and through three surface values of
-    /// the corners.
+    /// Returns four planes over the picture's pixels. The planes pass through the depths and through three surface
+    /// values of the corners.
     #[inline(always)]
     fn planes(&self, corners: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
         let planes = Planes::for_outline(self, self.middle(viewport));
@@ -192,8 +193,8 @@ fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {
     (low.clamp(0, last) + high.clamp(0, last)) / (2 * SUBPIXELS)
 }
 
-/// Converts an expression over frame lines to one over the rows of the picture. Its value at each pixel stays exactly
-/// the same.
+/// Converts an expression over frame lines to an expression over the rows of the picture. The value at each pixel stays
+/// exactly the same.
 #[inline(always)]
 pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
     Linear {
@@ -231,8 +232,8 @@ impl ScreenTriangle<SurfaceNormals> {
     }
 }
 
-/// Applies `value` to three numbers. The three calls are written out, since a closure over an array is not always
-/// inlined.
+/// Applies `value` to three numbers. The three calls are written out, because compilers do not always inline a closure
+/// over an array.
 #[inline(always)]
 fn values<T: Copy>([a, b, c]: &[T; 3], value: impl Fn(T) -> f32) -> [f32; 3] {
     [value(*a), value(*b), value(*c)]
@@ -240,8 +241,8 @@ fn values<T: Copy>([a, b, c]: &[T; 3], value: impl Fn(T) -> f32) -> [f32; 3] {
 
 /// Converts a colour exactly to the units of plane expressions.
 ///
-/// The added half unit makes the renderer's truncation a rounding. It also keeps the values of 0 and 255 half a unit
-/// away from wrapping. This distance is far more than a plane's rounding error.
+/// The function adds half a unit, so that the renderer's truncation rounds to the nearest value. The values of 0 and
+/// 255 are then half a unit away from an overflow. This distance is much larger than a plane's rounding error.
 #[inline(always)]
 pub(crate) fn colour_value(colour: u16) -> f32 {
     const SCALE: u32 = 1 << (format::COLOUR_FRACTION_BITS - 8);
@@ -256,5 +257,5 @@ pub(crate) fn normal_value(component: i16) -> f32 {
     (i32::from(component) * SCALE) as f32 + NORMAL_HALF
 }
 
-/// Half a unit of a normal's component.
+/// Half a unit of a normal's component, in units of the expression.
 pub(crate) const NORMAL_HALF: f32 = (1 << (format::NORMAL_FRACTION_BITS - 1)) as f32;

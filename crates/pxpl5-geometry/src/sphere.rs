@@ -7,16 +7,16 @@
 //! D u^2 - 2 (d.c) u + d.d = 0,   u = (d.c + sqrt(Q)) / D,   Q = (d.c)^2 - D (d.d) = r^2 d.d - |d x c|^2
 //! ```
 //!
-//! Q is a quadratic in the pixel's coordinates. It is at least 0 exactly inside the sphere's image, an ellipse. Depth
-//! is linear in u, so it is a plane minus a multiple of the root of Q. Under a parallel projection, `Q = r^2 - |p -
-//! c|^2`. Then depth is a constant minus a multiple of the root of Q.
+//! Q is a quadratic expression in the pixel's coordinates. Q is at least 0 exactly inside the sphere's image, which is
+//! an ellipse. Depth is linear in u. Depth is therefore a plane minus a multiple of the root of Q. With a parallel
+//! projection, `Q = r^2 - |p - c|^2`, and depth is a constant minus a multiple of the root of Q.
 //!
-//! **Not drawn, but counted:** spheres that the near plane cuts, also those with the eye inside, since one quadratic
-//! cannot show the hole. The same holds for spheres whose image reaches beyond the far plane. Spheres of radius 0 have
-//! no image, and count as outside.
+//! **Not drawn, but counted:** spheres that the near plane cuts, including spheres around the eye. One quadratic
+//! expression cannot represent the hole in such a sphere. Spheres whose image reaches beyond the far plane are not
+//! drawn either. Spheres of radius 0 have no image and count as outside the picture.
 //!
-//! Newton steps compute all quotients and roots, as on an i860. [`crate::sphere_kernel`] is the same computation as
-//! i860 code.
+//! Newton steps compute all quotients and roots, as on an i860. [`crate::sphere_kernel`] has the i860 code of the same
+//! computation.
 
 use crate::bin::Range;
 use crate::conic::{Conic, Ellipse};
@@ -33,8 +33,8 @@ pub(crate) const MAX_COORDINATE: f64 = 1e30;
 /// A sphere on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenSphere {
-    /// Regions that meet the bounding box of the sphere's image. They include all regions that the image touches. Near
-    /// the corners of the box, they can include others.
+    /// Regions that meet the bounding box of the sphere's image. The set includes all regions that the image touches.
+    /// Near the corners of the box, the set can include other regions.
     pub regions: RegionMask,
     /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
@@ -93,8 +93,8 @@ impl EyeSphere {
         (radius >= 0.0 && fits).then_some(Self { centre: [x, y, z], radius })
     }
 
-    /// Returns the greatest distance along -Z of a point on the silhouette, under perspective. There, the eye's rays
-    /// touch the sphere.
+    /// Returns the greatest distance along -Z of a point on the silhouette, under perspective. At these points, the
+    /// eye's rays touch the sphere.
     fn farthest_tangent(&self) -> f64 {
         let inverse = reciprocal_double(dot(self.centre, self.centre));
         let shrink = 1.0 - (self.radius * self.radius) * inverse;
@@ -122,7 +122,7 @@ impl Lens {
         if self.is_beyond_far(front) {
             return Sight::Outside;
         }
-        // No point of the silhouette is behind the back of the sphere.
+        // No point of the silhouette is farther away than the back of the sphere.
         if self.is_beyond_far(back) && self.is_beyond_far(self.deepest(sphere)) {
             return Sight::AcrossFar;
         }
@@ -228,7 +228,8 @@ impl Transform {
     }
 }
 
-/// Margin around a bounding box, in pixels. It is greater than the shift of the silhouette from rounding the quadratic.
+/// Margin around a bounding box, in pixels. The margin is greater than the shift of the silhouette because of the
+/// rounding of the quadratic expression.
 pub(crate) const SLACK: f64 = 1.0 / 64.0;
 
 /// Returns the pixels whose centres are in an interval. Coordinate 0 is the centre of pixel 0.

@@ -2,9 +2,9 @@
 //! corresponding code for triangles.
 //!
 //! A [`SphereKernel`] reads the spheres of the display list. It computes the words of their renderer commands and puts
-//! the commands into bins. The first steps are centre and radius in eye coordinates, near and far plane, and conic.
-//! Then follow bounding box, regions, the conic in fixed point, and the planes of depth and surface. There is only one
-//! version of the sphere code, in the style of the compiled triangle kernels. It is used with every optimization level
+//! the commands into bins. The steps are: centre and radius in eye coordinates, tests against the near and far plane,
+//! conic, bounding box, regions, conic in fixed point, and planes of depth and surface. There is only one version of
+//! the sphere code, in the style of the compiled triangle kernels. This version is used with every optimization level
 //! of the triangle kernels. The native code makes the same computation, so both give the same words, bit for bit.
 //!
 //! kernels/sphere_parameters.s defines the parameter block. On the processor, the code at the label `place` writes the
@@ -45,7 +45,7 @@ const SIZE: usize = TEMPLATE + 53;
 pub const SPHERE_VIEW_WORDS: usize = 55;
 
 impl SphereKernel {
-    /// Returns the kernel for a picture, or `None` if [`KernelPicture`] has no such kind.
+    /// Returns the kernel for a picture, or `None` if [`KernelPicture`] has no kind for this picture.
     #[must_use]
     pub fn for_picture(surface: KernelSurface, viewport: &Viewport) -> Option<Self> {
         KernelPicture::of(viewport).map(|picture| Self { surface, picture, keeps_boxes: false })
@@ -76,8 +76,8 @@ impl SphereKernel {
 
     /// Returns the parameter block of a view. Returns `None` if the projection cannot show spheres.
     ///
-    /// `command` is a blank command with zeros as operands. The kernel copies it and writes the operands of each
-    /// sphere.
+    /// `command` is a blank command with zeros as operands. For each sphere, the kernel copies this command and fills
+    /// in the operands.
     #[must_use]
     pub fn parameters(
         &self,
@@ -89,18 +89,18 @@ impl SphereKernel {
         let mut words = [0; SPHERE_PARAMETER_WORDS];
         let [x, y, z, _] = transform.to_eye.rows();
         let origin = transform.to_eye.origin().to_array();
-        // Words 0 to 14: the matrix and the eye's position, in single precision.
+        // Words 0 to 14 are the matrix and the eye's position, in single precision.
         let singles = [x, y, z].concat().into_iter().chain(origin).map(f32::to_bits);
         words.iter_mut().zip(singles).for_each(|(word, single)| *word = single);
         let [light_x, light_y, light_z] = light.direction.map(f64::from);
         let pairs = [lens.step, lens.rate, lens.corner, lens.near, lens.far].concat();
         let of_light = [light_x, light_y, light_z, light.ambient.into(), light.diffuse.into()];
         let depths = [lens.least, lens.base, lens.reach];
-        // Words 16 to 53: the projection and the light, in double precision.
+        // Words 16 to 53 are the projection and the light, in double precision.
         doubles(&mut words[16..], &[&[transform.to_eye.scale()], pairs.as_slice(), &depths, &of_light].concat());
         words[54] = Word::from(lens.parallel);
         words[55] = transform.viewport.first_line();
-        // Words 56 to 109: constants that depend only on the picture.
+        // Words 56 to 109 are constants that depend only on the picture.
         doubles(&mut words[56..], &self.constants(&transform.viewport));
         words[TEMPLATE..SIZE].iter_mut().zip(command).for_each(|(word, of_command)| *word = *of_command);
         words[SIZE..].copy_from_slice(&kernel::size_words(&transform.viewport));
@@ -117,7 +117,7 @@ impl SphereKernel {
             KernelSurface::Phong => 1_u32 << format::NORMAL_FRACTION_BITS,
         });
         let near = f64::from(DEPTH_NEAR);
-        // The order is that of kernels/sphere_parameters.s.
+        // The order is defined in kernels/sphere_parameters.s.
         [
             half[0],
             half[1],

@@ -1,4 +1,4 @@
-//! Set-up of spheres: computes the operands of the renderer's commands from a conic and a plane.
+//! Set-up of spheres. From a conic and a plane, this module computes the operands of the renderer's commands.
 
 use crate::conic::{self, FixedConic};
 use crate::newton::{reciprocal_root, root, whole};
@@ -15,15 +15,15 @@ use pxpl5_wire::{Linear, Quadratic, REGION_SIZE, format};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SphereSetup {
-    /// Silhouette expression. A pixel is inside the sphere if the expression is at least 0 at this pixel. Its value
-    /// fits 48 bits within the sphere's regions.
+    /// Silhouette expression. A pixel is inside the sphere if the expression is at least 0 at this pixel. Within the
+    /// sphere's regions, the value fits 48 bits.
     ///
-    /// Its unit is not that of [`format::QUADRATIC_FRACTION_BITS`]. The unit is chosen so that the root needs no
-    /// factor.
+    /// The unit of the expression differs from the unit of [`format::QUADRATIC_FRACTION_BITS`]. The unit is chosen so
+    /// that the root needs no factor.
     pub silhouette: Quadratic,
     /// Number of low bits of the silhouette that the root ignores, 0 to 24.
     pub root_shift: u8,
-    /// Depth of the plane through the silhouette, with [`format::Z_FRACTION_BITS`] fraction bits. It includes a
+    /// Depth of the plane through the silhouette, with [`format::Z_FRACTION_BITS`] fraction bits. The plane includes a
     /// correction for the rounding of the root.
     pub depth: Linear,
     /// Left shift of the root, in bits, before its subtraction from the depth: 0 to 20.
@@ -41,8 +41,8 @@ pub struct GouraudSphere {
     pub root_factor: [u16; 3],
 }
 
-/// A sphere whose pixels are shaded at the end of the frame. The z of its normal is `root >> 2`; x and y have the same
-/// scale.
+/// A sphere whose pixels are shaded at the end of the frame. The z component of a pixel's normal is `root >> 2`. The x
+/// and y components have the same scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhongSphere {
     /// Silhouette and depth of the sphere.
@@ -67,7 +67,7 @@ impl Slope {
     /// Converts the plane to fixed point, modulo 2^32, like every linear expression. The result is most exact at the
     /// pixel `pixel`.
     ///
-    /// If a slope exceeds 2^31, the plane becomes flat and counts as flattened.
+    /// If the absolute value of a slope exceeds 2^31, the plane is replaced by a flat plane and counts as flattened.
     fn fixed(&self, pixel: [i32; 2], stats: &mut SetupStats) -> Linear {
         if !self.slope.iter().all(|s| s.abs() < MAX_SLOPE) {
             stats.flattened_planes += 1;
@@ -102,8 +102,8 @@ fn frame_line(viewport: &Viewport, row: u32) -> i32 {
 }
 
 impl ScreenSphere {
-    /// Returns the frame's pixels for which the renderers of the touched regions evaluate expressions. These pixels can
-    /// extend beyond the picture.
+    /// Returns the frame's pixels for which the renderers of the touched regions evaluate expressions. The rectangle of
+    /// these pixels can extend beyond the picture.
     fn rectangle(&self, viewport: &Viewport) -> [[i32; 2]; 2] {
         let grid = viewport.grid();
         let corners = self.regions.iter().map(|r| grid.rectangle(r));
@@ -130,8 +130,8 @@ impl ScreenSphere {
         let middle = self.middle(rectangle);
         let conic = self.conic.fixed(self.ellipse.value, rectangle, middle);
         let [value, slope_x, slope_y] = self.depth;
-        // Roots are rounded down, so surfaces are up to one step too deep. Moving the plane nearer by half a step makes
-        // this a rounding to the nearest step. The plane must not move in front of depth 0.
+        // Roots are rounded down, so depths are too large by up to one step. If the plane is half a step nearer, the
+        // error is at most half a step in both directions. The plane must not move in front of depth 0.
         let half_step = conic::power_of_two(i32::from(conic.depth_shift) - 1);
         let room = (self.front - f64::from(DEPTH_NEAR) * 0.5).max(0.0);
         let plane = Slope { origin: self.conic.origin, value: value - half_step.min(room), slope: [slope_x, slope_y] };
@@ -156,8 +156,8 @@ impl ScreenSphere {
     /// Computes the operands for interpolated colour.
     ///
     /// The root gives the component of the normal towards the eye. The other components are approximated by linear
-    /// expressions on the screen. A pixel that turns away from the light gets darker than ambient light. Light from
-    /// behind the sphere adds nothing.
+    /// expressions on the screen. Because of this approximation, a pixel that faces away from the light is darker than
+    /// ambient light. Light from behind the sphere adds nothing.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, light: &Light, stats: &mut SetupStats) -> GouraudSphere {
         let (setup, conic) = self.common(viewport, stats);
@@ -173,7 +173,8 @@ impl ScreenSphere {
             let plane = self.tilt(scale, full * ambient + unit * 0.5);
             rows(plane.fixed(middle, stats), viewport)
         });
-        // Reciprocal of the greatest value of the root's upper bits. They are the root without its lowest four bits.
+        // Reciprocal of the greatest value of the root's upper bits. The upper bits are the root without its lowest
+        // four bits.
         let per_root = reciprocal_root(self.ellipse.value) * conic::power_of_two(i32::from(conic.depth_shift) + 4);
         let root_factor = self.colour.map(|c| {
             let factor = f64::from(c) * diffuse * towards * 256.0 * per_root;
@@ -188,7 +189,8 @@ impl ScreenSphere {
         let (setup, conic) = self.common(viewport, stats);
         let middle = self.middle(self.rectangle(viewport));
         let unit = f64::from(1_u32 << format::NORMAL_FRACTION_BITS);
-        // The root at the middle of the sphere. The z of the normal there is a quarter of this root.
+        // This is the root at the middle of the sphere. At this point, the z component of the normal is a quarter of
+        // the root.
         let greatest = root(self.ellipse.value) * conic::power_of_two(-i32::from(conic.depth_shift));
         let scale = greatest * 0.25 * unit;
         let normal = [[scale, 0.0], [0.0, scale]].map(|scale| {

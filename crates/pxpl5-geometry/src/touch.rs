@@ -7,17 +7,17 @@ use pxpl5_wire::RegionId;
 /// The result of binning one triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// The triangle needs clipping. [`crate::Transform::bin`] clips it and finds its regions.
+    /// The triangle needs clipping. [`crate::Transform::bin`] clips the triangle and finds its regions.
     NeedsClipping,
     /// The triangle has no area after rounding to subpixels.
     Degenerate,
-    /// The triangle is a back face, and the view drops back faces.
+    /// The triangle is a back face, and the culling mode excludes back faces.
     BackFacing,
-    /// The triangle touches no region. It is off the screen or between pixel centres.
+    /// The triangle touches no region. The triangle is off the screen or between pixel centres.
     Untouched,
     /// The triangle touches only this region.
     Region(RegionId),
-    /// The triangle touches all of these regions. There are at least two.
+    /// The triangle touches all these regions, which are at least two.
     Regions(RegionMask),
 }
 
@@ -32,7 +32,7 @@ impl Touch {
     }
 
     /// Returns the touched regions, or `None` if the triangle is not drawn. Counts the screen triangle, or the reason
-    /// for which it is not drawn.
+    /// why the triangle is not drawn.
     #[inline(always)]
     pub const fn count(self, stats: &mut SetupStats) -> Option<RegionMask> {
         match self {

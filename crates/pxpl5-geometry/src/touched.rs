@@ -1,5 +1,5 @@
-//! The regions that the triangles of a mesh touch. They are computed once for all processors that hold a part of the
-//! mesh.
+//! The regions that the triangles of a mesh touch. The regions are computed once for all processors that hold a part of
+//! the mesh.
 
 use crate::bin::{Binner, Range, quotient};
 use crate::lanes::{EachLane, LANES};
@@ -13,7 +13,8 @@ use pxpl5_wire::RegionId;
 /// Binning results of the triangles of a mesh, four bytes for each triangle.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
-    /// For each triangle: its region, or one of the codes below, or [`SEVERAL`] plus an index into `several`.
+    /// For each triangle: the index of its region, a code without a region, or [`SEVERAL`] plus an index into
+    /// `several`.
     codes: Vec<u32>,
     several: Vec<RegionMask>,
 }
@@ -69,7 +70,7 @@ impl Touched {
 }
 
 impl Transform {
-    /// Bins triangles. The results equal those of [`Self::bin`].
+    /// Bins triangles. The results equal the results of [`Self::bin`].
     ///
     /// Triangles are given by the indices of their corners. `vertices` begins with the vertex of index `first`. The
     /// vertices must come from this view.
@@ -115,7 +116,7 @@ fn range_in(lane: usize, [first, last]: &[EachLane<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
-/// x and y of the corners of several triangles. The first index is the corner, the second the triangle.
+/// x and y of the corners of several triangles. The first index is the corner, and the second index is the triangle.
 #[derive(Debug)]
 struct CornerLanes([EachLane<[i32; 2]>; 3]);
 
@@ -180,13 +181,13 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) ->
         (row, binner.row_box(row))
     });
     let areas = areas(&corners);
-    // Sign that makes the area of a triangle to drop positive.
+    // Sign by which the area is multiplied. The product is positive for a triangle that must be dropped.
     let dropped = match dropped {
         None => 0.0,
         Some(Turn::Clockwise) => 1.0,
         Some(Turn::Counterclockwise) => -1.0,
     };
-    // Later lines override earlier ones, so the order of the tests matters.
+    // Later tests override earlier tests, so their order matters.
     let mut codes = [0; LANES];
     let mut n_several = 0;
     for i in 0..LANES {
@@ -202,8 +203,8 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) ->
     LaneTouches { codes, any_several: n_several > 0, x: columns, y: rows }
 }
 
-/// Returns twice the area of each triangle, in 1/256 square px. Products of two differences of corners need 35 bits, so
-/// doubles are exact.
+/// Returns twice the area of each triangle, in 1/256 square px. Products of two differences of coordinates need 35
+/// bits, so double precision is exact.
 #[inline(always)]
 fn areas([[a, b, c], [d, e, f]]: &[[EachLane<i32>; 3]; 2]) -> EachLane<f64> {
     let mut out = [0.0; LANES];
@@ -226,8 +227,8 @@ fn extent([p, q, r]: &[EachLane<i32>; 3]) -> [EachLane<i32>; 2] {
     [low, high]
 }
 
-/// Returns the first and last pixel whose centres lie between the smallest and largest corner. `within` limits them to
-/// the picture.
+/// Returns the first and last pixel whose centres lie between the smallest and largest corner. `within` limits the
+/// pixels to the picture.
 #[inline(always)]
 fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> [EachLane<i32>; 2] {
     let mut first = [0; LANES];
@@ -240,11 +241,11 @@ fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> 
     [first, last]
 }
 
-/// Returns, for each triangle, the column or row of regions whose pixel-centre box holds all corners. Returns -1 if
-/// there is none.
+/// Returns the column or row of regions whose pixel-centre box contains all corners, for each triangle. Returns -1 if
+/// no box contains all corners.
 ///
-/// For a given pixel, `of` returns its column or row of regions, and the first and last pixel or line of this column or
-/// row.
+/// The argument of `of` is a pixel. `of` returns the pixel's column or row of regions, and the first and last pixel or
+/// line of this column or row.
 #[inline(always)]
 fn cells(
     [low, high]: &[EachLane<i32>; 2],

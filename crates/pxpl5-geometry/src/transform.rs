@@ -13,15 +13,15 @@ use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Culling mode: selects the triangles to drop by their winding.
+/// Culling mode, which selects triangles by their winding. Selected triangles are not drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Culling {
     /// All triangles are drawn.
     #[default]
     None,
-    /// Back faces are dropped: triangles whose corners run clockwise in model coordinates, seen from the eye. A
-    /// mirroring matrix does not change the choice of triangles.
+    /// Back faces are not drawn. A back face is a triangle whose corners run clockwise in model coordinates, seen from
+    /// the eye. A mirroring matrix does not change the selection of triangles.
     Back,
 }
 
@@ -32,19 +32,19 @@ impl Culling {
 
 pxpl5_sim::parameters::named!(Culling, "culling", Culling::ALL);
 
-/// A view of the world for one picture, ready to transform primitives.
+/// A view of the world for one picture, with the matrices that transform primitives.
 #[derive(Clone, Debug)]
 pub struct Transform {
     pub(crate) viewport: Viewport,
     pub(crate) to_eye: FromWorld,
     pub(crate) normals: NormalRows,
-    /// Projection of spheres; `None` if the view's projection is unsuitable for spheres.
+    /// Projection of spheres. `None` if the view's projection is unsuitable for spheres.
     pub(crate) lens: Option<Lens>,
     pub(crate) to_clip: FromWorld,
     pub(crate) to_screen: ToScreen,
     pub(crate) guard: Guard,
     pub(crate) binner: Binner,
-    /// Winding on the screen of the triangles to drop; `None` if no triangle is dropped for its winding.
+    /// Winding on the screen of the triangles that are not drawn. `None` if triangles of both windings are drawn.
     pub(crate) dropped: Option<Turn>,
 }
 
@@ -96,7 +96,7 @@ impl TriangleEnds {
     }
 }
 
-/// Returns the integer nearest to the linear interpolation from `from` (`s` = 0) to `to` (`s` = 1).
+/// Returns the integer nearest to the linear interpolation between `from` (at `s` = 0) and `to` (at `s` = 1).
 fn whole_between(from: f64, to: f64, s: f64) -> f64 {
     (from + (to - from) * s + 0.5).floor()
 }
@@ -120,7 +120,7 @@ impl ToScreen {
         Guard { x: (limit - self.centre[0]) / self.centre[0], y: (limit - self.centre[1]) / self.centre[1] }
     }
 
-    /// Divides clip coordinates by w and rounds them to subpixels. The vertex must be inside the guard band.
+    /// Divides clip coordinates by w and rounds the results to subpixels. The vertex must be inside the guard band.
     #[inline(always)]
     pub(crate) fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
         let inverse = newton::reciprocal(w);
@@ -131,11 +131,11 @@ impl ToScreen {
         }
     }
 
-    /// Divides a corner of a clipped triangle by w and rounds it to subpixels. Returns `None` if the corner is still
-    /// outside the guard band, because w is near 0.
+    /// Divides a corner of a clipped triangle by w and rounds the result to subpixels. Returns `None` if the corner is
+    /// still outside the guard band because w is near 0.
     ///
-    /// An original vertex is computed like the vertices of unclipped triangles. A corner made by clipping is computed
-    /// in double precision.
+    /// An original vertex is computed like the vertices of unclipped triangles. A corner that results from clipping is
+    /// computed in double precision.
     fn snap_corner<const N: usize>(&self, Corner { clip, cut, .. }: &Corner<N>) -> Option<Snapped> {
         let limit = f64::from(screen::GUARD_PIXELS * SUBPIXELS);
         if clip[3] < f64::from(clip::MIN_W) {
@@ -188,9 +188,9 @@ impl Assembled {
 
 /// Returns true if a view reverses the winding of corners.
 ///
-/// The sign of a determinant shows the reversal. The determinant belongs to the map from model coordinates to x, y and
-/// w of the screen. If w is constant, depth replaces w. For a view along -Z without mirroring, the determinant is
-/// negative.
+/// The function computes the determinant of the map from model coordinates to x, y and w of the screen. If w is
+/// constant, depth replaces w. For a view along -Z without mirroring, the determinant is negative. For a reversing
+/// view, the determinant is positive.
 fn is_mirrored(view: &ViewTransform) -> bool {
     let matrix = view.projection * view.model_view;
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| matrix.row(row).truncate().as_dvec3());
@@ -239,8 +239,8 @@ impl Transform {
         &self.viewport
     }
 
-    /// Bins one triangle: calls `sink` once for each resulting screen triangle that touches a region, with all regions
-    /// that it touches.
+    /// Bins one triangle. Calls `sink` once for each resulting screen triangle that touches a region, with all touched
+    /// regions.
     ///
     /// [`Self::gouraud`] and [`Self::phong`] give the same screen triangles in the same order.
     #[inline]
@@ -258,8 +258,8 @@ impl Transform {
         self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
-    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines. Callers with regions of their own
-    /// can bin the outlines.
+    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines. Callers can bin the outlines into
+    /// other regions than the regions of the picture.
     #[inline]
     pub fn outlines(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         self.triangle(positions, |_| [0.0; 3], stats, |outline, _| sink(&outline));
@@ -305,8 +305,8 @@ impl Transform {
         );
     }
 
-    /// Transforms one triangle. `extra` returns three surface values of a corner; it is called only for visible
-    /// triangles.
+    /// Transforms one triangle. `extra` returns three surface values of a corner. The function calls `extra` only for
+    /// visible triangles.
     #[inline(always)]
     fn triangle(
         &self,
@@ -329,8 +329,8 @@ impl Transform {
         self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
     }
 
-    /// Returns the corners of a triangle on the screen in two views: this view and the view `end`. Both must have the
-    /// same picture.
+    /// Returns the corners of a triangle on the screen in two views: this view and the view `end`. Both views must have
+    /// the same picture.
     ///
     /// Returns `None` if a corner is outside the guard band of either view.
     #[must_use]
@@ -338,7 +338,7 @@ impl Transform {
         Some(TriangleEnds { from: self.snap_unclipped(positions)?, to: end.snap_unclipped(positions)? })
     }
 
-    /// Returns the corners of a triangle on the screen; `None` if a corner is outside the guard band.
+    /// Returns the corners of a triangle on the screen. Returns `None` if a corner is outside the guard band.
     fn snap_unclipped(&self, positions: &[Vec3; 3]) -> Option<[Snapped; 3]> {
         let clip = positions.map(|p| self.to_clip.point(p));
         clip.iter().all(|c| self.guard.contains(*c)).then(|| clip.map(|c| self.to_screen.snap(c)))
@@ -372,8 +372,8 @@ impl Transform {
         }
     }
 
-    /// Returns the corners in clockwise order, with the touched regions. If nothing is drawn, returns `None` and counts
-    /// the reason.
+    /// Returns the corners in clockwise order, with the touched regions. If the triangle is not drawn, returns `None`
+    /// and counts the reason.
     #[inline(always)]
     fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
         let whole = Assembled::clockwise(corners);
@@ -383,8 +383,8 @@ impl Transform {
         Some(whole)
     }
 
-    /// Returns the binning result of a triangle whose corners are inside the guard band. `None` is a triangle without
-    /// area.
+    /// Returns the binning result of a triangle whose corners are inside the guard band. `whole` is `None` for a
+    /// triangle without area.
     #[inline(always)]
     fn touch(&self, whole: Option<&Assembled>) -> Touch {
         let Some(whole) = whole else { return Touch::Degenerate };
@@ -395,8 +395,8 @@ impl Transform {
         Touch::from_mask(self.binner.triangle(&whole.outline))
     }
 
-    /// Clips a triangle, and splits the resulting polygon into a fan of triangles. Calls `sink` for each of them that
-    /// touches a region.
+    /// Clips a triangle, and splits the resulting polygon into a fan of triangles. Calls `sink` for each triangle of
+    /// the fan that touches a region.
     #[inline(never)]
     fn clipped<const N: usize>(
         &self,
@@ -404,7 +404,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(Assembled, [[f32; N]; 3]),
     ) {
-        // Drop what clipping cannot handle or would remove completely.
+        // Drop triangles that clipping cannot handle or would remove completely.
         let clip = corners.map(|v| v.clip);
         if !clip::representable(&clip) {
             stats.not_finite += 1;

@@ -1,7 +1,7 @@
 //! Vertices that many triangles share, each transformed only once.
 //!
 //! From these vertices, triangles that need no clipping are [binned](Transform::touched) and set up in
-//! [groups](crate::TriangleLanes). The results equal those of [`Transform::bin`], [`Transform::gouraud`] and
+//! [groups](crate::TriangleLanes). The results equal the results of [`Transform::bin`], [`Transform::gouraud`] and
 //! [`Transform::phong`]. These three functions handle the triangles that need clipping.
 
 use crate::clip::Guard;
@@ -15,12 +15,12 @@ use glam::Vec3;
 use multiversion::multiversion;
 use pxpl5_wire::LANES;
 
-/// A vertex on the screen in one view. All triangles at this vertex share it.
+/// A vertex on the screen in one view. All triangles at this vertex share this vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex(pub(crate) Snapped);
 
-/// The x that marks a vertex outside the guard band. It is greater than any x inside, and its differences from other x
-/// are still exact.
+/// The x that marks a vertex outside the guard band. This x is greater than any x inside the band, and its differences
+/// from other coordinates are still exact.
 pub(crate) const OUTSIDE: i32 = 2 * screen::GUARD_PIXELS * SUBPIXELS;
 
 const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
@@ -32,10 +32,11 @@ const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
 #[repr(align(32))]
 pub struct SurfaceVertex {
     pub(crate) screen: ScreenVertex,
-    /// Degree to which the normal faces the eye: negative if it faces away; 0 for vertices with colours.
+    /// Degree to which the normal faces the eye. The value is negative if the normal faces away, and 0 for vertices
+    /// with colours.
     pub(crate) facing: f32,
-    /// Colour or normal, in the units of the plane expressions. Colours include half a unit for rounding; normals do
-    /// not.
+    /// Colour or normal, in the units of the plane expressions. Colours include half a unit for rounding, and normals
+    /// do not.
     pub(crate) values: [f32; 3],
 }
 
@@ -86,8 +87,8 @@ impl Transform {
 
     /// Returns vertices with normals in eye coordinates, for Phong shading.
     ///
-    /// The slices hold, for each vertex, its position on the screen, its position in the world and its normal in the
-    /// world. The shortest slice determines the number of vertices.
+    /// The slices have one element for each vertex: its position on the screen, its position in the world, and its
+    /// normal in the world. The shortest slice determines the number of vertices.
     #[must_use]
     pub fn vertex_normals(
         &self,
@@ -103,8 +104,8 @@ impl Transform {
 
     /// Returns vertices with lit colours, for Gouraud shading.
     ///
-    /// The slices hold, for each vertex, its position on the screen, its position in the world, its normal in the world
-    /// and its colour. The shortest slice determines the number of vertices.
+    /// The slices have one element for each vertex: its position on the screen, its position in the world, its normal
+    /// in the world, and its colour. The shortest slice determines the number of vertices.
     #[must_use]
     pub fn vertex_colours(
         &self,
@@ -126,8 +127,8 @@ fn without_surface(on_screen: &[ScreenVertex]) -> Vec<SurfaceVertex> {
     on_screen.iter().map(|screen| SurfaceVertex { screen: *screen, ..SurfaceVertex::NOWHERE }).collect()
 }
 
-/// Transforms vertices and appends the results to `out`. The results equal those of [`Transform::screen_vertex`]. The
-/// loops are plain Rust, compiled once for each vector unit: see [`crate::lanes`].
+/// Transforms vertices and appends the results to `out`. The results equal the results of [`Transform::screen_vertex`].
+/// The loops are plain Rust and are compiled once for each vector unit (see [`crate::lanes`]).
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn append_lanes(
     positions: &[[Vec3; LANES]],
@@ -149,7 +150,8 @@ fn append_lanes(
         let mut x = [0; LANES];
         let mut y = [0; LANES];
         let mut z = [0; LANES];
-        // Divide and snap all vertices, also those outside the guard band: a loop without branches is vectorized.
+        // Divide and snap all vertices, including vertices outside the guard band, because only a loop without branches
+        // is vectorized.
         for i in 0..LANES {
             let point = [clip[0][i], clip[1][i], clip[2][i], clip[3][i]];
             let inside = guard.contains(point);

@@ -17,8 +17,8 @@ pub const MAX_PICTURE: u32 = 2048;
 /// as in `Mat4::perspective_rh` and `Mat4::orthographic_rh`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewTransform {
-    /// Matrix from world (or model) coordinates to eye coordinates. For lighting and spheres, it must consist of a
-    /// rotation, a translation and a uniform scale.
+    /// Matrix from world (or model) coordinates to eye coordinates. For lighting and spheres, the matrix must consist
+    /// of a rotation, a translation and a uniform scale.
     pub model_view: Mat4,
     /// Matrix from eye coordinates to clip coordinates.
     pub projection: Mat4,
@@ -79,8 +79,8 @@ impl Viewport {
     /// A whole NTSC frame: 640 x 480 in 20 regions (TR94).
     pub const FRAME: Self = Self { grid: RegionGrid::FRAME, lines: Lines::Frame };
 
-    /// Returns one NTSC field: 640 x 240 in 10 regions (TR94). Row r of the even field is frame line 2r; row r of the
-    /// odd field is frame line 2r + 1.
+    /// Returns one NTSC field: 640 x 240 in 10 regions (TR94). Row r of the even field is frame line 2r, and row r of
+    /// the odd field is frame line 2r + 1.
     #[must_use]
     pub const fn field(parity: pxpl5_wire::FieldParity) -> Self {
         Self { grid: RegionGrid::FIELD, lines: Lines::Field(parity) }
@@ -138,7 +138,7 @@ impl Viewport {
         }
     }
 
-    /// Returns the height in lines of the frame to which the picture belongs.
+    /// Returns the height of the frame to which the picture belongs, in lines.
     #[must_use]
     pub const fn frame_lines(&self) -> u32 {
         self.grid.height * self.line_step()
@@ -165,7 +165,7 @@ impl From<Viewport> for PictureFields {
 
 /// Columns of a 4 x 4 matrix. Products are computed in one fixed order on every host.
 ///
-/// The library glam uses the host's vector unit for products. Its order of additions differs from the scalar order.
+/// The library glam uses the host's vector unit for products, with another order of additions than in scalar code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Columns(pub(crate) [[f32; 4]; 4]);
 
@@ -179,7 +179,7 @@ impl Columns {
         f64::from(self.0[column][row])
     }
 
-    /// Returns true if all of the given elements are zero. Each element is given as its row and column.
+    /// Returns true if all of the given elements are zero. Each element is given by its row and column.
     pub(crate) fn is_zero_at(&self, cells: &[(usize, usize)]) -> bool {
         cells.iter().all(|&(row, column)| self.cell(row, column) == 0.0)
     }
@@ -196,7 +196,7 @@ impl Columns {
         })
     }
 
-    /// Returns the point that an affine matrix maps to the origin. If there is no such point, returns the origin.
+    /// Returns the point that an affine matrix maps to the origin. Returns the origin if no such point exists.
     fn origin(&self) -> Vec3 {
         let [x, y, z, t] = self.0.map(|c| [c[0], c[1], c[2]].map(f64::from));
         let determinant = dot(x, cross(y, z));
@@ -208,9 +208,9 @@ impl Columns {
 
 /// Map from points of the world to eye or clip coordinates, computed relative to the eye.
 ///
-/// For a point p far from the world's origin, `A p + t` loses precision, since it is a difference of two large numbers.
-/// The code computes `A (p - o) + t'` instead. Here o is the eye's position, and `t' = A o + t` is computed in double
-/// precision. The error of the subtraction `p - o` is at most half the last bit of its result.
+/// For a point p far from the world's origin, `A p + t` loses precision, because the sum is a difference of two large
+/// numbers. The code computes `A (p - o) + t'` instead. Here o is the eye's position, and `t' = A o + t` is computed in
+/// double precision. The error of the subtraction `p - o` is at most half the last bit of its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FromWorld {
     columns: [[f32; 4]; 4],
@@ -251,7 +251,7 @@ impl FromWorld {
         std::array::from_fn(|i| ((cx[i] * x + cy[i] * y) + cz[i] * z) + ct[i])
     }
 
-    /// Returns the greatest factor by which the map stretches an axis; NaN if there is none.
+    /// Returns the greatest factor by which the map stretches an axis. Returns NaN if the factor is 0 or not finite.
     pub(crate) fn scale(&self) -> f64 {
         let squares = self.columns[..3].iter().map(|&[x, y, z, _]| {
             let axis = [x, y, z].map(f64::from);

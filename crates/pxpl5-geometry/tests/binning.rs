@@ -1,4 +1,5 @@
-//! Tests of the touched regions, against brute force and an independent exact test.
+//! Tests of the touched regions. The tests compare the regions with an exhaustive search and with an independent exact
+//! test.
 
 mod support;
 
@@ -19,7 +20,7 @@ fn viewports() -> [Viewport; 4] {
 }
 
 fn screen(viewport: Viewport, points: [[i32; 2]; 3]) -> (Option<Outline>, SetupStats) {
-    // Positions in 1/16 px of a frame of 640 x 480, scaled for smaller pictures.
+    // The positions are in 1/16 px of a frame of 640 x 480, scaled for smaller pictures.
     let [sx, sy] = [viewport.grid().width as f32 / 640.0, viewport.frame_lines() as f32 / 480.0];
     let positions = points.map(|[x, y]| at_pixel(x as f32 / 16.0 / sx, y as f32 / 16.0 / sy, 1.0));
     let transform = Transform::new(&pixel_view(1.0, 16_384.0), viewport, Culling::None).expect("a finite view");
@@ -63,7 +64,8 @@ fn holds_a_pixel(viewport: &Viewport, o: &Outline, region: RegionId) -> bool {
 
 /// Returns true if the closed triangle meets the closed box of a region's pixel centres, computed exactly in 1/16 px.
 ///
-/// They meet if a corner of one is inside the other, or if an edge crosses a side.
+/// Triangle and box meet if a corner of one is inside the other, or if an edge of the triangle crosses a side of the
+/// box.
 fn meets(viewport: &Viewport, o: &Outline, region: RegionId) -> bool {
     let [left, top, width, height] = viewport.grid().rectangle(region);
     let x = [left, left + width - 1].map(|v| 16 * i64::from(v) + 8);
@@ -113,7 +115,7 @@ proptest! {
     ) {
         for viewport in viewports() {
             let (outline, stats) = screen(viewport, points);
-            // A triangle without regions produces no outline, so take the outline from the whole picture.
+            // A triangle without regions has no outline here, so use the outline from the whole picture.
             let Some(outline) = outline else {
                 prop_assert_eq!(stats.untouched + stats.degenerate + stats.outside, 1);
                 continue;

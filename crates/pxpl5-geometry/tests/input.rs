@@ -1,4 +1,4 @@
-//! Tests of user input: meshes, bad numbers, culling, invisible spheres.
+//! Tests of user input: meshes, invalid numbers, culling, and invisible spheres.
 
 mod support;
 
@@ -93,7 +93,8 @@ fn matrices_that_mirror_turn_no_face_round() {
         (Vec3::splat(3.0), false),
     ] {
         let scaled = ViewTransform { model_view: Mat4::from_scale(scale), ..view };
-        // The same place on the screen: a mirroring matrix reverses the winding of the model's triangle.
+        // The triangle has the same place on the screen. A mirroring matrix reverses the winding of the model's
+        // triangle.
         let there = clockwise().map(|p| p / scale);
         assert_eq!(culled(&scaled, there), !mirrors, "{scale}");
         assert_eq!(culled(&scaled, [there[0], there[2], there[1]]), mirrors, "{scale}");
@@ -101,7 +102,7 @@ fn matrices_that_mirror_turn_no_face_round() {
     // A projection with y downwards mirrors the picture but not the model.
     let down = ViewTransform { projection: Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * view.projection, ..view };
     assert!(culled(&down, clockwise()));
-    // Without perspective, the depth tells the direction of the view.
+    // Without perspective, the depth determines the direction of the view.
     let projection = Mat4::orthographic_rh(-960.0, 960.0, -960.0, 960.0, 1.0, 16_384.0);
     for (scale, mirrors) in [(Vec3::ONE, false), (Vec3::new(-1.0, 1.0, 1.0), true)] {
         let flat = ViewTransform { model_view: Mat4::from_scale(scale), projection };
@@ -127,7 +128,7 @@ fn a_vertex_that_faces_the_light_has_its_full_colour_and_one_edge_on_the_ambient
     let mut out = Vec::new();
     let mut stats = SetupStats::default();
     transform(Culling::None).gouraud(&lit, &light, &mut stats, |t| out.push(t));
-    // Lighting is two-sided: a normal that points away counts like its opposite.
+    // Lighting is two-sided: a normal that points away is treated like the opposite normal.
     assert_eq!(out[0].surface.0.map(|c| c[0]), [200 * 192, 200 * 192, 200 * 64]);
 }
 
@@ -138,7 +139,7 @@ fn phong_normals_are_unit_length_and_face_the_eye() {
     let mut out = Vec::new();
     let mut stats = SetupStats::default();
     transform(Culling::None).phong(&away, &mut stats, |t| out.push(t));
-    // 0.6 and 0.8 in units of 1/2^14, rounded.
+    // The expected values are 0.6 and 0.8 in units of 1/2^14, rounded.
     assert_eq!(out[0].surface.normals, [[0, 0, 16_384], [0, 9830, 13_107], [0, 0, 16_384]]);
     assert_eq!(out[0].surface.colour, [10, 20, 30]);
 }
@@ -160,8 +161,8 @@ fn shared_vertices_give_what_their_triangles_give() {
     }
 }
 
-/// Compares a triangle with the same triangle from shared vertices, in a lane after others. Returns false if the
-/// triangle is invisible or clipped.
+/// Compares a triangle with the same triangle from shared vertices, which is in a lane after other triangles. Returns
+/// false if the triangle is invisible or clipped.
 fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: usize, name: &str) -> bool {
     let light = Light { direction: [0.6, 0.0, 0.8], ambient: 0.2, diffuse: 0.7 };
     let [a, b, c] = t.positions.map(|p| transform.screen_vertex(p));
@@ -272,7 +273,7 @@ fn depths_of_spheres_that_touch_the_near_or_the_far_plane_never_wrap() {
         let screen = spheres::transform().sphere(&sphere, &mut stats).unwrap_or_else(|| panic!("{z}: {stats:?}"));
         let setup = screen.phong(&Viewport::FRAME, &mut stats).setup;
         let exact = ExactSphere::new(&sphere);
-        // One step of the root, and a few units for planes and pixels.
+        // The limit is one step of the root, and a few units for planes and pixels.
         let allowed = f64::from(1_u32 << setup.depth_shift) / 256.0 + 4.0;
         for (y, x) in (0..480).step_by(3).flat_map(|y| (0..640).step_by(3).map(move |x| (y, x))) {
             if let (true, Some(depth)) = (exact.covers(x, y), native(&setup, x, y)) {
@@ -309,7 +310,7 @@ fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
 
 #[test]
 fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() {
-    // A view of 64 px per unit along both axes; depth is 0 to 1 from distance 1 to 9.
+    // The view has 64 px per unit along both axes. Depth is 0 at distance 1, and 1 at distance 9.
     let view = ViewTransform {
         model_view: Mat4::IDENTITY,
         projection: Mat4::orthographic_rh(-5.0, 5.0, -3.75, 3.75, 1.0, 9.0),
@@ -330,7 +331,8 @@ fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() 
             if let (true, Some(depth)) = (square > 0.0, native(&setup, x, y)) {
                 seen += 1;
                 let exact = (4.0 - square.sqrt()) / 8.0 * 16_777_216.0;
-                // Half a step of a 12-bit root that spans 1.5 / 8 of the depth range. Near the rim the root is steep.
+                // The limit is half a step of a 12-bit root that spans 1.5 / 8 of the depth range. Near the rim, the
+                // root is steep.
                 let allowed = 1.5 / 8.0 * 16_777_216.0 / 2048.0 + 20.0;
                 assert!((f64::from(depth) - exact).abs() <= allowed, "{depth} {exact}");
             }
@@ -347,12 +349,12 @@ fn a_gouraud_sphere_is_full_in_the_middle_and_ambient_at_its_rim_under_a_headlig
     let sphere = screen.gouraud(&Viewport::FRAME, &Light::HEADLIGHT, &mut stats);
     let middle = red(&sphere, 320, 240);
     assert!((198..=200).contains(&middle), "{middle}");
-    // A radius of 600 at distance 1920 is 105 px. The rim has the ambient share, a quarter.
+    // A radius of 600 at distance 1920 is 105 px. The rim has only the ambient light, a quarter of the colour.
     let rim = red(&sphere, 320 + 104, 240);
     assert!((50..=70).contains(&rim), "{rim}");
 }
 
-/// Returns the red value that the renderer stores, by the operands' documentation.
+/// Returns the red value that the renderer stores, computed as the documentation of the operands states.
 fn red(sphere: &GouraudSphere, x: i32, y: i32) -> i32 {
     let value = sphere.setup.silhouette.at(x, y).max(0) >> sphere.setup.root_shift;
     let root = (value as u64 & 0xff_ffff).isqrt() as i32;

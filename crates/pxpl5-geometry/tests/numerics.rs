@@ -1,4 +1,4 @@
-//! Tests of hard cases: errors are within the limits of docs/numerics.md, and the file is up to date.
+//! Tests of hard cases. The errors must be within the limits of docs/numerics.md, and this file must be up to date.
 
 mod support;
 
@@ -52,7 +52,7 @@ fn corners_on_pixel_centres_and_region_borders_give_every_pixel_right() {
 
 #[test]
 fn models_far_from_the_origin_are_as_good_as_near_ones() {
-    // Includes the error of the grid itself, and a few pixels for 32-bit vertices.
+    // The limit includes the error of the grid itself, and a few pixels for 32-bit vertices.
     let far = row("10^6 from the origin");
     assert!(far.wrong <= far.grids[2] + 10, "{} {}", far.wrong, far.grids[2]);
 }

@@ -1,4 +1,4 @@
-//! Tests of the set-up against exact integers: edges, planes, ranges.
+//! Tests of the set-up against exact integers: edges, planes and ranges.
 
 mod support;
 
@@ -12,7 +12,7 @@ use support::native::Piece;
 
 const GUARD: i32 = pxpl5_geometry::GUARD_PIXELS * 16;
 
-/// Returns a clockwise triangle that counts as touching every region, so that brute force tests all pixels.
+/// Returns a clockwise triangle that touches every region according to its mask, so that the tests check all pixels.
 fn screen(x: [i32; 3], y: [i32; 3], z: [u32; 3], colours: [[u16; 3]; 3]) -> Option<Piece> {
     let regions = (0..20).map(|n| RegionMask::only(pxpl5_wire::RegionId(n)));
     let mut outline = Outline { x, y, z, regions: regions.fold(RegionMask::EMPTY, RegionMask::union) };
@@ -52,7 +52,7 @@ fn pixel_centre(size: i32) -> impl Strategy<Value = i32> {
     (0..size).prop_map(|p| p * 16 + 8)
 }
 
-/// Moves the second and the third number `s` times nearer to the first.
+/// Reduces the distances of the second and the third number from the first by the factor `s`.
 fn pulled(v: [i32; 3], s: i32) -> [i32; 3] {
     v.map(|c| v[0] + (c - v[0]) / s)
 }
@@ -77,7 +77,8 @@ fn component() -> impl Strategy<Value = u16> {
     prop_oneof![Just(0_u16), Just(255 * 256), 0..=255_u16 * 256]
 }
 
-/// Returns true if a pixel is inside, by the definition of edges and the tie rule in 1/256 square px, in 128 bits.
+/// Returns true if a pixel is inside the triangle. The function applies the definition of edges and the tie rule in
+/// 1/256 square px, with 128 bits.
 fn inside(outline: &Outline, x: i32, y: i32) -> bool {
     let centre = [16 * i128::from(x) + 8, 16 * i128::from(y) + 8];
     let corners = [0, 1, 2].map(|i| [i128::from(outline.x[i]), i128::from(outline.y[i])]);
@@ -91,10 +92,10 @@ fn inside(outline: &Outline, x: i32, y: i32) -> bool {
     })
 }
 
-/// Returns the error that the set-up states: `(|dx| + |dy|) / 2 + 1` from the middle of the visible bounding box,
-/// rounded up.
+/// Returns the limit of the error that the set-up documents: `(|dx| + |dy|) / 2 + 1`, rounded up. The distances are
+/// measured from the middle of the visible bounding box.
 ///
-/// One more pixel each way accounts for the rounding of the middle itself.
+/// One more pixel in each direction accounts for the rounding of the middle itself.
 fn allowed_error(piece: &Piece, x: i32, y: i32) -> i128 {
     let outline = &piece.screen.outline;
     let from_middle = (visible_middle(&outline.x, 640) - x).abs() + (visible_middle(&outline.y, 480) - y).abs();
@@ -181,7 +182,7 @@ proptest! {
             for i in 0..3 {
                 let (sum, area) = piece.exact_plane(piece.colour_corners(i), px, py);
                 let found = i128::from(piece.colour(i, px, py)) * 256;
-                // Half a unit, and 282/4096 of a unit for the plane.
+                // The limit is half a unit, and 282/4096 of a unit for the plane.
                 let allowed = if stats.flattened_planes > 0 { 256 * 256 } else { 128 + 18 };
                 if (found * area - sum).abs() > allowed * area {
                     failure = Some((px, py, i, found, sum / area));
@@ -241,7 +242,8 @@ proptest! {
 
 #[test]
 fn a_plane_too_steep_for_64_bits_is_flat_and_counted() {
-    // Twice the area is 1/256 square px, and the depth range is complete: 2^32 * 2^12 and more per pixel.
+    // Twice the area is 1/256 square px, and the depths cover the whole range. The slope is more than 2^32 * 2^12 per
+    // pixel.
     let piece = screen([0, 8000, 7999], [8, 5008, 5007], [DEPTH_NEAR, DEPTH_NEAR, DEPTH_FAR], [[0; 3]; 3])
         .expect("it has an area");
     let mut stats = SetupStats::default();
@@ -254,7 +256,7 @@ fn a_plane_too_steep_for_64_bits_is_flat_and_counted() {
 
 #[test]
 fn a_wall_seen_edge_on_keeps_its_depth_though_its_slope_needs_more_than_32_bits() {
-    // One pixel wide, from near to far: a slope of 2^32 per pixel.
+    // The wall is one pixel wide and extends from near to far, which gives a slope of 2^32 per pixel.
     let piece =
         screen([100 * 16, 101 * 16, 100 * 16], [0, 0, 480 * 16], [DEPTH_NEAR, DEPTH_FAR, DEPTH_NEAR], [[0; 3]; 3])
             .expect("it has an area");

@@ -1,4 +1,4 @@
-//! Tests of shared edges: no pixel is missing or drawn twice, even if clipping cuts the edges.
+//! Tests of shared edges. No pixel may be missing or drawn twice, even if clipping cuts the edges.
 
 mod support;
 
@@ -28,7 +28,7 @@ fn count(counts: &[u8], x: i32, y: i32) -> u8 {
     counts[(y * WIDTH + x) as usize]
 }
 
-/// Returns a fan of `rim` around `hub`, with every second triangle reversed.
+/// Returns a fan of triangles between `hub` and the points of `rim`. Every second triangle has the other winding.
 fn fan(hub: Vec3, rim: &[Vec3]) -> Vec<[Vec3; 3]> {
     let sectors = (0..rim.len()).map(|n| {
         let next = rim[(n + 1) % rim.len()];
@@ -38,7 +38,7 @@ fn fan(hub: Vec3, rim: &[Vec3]) -> Vec<[Vec3; 3]> {
 }
 
 fn on_screen() -> impl Strategy<Value = [i32; 2]> {
-    // Multiples of half a pixel, so that edges often pass through pixel centres.
+    // The coordinates are multiples of half a pixel, so that edges often pass through pixel centres.
     [40..1240, 40..920]
 }
 
@@ -73,7 +73,7 @@ proptest! {
         a in prop::array::uniform3(-3.0..3.0_f32), b in prop::array::uniform3(-3.0..3.0_f32),
         depth in -4.0..-1.5_f32, scale in prop_oneof![Just(1.0_f32), Just(1e3), Just(1e5)],
     ) {
-        // A plane near the eye, cut by lines through a hub: it must cover the whole screen once.
+        // A plane near the eye is divided by lines through a hub. The plane must cover each pixel of the screen once.
         let view = ViewTransform {
             model_view: Mat4::IDENTITY,
             projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.25, 1e6),
@@ -96,7 +96,7 @@ proptest! {
 
 #[test]
 fn an_edge_of_10_5_units_that_passes_the_eye_closely_is_cut_where_it_is() {
-    // In single precision a cut was five pixels off: the pieces folded over and drew 85 pixels twice.
+    // With cuts in single precision, a cut had an error of five pixels. The pieces overlapped and drew 85 pixels twice.
     let projection = Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.25, 1e6);
     let view = ViewTransform { model_view: Mat4::IDENTITY, projection };
     let [a, b] = [Vec3::new(0.182_420_76, 0.094_211_22, 2.811_083_8), Vec3::new(2.750_59, -2.228_786_5, -2.321_554_4)];
@@ -111,17 +111,19 @@ fn a_corner_on_a_pixel_centre_belongs_to_exactly_one_of_its_triangles() {
     let rim = [[90.5, 100.5], [100.5, 90.5], [110.5, 100.5], [100.5, 110.5]].map(|[x, y]| at_pixel(x, y, 1.0));
     let (counts, _) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
     assert_eq!(count(&counts, 100, 100), 1);
-    // The diamond |x| + |y| <= 10 of pixel centres, without its lower and right rim: 221 - 20 - 1 + ... A row at height
-    // k from the middle has centres -w..=w with w = 10 - |k|. Its left end is on a left edge and counts. Its right end
-    // is on a right edge and does not count. The row of the bottom corner is empty, since no left or top edge contains
-    // the corner as an inner point. The row of the top corner is empty, since the corner is on a right edge.
+    // The result counts the pixel centres in the diamond |x| + |y| <= 10, without the lower and right rim. A row at
+    // height k from the middle has centres -w..=w with w = 10 - |k|. Its left end is on a left edge and counts. Its
+    // right end is on a right edge and does not count. The row of the bottom corner is empty, because no left or top
+    // edge contains the corner as an inner point. The row of the top corner is empty, because the corner is on a right
+    // edge.
     let expected: u32 = (-9_i32..=9).map(|k| 2 * (10 - k.unsigned_abs())).sum();
     assert_eq!(counts.iter().map(|&n| u32::from(n)).sum::<u32>(), expected);
 }
 
 #[test]
 fn a_triangle_that_passes_the_eye_covers_what_is_before_the_near_plane() {
-    // The floor y = -1, from far in front of the eye to far behind it: every pixel below the horizon is covered.
+    // The floor y = -1 extends from far in front of the eye to far behind the eye. Every pixel below the horizon must
+    // be covered.
     let view = pixel_view(0.5, 1e6);
     let corners = [Vec3::new(-1e5, -1.0, 1e4), Vec3::new(1e5, -1.0, 1e4), Vec3::new(0.0, -1.0, -9e5)];
     let (counts, stats) = draw(&view, &[corners]);

@@ -4,8 +4,8 @@ use crate::board::{GpBoard, GpEvent, GpOutput};
 use pxpl5_sim::{Phase, TestBench, Time};
 use pxpl5_wire::Message;
 
-/// A board with its event queue, a [`TestBench`]. The test supplies the messages and acceptances that other boards
-/// would send.
+/// A board in a [`TestBench`], which holds its event queue. The test supplies the messages and acceptances that other
+/// boards would send.
 #[derive(Debug)]
 pub struct BoardBench {
     /// The board under test with its programs.
@@ -28,8 +28,8 @@ impl BoardBench {
         self.bench.feed(at, Phase::Arrive, event);
     }
 
-    /// Schedules, at time `at`, the acceptance of all messages that the board has sent and that were not accepted
-    /// before.
+    /// Schedules the acceptance of all messages that the board has sent and the receivers have not yet accepted. The
+    /// acceptance happens at time `at`.
     pub fn accept_all(&mut self, at: Time) {
         while let Some((_, GpOutput::Send { ticket, .. })) = self.bench.outputs.get(self.accepted) {
             let accepted = GpEvent::Accepted(*ticket);
@@ -43,7 +43,8 @@ impl BoardBench {
         self.bench.run_until(until, |event, context| self.board.handle(event, context));
     }
 
-    /// Iterates over the sent messages, each with the time at which it left the board, in order.
+    /// Iterates over the sent messages in order. Each item is the time at which a message left the board, and the
+    /// message.
     pub fn sent(&self) -> impl Iterator<Item = (Time, &Message)> {
         self.bench.outputs.iter().map(|(time, GpOutput::Send { message, .. })| (*time, message))
     }

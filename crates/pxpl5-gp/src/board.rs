@@ -20,8 +20,8 @@ use std::task::{Context as TaskContext, Poll, Waker};
 pub enum GpEvent {
     /// The last word of a message has arrived. The event belongs to phase `Arrive` of the event queue.
     Delivered(Message),
-    /// A receiver has accepted a message of a batch. The number is the ticket from [`GpOutput::Send`]. The event
-    /// belongs to phase `Arrive` of the event queue.
+    /// A receiver has accepted a message of a batch. The number is the `ticket` of the message in [`GpOutput::Send`].
+    /// The event belongs to phase `Arrive` of the event queue.
     Accepted(u64),
     /// A retrace begins a field. The event belongs to phase `Arrive` of the event queue.
     Retrace(PeriodNumber),
@@ -32,7 +32,7 @@ pub enum GpEvent {
         /// New value of the status line.
         value: u64,
     },
-    /// The programs run and read the inputs that have arrived at this instant.
+    /// The board runs its programs, which read the inputs that have arrived at this instant.
     Poll,
     /// The running work of the CPU may end at this instant. An interrupt may have delayed the end to a later time.
     WorkEnds,
@@ -41,12 +41,13 @@ pub enum GpEvent {
 /// Output of a graphics processor board.
 #[derive(Debug)]
 pub enum GpOutput {
-    /// A message for the ring. After its acceptance, `ticket` comes back in [`GpEvent::Accepted`].
+    /// A message for the ring. When the receiver accepts the message, the board gets `ticket` back in
+    /// [`GpEvent::Accepted`].
     Send {
         /// Message with its destination.
         message: Message,
-        /// Number of the batch, followed by the index of the message in the batch. The index is in the lower
-        /// [`PLACE_BITS`].
+        /// Number of the batch, followed by the index of the message in the batch. The index occupies the lower
+        /// [`PLACE_BITS`] bits.
         ticket: u64,
         /// True if the receiver's port stays reserved for the next message of this board.
         hold: bool,
@@ -64,12 +65,13 @@ pub struct GpUse {
     pub busy: Span,
     /// CPU time of the software that receives and sends messages.
     pub messages: Span,
-    /// CPU time of work that [answers](crate::Gp::answer) messages. Such work hands over bins in exchange for a token.
+    /// CPU time of work that [answers](crate::Gp::answer) messages. Such work sends bins to a renderer when a token
+    /// arrives.
     pub tokens: Span,
 }
 
 impl GpUse {
-    /// Returns the CPU time of all other work, such as EDIT and TRANSFORM: neither messages nor tokens.
+    /// Returns the CPU time of all work except message software and token work, for example of EDIT and TRANSFORM.
     #[must_use]
     pub const fn work(&self) -> Span {
         Span(self.busy.0.saturating_sub(self.messages.0 + self.tokens.0))
@@ -86,8 +88,8 @@ struct Task {
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
-    /// Times at which a [`GpEvent::WorkEnds`] is scheduled: the next end of work, and earlier ends that an interrupt
-    /// has delayed.
+    /// Times at which a [`GpEvent::WorkEnds`] is scheduled. Besides the next end of work, the list has earlier ends
+    /// that an interrupt has delayed.
     announced: Vec<Time>,
     poll_pending: bool,
     cycle: Span,
@@ -101,7 +103,8 @@ impl fmt::Debug for GpBoard {
 }
 
 impl GpBoard {
-    /// Makes a board without a program at a ring port. Each output leaves the board one `cycle` after its cause.
+    /// Makes a board without programs at a ring port. Each output leaves the board at a time of one `cycle` after its
+    /// cause.
     #[must_use]
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
@@ -134,7 +137,7 @@ impl GpBoard {
     }
 
     /// Makes the board run i860 code for each [`Work`](crate::Work) instead of using the timing table. `core`
-    /// configures the i860. Boards with the same `shelf` share decoded programs and their remembered clocks.
+    /// configures the i860. Boards with the same `shelf` share decoded programs and their memoized clocks.
     pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, shelf: &Rc<RefCell<i860::DecodedPrograms>>) {
         let shared = &mut *self.shared.borrow_mut();
         let mut processor = Processor::new(shared.node, shared.timing.memory_bytes, version, core);
@@ -142,14 +145,15 @@ impl GpBoard {
         shared.processor = Some(Box::new(processor));
     }
 
-    /// Turns memoization of the i860 off, so that every clock is counted again. Must be called before the first event.
+    /// Turns memoization of the i860 off, so that the i860 counts every clock again. Call this function before the
+    /// first event.
     pub fn disable_memoization(&mut self) {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
             processor.disable_memoization();
         }
     }
 
-    /// Returns a handle through which a program of this priority uses the board.
+    /// Returns a handle to the board for a program of this priority.
     #[must_use]
     pub fn handle_for(&self, priority: Priority) -> Gp {
         Gp { shared: Rc::clone(&self.shared), priority }
@@ -166,7 +170,7 @@ impl GpBoard {
     pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
         let mut shared = self.shared.borrow_mut();
         shared.now = context.now();
-        // Record the event; the programs see it at their next poll.
+        // Record the event. The programs read it at their next poll.
         let cause = match event {
             GpEvent::Delivered(message) => shared.latch(message),
             GpEvent::Accepted(ticket) => shared.note_accepted(ticket >> PLACE_BITS, ticket & PLACE_MASK),
@@ -195,7 +199,7 @@ impl GpBoard {
             let shared = &mut *self.shared.borrow_mut();
             shared.cpu.settle(shared.now);
         }
-        // Work may have ended at this instant; then run the programs as far as they go.
+        // If work ends at this instant, run the programs until they wait.
         self.poll_until_quiet();
         let mut shared = self.shared.borrow_mut();
         if let Some(batch) = shared.next_batch() {
@@ -220,7 +224,7 @@ impl GpBoard {
         }
     }
 
-    /// Schedules a [`GpEvent::WorkEnds`] at time `end`, unless one is scheduled there already.
+    /// Schedules a [`GpEvent::WorkEnds`] at time `end`, unless such an event is already scheduled at that time.
     fn announce(&mut self, end: Option<Time>, context: &mut Context<GpEvent, GpOutput>) {
         if let Some(end) = end.filter(|end| !self.announced.contains(end)) {
             self.announced.push(end);
@@ -228,8 +232,8 @@ impl GpBoard {
         }
     }
 
-    /// Polls the programs in turn until all of them wait for an event outside the board. Each poll runs a program as
-    /// far as possible. Another poll is useful only after progress of the board's other program.
+    /// Polls the programs in turn until all of them wait for an event outside the board. Each poll runs a program until
+    /// it waits. A program is polled again only after progress of the board's other program.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
@@ -253,7 +257,7 @@ impl GpBoard {
         }
         if let Poll::Ready(result) = task.firmware.as_mut().poll(context) {
             task.has_ended = true;
-            // The first fault of a board is the one that it reports.
+            // The board reports only its first fault.
             self.fault = self.fault.take().or(result.err());
         }
     }
@@ -272,7 +276,7 @@ impl GpBoard {
         self.fault.as_ref()
     }
 
-    /// Removes the records of stages that the programs have made, and passes them to `take` in order.
+    /// Removes the records of stages that the programs have made, and passes each record to `take` in order.
     pub fn drain_marks(&mut self, take: impl FnMut(Mark)) {
         let marks = &mut self.shared.borrow_mut().marks;
         if !marks.is_empty() {
@@ -313,7 +317,7 @@ impl GpBoard {
         GpSnapshot::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
     }
 
-    /// Calls `look` with the i860 if the board runs i860 code. Returns `None` for other boards.
+    /// Calls `look` with the i860 and returns the result. A board without i860 code returns `None`.
     pub fn with_processor<T>(&self, look: impl FnOnce(&Processor) -> T) -> Option<T> {
         self.shared.borrow().processor.as_deref().map(look)
     }
@@ -332,8 +336,8 @@ impl GpBoard {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
-    /// Returns the condition that the board waits for, for a deadlock report. The wait of the foreground program is
-    /// preferred to the wait of the interrupt program.
+    /// Returns the name of the condition that the board waits for, for a deadlock report. If both programs wait, the
+    /// condition of the foreground program is returned.
     #[must_use]
     pub fn blocked(&self) -> Option<&'static str> {
         Some(self.wait()?.what)

@@ -1,11 +1,11 @@
-//! CPU time of a board, shared by two programs of different priorities.
+//! CPU time of a board, which two programs of different priorities share.
 
 use pxpl5_sim::{Span, Time};
 
 /// CPU priority of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Priority {
-    /// The interrupt program. While it spends CPU time, the foreground program stands still.
+    /// The interrupt program. While it spends CPU time, the foreground program is suspended.
     Interrupt,
     /// The foreground program. It runs while the interrupt program spends no CPU time.
     Foreground,
@@ -24,7 +24,7 @@ pub(crate) struct Cpu {
 }
 
 impl Cpu {
-    /// Starts CPU work of length `span` for the program of a priority.
+    /// Starts CPU work of length `span` for the program at this priority.
     pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
         self.remaining[priority as usize] = Some(span);
@@ -49,19 +49,19 @@ impl Cpu {
         self.running = first.map(|priority| (priority, now));
     }
 
-    /// Returns true if the program of a priority has spent all the CPU time that it has requested.
+    /// Returns true if the program of this priority has spent all the CPU time that it requested.
     pub(crate) fn is_done(&self, priority: Priority) -> bool {
         self.remaining[priority as usize].is_none()
     }
 
-    /// Returns the time at which the running work ends if no interrupt comes. Returns `None` if no work is running.
+    /// Returns the time at which the running work ends, provided that no interrupt occurs. Returns `None` if no work is
+    /// running.
     pub(crate) fn next_end(&self) -> Option<Time> {
         let (priority, since) = self.running?;
         Some(since + self.remaining[priority as usize]?)
     }
 
-    /// Returns the CPU time that the work of a priority still needs at time `now`. Returns `None` without unfinished
-    /// work.
+    /// Returns the remaining CPU time of the unfinished work at this priority. Returns `None` if there is no such work.
     pub(crate) fn left(&self, priority: Priority, now: Time) -> Option<Span> {
         let left = self.remaining[priority as usize]?;
         match self.running {

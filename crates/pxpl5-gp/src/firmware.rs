@@ -15,7 +15,7 @@ use std::rc::Rc;
 use std::task::Poll;
 
 /// A program on a board. The program runs forever or ends with a fault. A program must wait for only one future at a
-/// time. If it polls several futures together, the board knows only the last wait.
+/// time. If a program polls several futures together, the board records only the last wait.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
@@ -33,7 +33,7 @@ pub enum Fault {
         /// Description of the unexpected message.
         found: String,
     },
-    /// i860 code has trapped, did not return, or lacked memory.
+    /// The i860 code trapped, did not return, or needed more memory than was free.
     #[error(transparent)]
     Processor(#[from] ProcessorFault),
 }
@@ -80,8 +80,8 @@ pub(crate) struct Shared {
     pub(crate) processor: Option<Box<Processor>>,
     /// Number of vertices that the programs have transformed since the start.
     pub(crate) vertex_transforms: u64,
-    /// CPU time requested so far for the software of messages. `answer_work` is the CPU time of work that answers
-    /// messages.
+    /// CPU time requested so far for the message software. The next field, `answer_work`, is the CPU time of work that
+    /// answers messages.
     pub(crate) message_software: Span,
     pub(crate) answer_work: Span,
     pub(crate) inbox: VecDeque<Received>,
@@ -92,16 +92,18 @@ pub(crate) struct Shared {
     /// Receivers that have accepted no message of the current batch so far.
     pub(crate) unaccepting_receivers: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
-    /// Ends of stages that are recorded when a batch is accepted: the batch and the record, in order.
+    /// Ends of stages that are recorded when a batch is accepted. Each entry has the batch and the record. The batches
+    /// are in order.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
-    /// Number of the last batch of which every receiver has accepted at least one message. `accepted` is the number of
-    /// the last completely accepted batch.
+    /// Number of the last batch for which every receiver has accepted at least one message. The next field, `accepted`,
+    /// is the number of the last batch whose messages are all accepted.
     pub(crate) draining: u64,
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
-    /// Number of waits that have ended so far. The board polls its programs until this number stays the same.
+    /// Number of waits that have ended so far. The board polls its programs until a round of polls leaves this number
+    /// unchanged.
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
     /// Fault in the board's own software. Such a fault stops all programs.
@@ -124,7 +126,7 @@ pub(crate) enum Cause {
     Acceptance,
     /// A message, a retrace or a status line has arrived, or the board's other program has progressed.
     Arrival,
-    /// A retrace. A retrace comes in every field, so a wait for it always ends.
+    /// A retrace. A retrace comes in every field, so a wait for a retrace always ends.
     Retrace,
     /// No event: the board has no program of this priority.
     Nothing,
@@ -138,10 +140,10 @@ impl Cause {
 }
 
 impl Wait {
-    /// The wait that stands for a missing program of a priority.
+    /// The entry in `Shared::waits` for a priority without a program.
     pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
 
-    /// The wait that stands for a program that has not run yet.
+    /// The entry in `Shared::waits` for a program that has not run yet.
     pub(crate) const NOT_STARTED: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
@@ -152,13 +154,13 @@ impl Shared {
         next_chain || self.waits.iter().any(|wait| wait.ended_by.includes(cause))
     }
 
-    /// Returns true if the program of a priority waits for the end of its unfinished CPU work.
+    /// Returns true if the program of this priority waits for the end of its own CPU work.
     pub(crate) fn is_at_work(&self, priority: Priority) -> bool {
         self.waits[priority as usize].ended_by == Cause::Work && !self.cpu.is_done(priority)
     }
 
-    /// Adds a message to the inbox. Messages that arrive at the same instant are sorted by sender. The order in which
-    /// their events are handled then has no effect.
+    /// Adds a message to the inbox. Messages that arrive at the same instant are sorted by sender, so the order in
+    /// which the events are handled has no effect.
     pub(crate) fn latch(&mut self, Message { source, body, .. }: Message) -> Cause {
         let arrived = self.now;
         // Insert after all messages of earlier instants and lower senders.
@@ -191,7 +193,7 @@ impl Shared {
         Cause::Acceptance
     }
 
-    /// Returns the next batch of messages if the DMA is free. The receivers of the batch are recorded.
+    /// Returns the next batch of messages if the DMA is free, and records the receivers of the batch.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
         // All messages of the batch now wait for their acceptance.
@@ -210,7 +212,7 @@ impl Shared {
     }
 }
 
-/// A program's handle to its board. The handle knows the CPU priority of the program.
+/// A program's handle to its board. The handle contains the CPU priority of the program.
 #[derive(Clone, Debug)]
 pub struct Gp {
     pub(crate) shared: Rc<RefCell<Shared>>,
@@ -248,8 +250,8 @@ impl Gp {
         self.shared.borrow().field
     }
 
-    /// Returns the value of another board's status line. For a frame buffer the value is the number of its swaps. The
-    /// value is zero before its first change.
+    /// Returns the value of another board's status line. The status line of a frame buffer carries the number of its
+    /// swaps. The value is zero before the first change.
     #[must_use]
     pub fn status(&self, from: NodeId) -> u64 {
         self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)
@@ -309,8 +311,8 @@ impl Gp {
         self.accepted(Ticket(issued)).await;
     }
 
-    /// Waits until every receiver of a batch has accepted at least one message. From then on the clump buffer (the
-    /// memory for outgoing messages) is being emptied.
+    /// Waits until every receiver of a batch has accepted at least one message. From this time on, the DMA empties the
+    /// clump buffer (the memory for outgoing messages).
     pub async fn draining(&self, ticket: Ticket) {
         let wait = Wait { what: "all receivers to begin with a clump", ended_by: Cause::Acceptance };
         self.wait(wait, || (self.shared.borrow().draining >= ticket.0).then_some(())).await;
@@ -331,8 +333,8 @@ impl Gp {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
-    /// Returns true if the bins of a context can grow to `bytes` bytes of memory. The bins of the other context limit
-    /// the size.
+    /// Returns true if the bins of a context can occupy `bytes` bytes of memory. The bins of the other context reduce
+    /// the available memory.
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)
@@ -348,7 +350,7 @@ impl Gp {
         self.mark(stage, picture, surface, StageEdge::End, self.now());
     }
 
-    /// Records that a stage ends at the later time at which a batch is accepted. The program continues at once.
+    /// Records the end of a stage at the later time at which a batch is accepted. The program continues at once.
     pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: PictureNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
@@ -358,7 +360,7 @@ impl Gp {
             .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: StageEdge::End, view: None }));
     }
 
-    /// Records that a stage begins or ends at time `time`, which the program has read from a message.
+    /// Records that a stage begins or ends at `time`. The program has read this time from a message.
     pub fn mark(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>, edge: StageEdge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;

@@ -9,21 +9,22 @@
 //!                 +-----------------------------------------------+
 //! ```
 //!
-//! In the order of the signal:
+//! A message passes these parts in order:
 //!
 //! - A message that has arrived waits in the inbox, in order of arrival.
 //! - *Firmware* is straight-line `async fn` code that holds a [`Gp`]. Every `.await` is a visible cost ([`Gp::spend`])
 //!   or a visible wait ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
 //! - There are two priorities with one program each. While the program of [`Priority::Interrupt`] spends CPU time, the
-//!   program of [`Priority::Foreground`] stands still.
+//!   program of [`Priority::Foreground`] is suspended.
 //! - [`Gp::send`] costs the CPU a fixed software time. The messages then go to the DMA, which sends them in the
 //!   background. There is one clump buffer, the memory for outgoing messages. A second batch therefore waits until the
-//!   receivers have accepted the first. A group of messages ([`Gp::send_groups`]) keeps its receiver's port reserved from
-//!   the first message to the last.
-//! - [`Memory`] accounts for 8 MB. A request that does not fit is a [`Fault`], which names the board and the region.
+//!   receivers have accepted the first. A group of messages ([`Gp::send_groups`]) reserves its receiver's port from the
+//!   first message to the last.
+//! - [`Memory`] counts the used bytes of the board's 8 MB. A request that does not fit is a [`Fault`], which names the
+//!   board and the region.
 //! - The time of [`Work`] comes from the timing table, or from i860 code on the board's [`Processor`]
-//!   ([`GpBoard::run_code`]). Programs do not depend on this choice. The message software exists as i860 code too
-//!   (kernels/ring.s), with memory of its own ([`RING_MEMORY`]).
+//!   ([`GpBoard::run_code`]). Programs do not depend on this choice. The message software also exists as i860 code
+//!   (kernels/ring.s) and has its own memory ([`RING_MEMORY`]).
 //!
 //! The host workstation uses the same board model with its own timing table.
 //!

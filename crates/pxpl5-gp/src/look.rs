@@ -11,7 +11,7 @@ use pxpl5_wire::{NodeId, PeriodNumber};
 pub struct GpSnapshot {
     /// Snapshots of the board's programs, the interrupt program first.
     pub programs: Vec<ProgramSnapshot>,
-    /// Messages that have arrived but were not taken by a program, in order of arrival.
+    /// Messages that have arrived but that no program has taken, in order of arrival.
     pub inbox: Vec<WaitingMessageInfo>,
     /// Receivers that have not accepted their message of the current chain, in the order of the chain's messages.
     pub unaccepted: Vec<NodeId>,
@@ -29,9 +29,9 @@ pub struct GpSnapshot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramSnapshot {
     pub priority: Priority,
-    /// Name of the condition that the program waits for; empty before its first run.
+    /// Name of the condition that the program waits for. The name is empty before the first run.
     pub waits_for: &'static str,
-    /// CPU time that the program's work still needs, or `None` without work. The foreground program's value stays
+    /// Remaining CPU time of the program's work, or `None` without work. The value of the foreground program stays
     /// constant while the interrupt program works.
     pub work_left: Option<Span>,
 }
@@ -52,7 +52,7 @@ impl GpSnapshot {
             waits_for: shared.waits[priority as usize].what,
             work_left: shared.cpu.left(priority, now).filter(|left| *left > Span::ZERO),
         };
-        // Acceptances come in any order, so restore the order of the chain.
+        // Receivers accept messages in any order, so restore the order of the chain.
         let mut unaccepted = shared.in_flight.clone();
         unaccepted.sort_unstable_by_key(|flight| flight.0);
         Self {

@@ -1,4 +1,4 @@
-//! The memory of a board, as the number of bytes in use for each purpose. Bins have a limit of their own.
+//! The memory of a board, as the number of bytes in use for each purpose. Bins have their own limit.
 
 use pxpl5_wire::{NodeId, RegionId};
 use serde::Serialize;
@@ -20,7 +20,7 @@ pub enum Account {
 impl Account {
     const SLOTS: usize = 6;
 
-    /// All purposes of memory. Commands and bins are listed for both bin contexts.
+    /// All purposes of memory, with commands and bins of both bin contexts.
     pub const ALL: [Self; Self::SLOTS] =
         [Self::Program, Self::DisplayList, Self::Commands(0), Self::Commands(1), Self::Bins(0), Self::Bins(1)];
 
@@ -57,7 +57,7 @@ pub struct OutOfMemory {
     pub gp: NodeId,
     /// Purpose of the requested memory.
     pub account: Account,
-    /// Region whose bin exceeded the memory, if the request was for bins.
+    /// Region whose bin did not fit into memory, if the request was for bins.
     pub region: Option<RegionId>,
     /// Number of bytes that the purpose would have needed.
     pub needed_bytes: u64,
@@ -91,7 +91,7 @@ impl Memory {
     ///
     /// # Errors
     ///
-    /// Returns [`OutOfMemory`] if the bytes do not fit beside those of the other purposes. Nothing changes then.
+    /// Returns [`OutOfMemory`] if the memory that the other purposes leave is too small. In this case, nothing changes.
     pub fn set(&mut self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), OutOfMemory> {
         // The request replaces the old value of the account, so only the other accounts count.
         let others = self.used() - self.used[account.slot()];
@@ -108,8 +108,8 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the number of bytes that the bins of a context can use while the bins of the other context stay
-    /// unchanged.
+    /// Returns the number of bytes that the bins of a context can use while the bins of the other context keep their
+    /// size.
     #[must_use]
     pub const fn room_for_bins(&self, context: u8) -> u64 {
         self.bins.saturating_sub(self.used[Account::Bins(context ^ 1).slot()])

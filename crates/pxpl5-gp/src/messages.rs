@@ -1,5 +1,5 @@
-//! Messages as a program sees them. Messages are received from the inbox and sent in chains, and each costs CPU time of
-//! the message software.
+//! Messages as a program sees them. A program receives messages from the inbox and sends messages in chains. Each
+//! message or chain costs CPU time of the message software.
 //!
 //! The cost is `message_ns` of the timing table, or the time of the i860 code that handles the message on the board's
 //! processor ([`Processor::receive_message`], [`Processor::send_chain`]).
@@ -40,9 +40,9 @@ impl Gp {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Answers a message. The function spends the CPU time of its reception, does `work`, sends `messages` one by one,
-    /// and sends `last` in the background. Each of `messages` waits until the clump buffer (the memory for outgoing
-    /// messages) is free. The program does not wait for `last`.
+    /// Answers a message. The function spends the CPU time of the message's reception and does `work`. It then sends
+    /// `messages` one by one, and sends `last` in the background. The function waits for a free clump buffer (the
+    /// memory for outgoing messages) before each of `messages`, but not before `last`.
     ///
     /// # Errors
     ///
@@ -59,7 +59,7 @@ impl Gp {
         if let Some(work) = work {
             self.answer_work(work).await?;
         }
-        // Each message needs the clump buffer; only the last one is sent without waiting.
+        // Each message needs the clump buffer. Only `last` is sent without a wait.
         for message in messages {
             self.clump_buffer_free().await;
             self.send_batch(vec![message]).await;
@@ -68,15 +68,15 @@ impl Gp {
         Ok(())
     }
 
-    /// Sends one message in the background. The program spends the software cost, then the message is queued behind
-    /// earlier messages.
+    /// Sends one message in the background. The program spends the software cost, and then the message waits in a queue
+    /// behind earlier messages.
     pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
         self.send_batch(vec![(destination, words, body)]).await
     }
 
-    /// Sends several messages as one DMA chain, in the background. The chain costs the CPU time of only one message.
-    /// Messages to different receivers are sent at the same time. A chain waits for the acceptance of the previous
-    /// chain.
+    /// Sends several messages as one DMA chain, in the background. The whole chain costs the CPU time of one message.
+    /// Messages to different receivers are sent at the same time. The DMA sends a chain only after the acceptance of
+    /// the previous chain.
     pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let chain = self.prepare(batch).await;
         self.start(chain)
@@ -101,7 +101,7 @@ impl Gp {
         self.pay_for_chain(self.unheld(batch)).await
     }
 
-    /// Passes a chain of messages to the DMA, which sends them after earlier chains.
+    /// Passes a chain of messages to the DMA. The DMA sends the chain after all earlier chains.
     pub fn start(&self, Chain(links): Chain) -> Ticket {
         let shared = &mut *self.shared.borrow_mut();
         if links.is_empty() {
@@ -117,8 +117,8 @@ impl Gp {
         self.chain(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
     }
 
-    /// Makes a chain of messages. Each item has the receiver, the number of words and the content of a message. The
-    /// boolean is true if the receiver's port stays reserved for the next message.
+    /// Makes a chain of messages. Each item has the receiver, the number of words, the content of a message and a
+    /// boolean. The boolean is true if the receiver's port stays reserved for the next message.
     fn chain(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Chain {
         let source = self.node();
         let links = batch.map(|(destination, words, body, hold)| ChainLink {
@@ -133,7 +133,8 @@ impl Gp {
         chain
     }
 
-    /// Spends the CPU time of the message software: the time of the timing table, or of `code` on the i860.
+    /// Spends the CPU time of the message software. The time comes from the timing table, or from a call of `code` on
+    /// boards that run i860 code.
     async fn software(&self, code: impl FnOnce(&mut Processor) -> Result<Span, Fault>) {
         let span = {
             let shared = &mut *self.shared.borrow_mut();

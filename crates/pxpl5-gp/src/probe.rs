@@ -63,14 +63,14 @@ pub struct Mark {
     pub time: Time,
     /// Ring port of the board that made the record.
     pub node: NodeId,
-    /// Number of the picture that the stage makes. A host that sends views independently of pictures uses the number of
-    /// the transmission instead.
+    /// Number of the picture that the stage makes. If a host sends views independently of pictures, the field has the
+    /// number of the transmission.
     pub picture: PictureNumber,
     /// Surface for which the stage draws, if the stage draws one eye at a time.
     pub surface: Option<SurfaceId>,
     /// Stage that began or ended.
     pub stage: Stage,
-    /// Tells if the stage began or ended.
+    /// Begin or end of the stage.
     pub edge: StageEdge,
     /// View that the picture shows, if the program has recorded the view.
     pub view: Option<ViewNumber>,

@@ -1,4 +1,4 @@
-//! The board's i860 with its memory. The i860 runs code and counts clocks.
+//! The board's i860 with its memory. The i860 runs code and counts its clocks.
 
 use crate::window;
 use i860::{Bus, Cpu, DecodedPrograms, Program, Ram, RunEnd, State, Trap, Unmapped};
@@ -19,10 +19,10 @@ pub enum CodeVersion {
     /// Code like the output of a compiler without optimization. The code is nearly twice as large as the instruction
     /// cache.
     Unoptimised,
-    /// Code like the output of a good compiler of about 1990. Slats of 1994 and 1995 had such code, which was too large
-    /// for the instruction cache (I3D95).
+    /// Code like the output of a good compiler of about 1990. Slats of 1994 and 1995 used such code. The code was too
+    /// large for the instruction cache (I3D95).
     Compiled,
-    /// Code scheduled by hand in dual-instruction mode, small enough for the instruction cache. Optimized PPHIGS had
+    /// Code that was scheduled by hand in dual-instruction mode and fits the instruction cache. Optimized PPHIGS used
     /// such code (TR94). With such code, Slats would have been about 3 times faster (I3D95).
     Scheduled,
 }
@@ -80,14 +80,15 @@ pub enum ProcessorFault {
         /// Number of words in the requested access.
         words: usize,
     },
-    /// The outputs of the two bin contexts would overlap in memory.
+    /// The memory is too small for the outputs of both bin contexts.
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
         /// Port of the board.
         gp: NodeId,
         /// Bin context, 0 or 1, that requested memory.
         context: u8,
-        /// Number of bytes that the context needs.
+        /// Number of free bytes for this context. The free range lies between the data below it and the other context
+        /// (or the end of memory).
         needed_bytes: u32,
         /// Number of bytes that are free for this context: between the data below it and the other context or the end
         /// of memory.
@@ -103,7 +104,7 @@ pub enum ProcessorFault {
     },
 }
 
-/// Return address of every call. Memory has no code there; a run stops when it reaches this address.
+/// Return address of every call. Memory has no code at this address, and a run stops when it reaches the address.
 const RETURN: u32 = 0x0800;
 
 /// Returns the range of memory addresses that a program occupies.
@@ -111,7 +112,7 @@ fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
 
-/// Memory as the i860 sees it. The part that the ring interface uses too is never cached.
+/// Memory as the i860 sees it. The caches never hold the part that the i860 shares with the ring interface.
 struct Memory(Ram);
 
 impl Bus for Memory {
@@ -143,11 +144,11 @@ const LINK: usize = 1;
 /// write by Rust code counts as a write by i860 code before the call: it takes no time and changes no cache.
 ///
 /// The clocks of a whole call cannot be reused, because no call repeats exactly. While the head is still, 96 % of the
-/// calls have the code, arguments and parameters of an earlier call. While the head moves, none have. The sample covers
-/// 48 fields each: 188 calls of Slats with 110 triangles and 2,800 calls of Rendering Control with the aircraft.
-/// However, a call with equal inputs finds other lines in the caches, because their replacement is pseudo-random. It
-/// also finds another phase of the memory refresh. The clocks of short runs of instructions can be reused: see
-/// [`i860::Config::memoise`].
+/// calls have the code, arguments and parameters of an earlier call. While the head moves, no call repeats in this
+/// sense. The measurements covered 48 fields each: 188 calls of Slats with 110 triangles, and 2,800 calls of Rendering
+/// Control with the aircraft scene. However, even a call with equal inputs finds other lines in the caches, because the
+/// replacement of lines is pseudo-random. The phase of the memory refresh differs as well. The clocks of short runs of
+/// instructions can be reused (see [`i860::Config::memoise`]).
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,
@@ -158,28 +159,28 @@ pub struct Processor {
     loaded: Option<Arc<Program>>,
     /// True if memory still holds the loaded program unchanged.
     is_as_loaded: bool,
-    /// Decoded programs with their remembered clocks. Several boards share them.
+    /// Decoded programs with their memoized clocks. Several boards share this store.
     shelf: Rc<RefCell<DecodedPrograms>>,
     /// All programs that were ever loaded, in the order of their first calls.
     programs: Vec<Arc<Program>>,
     /// Address range of the output of each bin context.
     outputs: [Option<Range<u32>>; 2],
-    /// Addresses of the breakpoints. `hits` holds the hits since the last [`Processor::take_hits`].
+    /// Addresses of the breakpoints. The next field, `hits`, holds the hits since the last [`Processor::take_hits`].
     breakpoints: BTreeSet<u32>,
     hits: Vec<BreakpointHit>,
 }
 
 /// The state of the i860 at a breakpoint, before the instruction executes.
 ///
-/// A call runs from begin to end at one instant of simulated time, and the board spends its clocks afterwards. The call
-/// therefore does not stop at a breakpoint.
+/// A call runs completely at one instant of simulated time, and the board spends the clocks of the call afterwards. The
+/// call therefore does not stop at a breakpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BreakpointHit {
     /// Port of the board.
     pub gp: NodeId,
     /// Address of the instruction at the breakpoint.
     pub address: u32,
-    /// i860 time from the begin of the call to the breakpoint.
+    /// i860 time from the start of the call to the breakpoint.
     pub into_call: Span,
     /// Registers, control registers and pipes of the i860.
     pub state: Box<State>,
@@ -219,7 +220,7 @@ impl Processor {
         }
     }
 
-    /// Shares decoded programs and their remembered clocks with other boards. All boards must have the same core
+    /// Shares decoded programs and their memoized clocks with other boards. All boards must have the same core
     /// configuration. Simulated times do not depend on this call.
     pub fn share(&mut self, shelf: &Rc<RefCell<DecodedPrograms>>) {
         self.shelf = Rc::clone(shelf);
@@ -253,7 +254,7 @@ impl Processor {
     ///
     /// # Errors
     ///
-    /// Returns [`ProcessorFault::Unmapped`] if the words do not fit. Nothing is written then.
+    /// Returns [`ProcessorFault::Unmapped`] if the words do not fit. In this case, nothing is written.
     pub fn write(&mut self, address: u32, words: &[Word]) -> Result<(), ProcessorFault> {
         self.memory.0.load_words(address, words).map_err(|_| self.unmapped(address, words.len()))?;
         let end = address.saturating_add(4 * words.len() as u32);
@@ -284,13 +285,14 @@ impl Processor {
         ProcessorFault::Unmapped { gp: self.gp, address, words }
     }
 
-    /// Reserves memory for the output of bin context 0 or 1 and returns the address. The earlier reservation of the
-    /// same context ends. Context 0 begins after the program's data, at `end_of_data` or above. Context 1 lies at the
-    /// end of memory.
+    /// Reserves memory for the output of bin context 0 or 1 and returns the address. An earlier reservation of the same
+    /// context ends. Context 0 begins after the program's data, at address `end_of_data` or above. Context 1 lies at
+    /// the end of memory.
     ///
     /// # Errors
     ///
-    /// Returns [`ProcessorFault::NoRoom`] if the output does not fit beside the other context. Nothing changes then.
+    /// Returns [`ProcessorFault::NoRoom`] if the free memory beside the other context is too small. In this case,
+    /// nothing changes.
     pub fn place_output(&mut self, context: u8, end_of_data: u32, bytes: u32) -> Result<u32, ProcessorFault> {
         // Find the free range beside the other context.
         let [lower, upper] = &self.outputs;
@@ -315,8 +317,8 @@ impl Processor {
         self.cpu.state.r[number]
     }
 
-    /// Calls a program at its label `entry`, with some registers set before. Returns the time from the call to the
-    /// return.
+    /// Calls a program at its label `entry`. Before the call, some registers are set. Returns the time from the call to
+    /// the return.
     ///
     /// If memory holds another program, this program is loaded first. Loading takes no simulated time.
     ///
@@ -354,7 +356,7 @@ impl Processor {
     fn run(&mut self, program: &Arc<Program>, begin: u64, budget: u64) -> RunEnd {
         let shelf = Rc::clone(&self.shelf);
         let shelf = &mut *shelf.borrow_mut();
-        // Code that has changed in memory must be decoded anew.
+        // Code that has changed in memory must be decoded again.
         let known = self.is_as_loaded.then_some(program);
         self.cpu.open(shelf, known);
         let end = if self.breakpoints.is_empty() {
@@ -366,8 +368,8 @@ impl Processor {
         end
     }
 
-    /// Runs the loaded program step by step and records a hit at each breakpoint. A step is an instruction, a pair, or
-    /// a branch with its delay slot.
+    /// Runs the loaded program step by step and records a hit at each breakpoint. A step is an instruction, a dual-mode
+    /// pair, or a branch with its delay slot.
     fn run_with_breakpoints(&mut self, begin: u64, budget: u64) -> RunEnd {
         let last = self.cpu.instructions().saturating_add(budget);
         loop {
@@ -385,7 +387,7 @@ impl Processor {
         }
     }
 
-    /// Replaces all breakpoints by the given addresses. Calls take the same number of clocks as before.
+    /// Replaces all breakpoints by the given addresses. Breakpoints do not change the number of clocks of a call.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
         self.breakpoints = addresses;
     }
@@ -413,8 +415,8 @@ impl Processor {
         self.loaded.as_ref()
     }
 
-    /// Returns the programs that memory still holds unchanged. The program called last comes first. The others follow
-    /// in the order of their first calls.
+    /// Returns the programs that memory still holds unchanged. The most recently called program comes first. The others
+    /// follow in the order of their first calls.
     pub fn programs(&self) -> impl Iterator<Item = &Arc<Program>> {
         let is_last = |program: &&Arc<Program>| self.loaded.as_ref().is_some_and(|last| Arc::ptr_eq(last, program));
         let others = self.programs.iter().filter(move |program| !is_last(program));

@@ -10,9 +10,9 @@
 //! The original software is not published. kernels/ring_rules.md states the assumptions about the original software,
 //! and how the code was written.
 //!
-//! Before each call, Rust code does the work of the interface's DMA. The board's inbox has no limited number of
-//! buffers. The Rust code therefore puts a message into the next receive buffer when the message software begins. When
-//! a chain is built, all earlier chains have been sent, because [`crate::Gp::start`] simulates the queue of chains.
+//! Before each call, Rust code does the work of the interface's DMA. The simulated inbox of the board holds any number
+//! of messages. The Rust code therefore puts a message into the next receive buffer only when the message software
+//! begins. The code finds all earlier chains sent, because [`crate::Gp::start`] simulates the queue of chains.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};
@@ -29,7 +29,8 @@ const STACK: u32 = 0xF_3000;
 const REQUESTS: u32 = STACK;
 const BUFFERS: u32 = WINDOW + 0x3000;
 
-// Sizes of rings, queue and buffers are assumed, because the interface itself is (kernels/ring_rules.md, last table).
+// The sizes of rings, queue and buffers are assumptions, because the interface is an assumption too
+// (kernels/ring_rules.md, last table).
 
 /// Number of receive buffers. There is one descriptor for each buffer.
 const RX_COUNT: u32 = 8;
@@ -57,7 +58,7 @@ const HANDLERS: u32 = DATA + 64;
 const CAUSE: u32 = WINDOW;
 const DONE: u32 = WINDOW + 12;
 
-/// Number of message kinds that a header can name: words for a program, commands, pixels.
+/// Number of kinds of messages that a header can state: words for a program, commands, and pixels.
 const KINDS: u32 = 3;
 
 /// Flag of a send request: the receiver's port stays reserved for the next message.
@@ -67,20 +68,21 @@ const HOLD: Word = 1;
 const BUDGET: u64 = 10_000;
 
 impl Processor {
-    /// Runs the software that receives a message and returns its time. The software has four parts: interrupt,
-    /// dispatch, queue, and the program's part. The program's part takes the message and releases its buffer.
+    /// Runs the software that receives a message, and returns the time of this software. The software has four parts:
+    /// interrupt, dispatch, queue, and the program's part. The program's part takes the message and releases its
+    /// buffer.
     ///
     /// # Errors
     ///
-    /// Returns [`Fault::Protocol`] for a message of commands or pixels or with an invalid length. [`Fault::Processor`]
-    /// if the code does not return.
+    /// Returns [`Fault::Protocol`] for a message of commands or pixels, or for an invalid length. Returns
+    /// [`Fault::Processor`] if the code does not return.
     pub fn receive_message(&mut self, source: NodeId, body: &Body) -> Result<Span, Fault> {
         let (kind, length, words) = match body {
             Body::Words(words) => (0, words.len() as u32, &words[..]),
             Body::Commands(list) => (1, list.words(), [].as_slice()),
             Body::Pixels(_) => (2, 1, [].as_slice()),
         };
-        // Only words are copied into the buffer; other kinds are refused by their header.
+        // Only words are copied into the buffer. The software refuses other kinds because of their header.
         let (span, taken) = deliver(self, source, kind << 16 | length.min(0xFFFF), words)?;
         let what = || match kind {
             0 => format!("of {length} words from node {}", source.0),
@@ -89,14 +91,14 @@ impl Processor {
         taken.map(|_| span).map_err(|_| Fault::Protocol { node: self.node(), found: what() })
     }
 
-    /// Runs the software that sends a chain of messages, and returns its time. The software writes a header and a
-    /// descriptor for each message, and releases the descriptors of earlier chains. The boolean beside each message is
-    /// true if the message keeps its receiver's port reserved. If there are more messages than descriptors, they form
-    /// several chains.
+    /// Runs the software that sends a chain of messages, and returns the time of this software. The software writes a
+    /// header and a descriptor for each message, and releases the descriptors of earlier chains. The boolean beside
+    /// each message is true if the message keeps its receiver's port reserved. If there are more messages than
+    /// descriptors, they form several chains.
     ///
     /// # Errors
     ///
-    /// Returns [`Fault::Protocol`] for an invalid length. [`Fault::Processor`] if the code does not return.
+    /// Returns [`Fault::Protocol`] for an invalid length. Returns [`Fault::Processor`] if the code does not return.
     pub fn send_chain<'a>(&mut self, links: impl Iterator<Item = (&'a Message, bool)>) -> Result<Span, Fault> {
         // The address of the words is 0, because their content does not travel through this memory.
         let request = |(message, hold): (&Message, bool)| {
@@ -133,7 +135,7 @@ struct Taken {
     sender: u32,
 }
 
-/// The error number with which the message software refuses a message. The numbers are those of ring.s.
+/// The error number that the message software returns if it refuses a message. The numbers are defined in ring.s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Refusal(Word);
 
@@ -161,8 +163,8 @@ fn deliver(
     Ok((span, if entry == 0 { Err(Refusal(place)) } else { Ok(Taken { place, words, sender }) }))
 }
 
-/// Runs the code that builds and starts a chain of messages, and returns its time. If the code refuses a message, the
-/// index of the first refused message is returned.
+/// Runs the code that builds and starts a chain of messages. Returns the time of the code. If the code refuses a
+/// message, the function also returns the index of the first refused message.
 fn chain(
     processor: &mut Processor,
     requests: &[Request],
@@ -179,12 +181,13 @@ fn chain(
     Ok((span, (processor.register(16) != 0).then(|| processor.register(17) as usize)))
 }
 
-/// Initializes queues, descriptors and the table of handlers in memory. If memory already holds them, nothing changes.
+/// Initializes queues, descriptors and the table of handlers in memory. If memory already holds them, the function
+/// changes nothing.
 fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
     if processor.word(RX_NEXT)? != 0 {
         return Ok(());
     }
-    // Only messages of words have a handler; other kinds are refused.
+    // Only messages of words have a handler. Other kinds are refused.
     let handler = |label: &str| PROGRAM.symbol(label).unwrap_or_default();
     let handlers = [handler("queue"), handler("nohandler"), handler("nohandler")];
     const { assert!(KINDS == 3, "a handler for each kind") };

@@ -16,33 +16,36 @@ pxpl5_sim::parameters::parameter_table! {
         triangle_ns: 21_700, "ns", Derived, 18000..=32000 in 0..=MAX, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
         /// CPU time to put one entry into a bin.
         bin_entry_ns: 1_000, "ns", Assumed, 500..=2000 in 0..=MAX, "a pointer store and a count, partly out of cache";
-        /// CPU time of one bin entry when a bin is handed over together with the token of its region.
+        /// CPU time of one bin entry when a bin is sent to its renderer together with the token of its region.
         token_entry_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a message, because no separate time was published; times of code count it separately";
         /// Additional CPU time of a triangle that needs clipping.
         guard_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the published time of a triangle; times of code count it separately";
         /// CPU time of one sphere for one eye.
         sphere_ns: 21_700, "ns", Assumed, 10000..=32000 in 0..=MAX, "the same as a triangle: one transformed centre instead of three vertices, and the set-up of a conic";
-        /// CPU time to apply one edit by the host to the display list.
+        /// CPU time to apply one edit of the host to the display list.
         edit_ns: 10_000, "ns", Assumed, 2000..=50000 in 0..=MAX, "a few hundred instructions of display-list traversal";
         /// CPU time to begin a pass over the display list.
         pass_ns: 5_000, "ns", Assumed, 1000..=20000 in 0..=MAX, "concatenate matrices, reset bins";
-        /// Additional CPU time to transform one structure of the display list for one eye.
+        /// CPU time to transform one structure of the display list for one eye, without its primitives.
         structure_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a pass, because no time was published; times of code count it separately";
-        /// Additional CPU time of a structure that contains spheres, for data of the view.
+        /// Extra CPU time of each display-list structure that contains spheres, for each eye. The graphics processor
+        /// spends this time to compute the view data that all spheres of the structure need.
         sphere_view_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a pass, like the time of a structure; times of code count it separately";
     }
 }
 
 impl GpTiming {
     /// Timing of the Slats prototype of 1994: 30.0 us per triangle and eye. The time is fitted to the published limit
-    /// of 110 triangles without the COPY optimization (TR94). Times of 29.8 to 30.1 us give a limit of exactly 110.
+    /// of 110 triangles without the COPY optimization (TR94). Any time from 29.8 to 30.1 us gives a limit of exactly
+    /// 110.
     pub const SLATS_1994: Self = Self { triangle_ns: 30_000, sphere_ns: 30_000, bin_entry_ns: 0, ..Self::PAPERS };
 
     /// Timing of the Slats code of 1995: 55.8 us per triangle and eye. The time is fitted to the published limit of
-    /// about 100 triangles with the COPY optimization (I3D95). Times of 55.4 to 56.3 us give a limit of exactly 100.
+    /// about 100 triangles with the COPY optimization (I3D95). Any time from 55.4 to 56.3 us gives a limit of exactly
+    /// 100.
     pub const SLATS_1995: Self = Self { triangle_ns: 55_800, sphere_ns: 55_800, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Timing of Slats with code that fits the instruction cache. The time of a triangle is a third of the time of 1994
+    /// Timing of Slats with code that fits the instruction cache. The time of a triangle is a third of its time in 1994
     /// (I3D95).
     pub const SLATS_OPTIMISED: Self = Self {
         triangle_ns: Self::SLATS_1994.triangle_ns / 3,
@@ -51,30 +54,33 @@ impl GpTiming {
     };
 }
 
-/// The program that uses the i860 code of triangles and spheres. The times of this code depend on the program.
+/// The pipeline whose i860 code for triangles and spheres is used. Each pipeline has other times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CodeUse {
     /// PPHIGS: whole frames, Phong shading, commands in bins.
     Pphigs,
     /// Slats: fields, precomputed colours, clumps of thirty triangles, both eyes in one pass.
     Slats,
-    /// Slats with lighting on the graphics processor: fields, clumps of thirty triangles, one eye after the other.
+    /// Slats with lighting on the graphics processor: fields, clumps of thirty triangles, and a separate pass for each
+    /// eye.
     SlatsLit,
 }
 
 // Times of primitives that follow from i860 code (derived from code). They are means over the three application scenes,
 // measured by `pxpl5_lab::code_times`. A test of that module compares these constants with the code.
-// `message_ns` is the time of kernels/ring.s for a message or a chain, which differs with the scene
-// (docs/gp-timing.md), and of kernels/token.s for a token without entries. `token_entry_ns` is the time for each entry
-// of a token.
-// `pass_ns` is the time at the begin of a pass that does not belong to structures: to reset bins and to load code into
-// the caches. A structure that culls takes 3.2 us more than others; the table does not contain this difference.
+//
+// `message_ns` is the time of kernels/ring.s for a message or a chain, which differs between scenes
+// (docs/gp-timing.md). `message_ns` is also the time of kernels/token.s for a token without entries. `token_entry_ns`
+// is the time for each entry of a token.
+//
+// `pass_ns` is the time at the start of a pass that does not belong to structures: to reset bins and to load code into
+// the caches. A structure with culling takes 3.2 us more than others. The table does not contain this difference.
 impl GpTiming {
-    /// Returns this table with the primitive times of i860 code. `version` selects the code, and `of` the program that
-    /// uses it.
+    /// Returns this table with the primitive times of i860 code. `version` is the version of the code, and `of` is the
+    /// pipeline whose code is used.
     ///
-    /// PPHIGS has times only for scheduled code. This code fits the instruction cache, as the code of every PPHIGS in
-    /// the papers did.
+    /// PPHIGS has times only for scheduled code. This code fits the instruction cache, like the code of every PPHIGS in
+    /// the papers.
     #[must_use]
     pub const fn of_code(self, version: CodeVersion, of: CodeUse) -> Self {
         match (of, version) {
@@ -86,8 +92,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the primitive times of PPHIGS: scheduled code, Phong triangles of a frame, commands in
-    /// bins.
+    /// Returns this table with the primitive times of PPHIGS. The code is scheduled, the triangles are Phong triangles
+    /// of a frame, and the commands go into bins.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
         Self {
@@ -105,8 +111,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the primitive times of Slats: compiled code, field triangles with precomputed colours. A
-    /// clump has thirty triangles, and one pass makes the commands of both eyes.
+    /// Returns this table with the times of primitives in Slats. The code is compiled, the picture is a field, and
+    /// vertex colours are precomputed. A clump has thirty triangles, and one pass makes the commands of both eyes.
     #[must_use]
     pub const fn of_compiled_precomputed(self) -> Self {
         Self {
@@ -123,8 +129,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the primitive times of scheduled code for Slats: field triangles with precomputed
-    /// colours, in clumps.
+    /// Returns this table with the primitive times of scheduled code for Slats. The triangles are triangles of a field
+    /// with precomputed colours, in clumps.
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
         Self {
@@ -159,8 +165,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the primitive times of scheduled code for Slats with lighting on the graphics processor:
-    /// Gouraud triangles of a field, in clumps.
+    /// Returns this table with the primitive times of scheduled code for Slats with lighting on the graphics processor.
+    /// The triangles are Gouraud triangles of a field, in clumps.
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {
@@ -185,13 +191,14 @@ pxpl5_sim::parameters::parameter_table! {
         link_bytes_per_s: 5_000_000, "bytes/s", Assumed, 4000000..=10000000 in 1_000..=MAX, "a workstation's parallel interface";
         /// CPU time of the host to send or receive one message.
         message_ns: 20_000, "ns", Assumed, 10000..=100000 in 0..=MAX, "a system call";
-        /// Time between successive poses that the host sends without a request, if the scene defines the motion of the
-        /// head. With a tracker, the host sends the tracker's reports instead.
+        /// Time between two successive poses that the host sends, if the scene defines the motion of the head. With a
+        /// tracker, the host sends the tracker's reports instead.
         view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
-        /// Mean time that the application needs between two frames, from the EDIT of a frame to the next frame. The
-        /// time counts if the host waits for EDIT.
+        /// Mean time of the application on the host between the EDIT of a frame and the next frame. This time has an
+        /// effect only if the host waits for EDIT.
         application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: the host asks at once; within the range, and with the jitter, a trivial scene keeps its printed 30 frames/s";
-        /// Half of the width of the uniform distribution of the application's time. The value is at most the mean time.
+        /// Half of the width of the uniform distribution of the application's time. The value must not exceed the mean
+        /// time.
         application_jitter_ns: 0, "ns", Assumed, 0..=10000000 in 0..=MAX, "a tick of a Unix clock of 100 Hz";
     }
 }
@@ -203,8 +210,8 @@ impl HostTiming {
         Span((words as u128 * 4 * 1_000_000_000_000 / self.link_bytes_per_s as u128) as u64)
     }
 
-    /// Returns the application's time for one frame. The time is uniformly distributed around its mean; `drawn` is a
-    /// random 64-bit number.
+    /// Returns the application's time for one frame. The time is uniformly distributed around its mean. `drawn` is a
+    /// random 64-bit number that selects the time.
     #[must_use]
     pub const fn application_span(&self, drawn: u64) -> Span {
         let jitter = if self.application_jitter_ns < self.application_ns {
@@ -216,7 +223,8 @@ impl HostTiming {
         Span::from_ns(self.application_ns - jitter + spread as u64)
     }
 
-    /// Returns the timing table of the host as a board. Only its software costs and its memory size have an effect.
+    /// Returns the timing table of the board model that represents the host. Only the software costs and the memory
+    /// size of the table have an effect.
     #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }
@@ -234,8 +242,8 @@ mod tests {
         assert_eq!(HostTiming::PAPERS.out_of_range(), []);
     }
 
-    /// The fitted times follow from published limits of triangles. They may lie outside the range of times for PPHIGS,
-    /// but within the limits of the model.
+    /// The fitted times follow from published limits of triangles. They may lie outside the range of plausible times
+    /// for PPHIGS, but must lie within the limits of the model.
     #[test]
     fn every_preset_is_within_the_limits() {
         for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
@@ -243,8 +251,9 @@ mod tests {
         }
     }
 
-    /// The times 30.0 and 55.8 us are fitted to the published limits of 110 and 100 triangles. I3D95 expects a third of
-    /// the time of 1994 for code that fits the instruction cache. Slats has no bins.
+    /// The times of 30.0 and 55.8 us are fitted to the published limits: 110 triangles in 1994, 100 triangles in 1995.
+    /// The third time is a third of the time of 1994. I3D95 expects this time for code that fits the instruction cache.
+    /// Slats has no bins, so a bin entry takes no time.
     #[test]
     fn slats_takes_what_its_published_limits_ask_for() {
         let presets = [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED];
@@ -296,7 +305,7 @@ mod tests {
 
     #[test]
     fn a_word_on_the_hosts_link_takes_four_bytes_of_its_rate() {
-        // 5 MB/s give 800 ns per word; 3 bytes per second give 4/3 s.
+        // 5 MB/s give 800 ns per word, and 3 bytes per second give 4/3 s.
         assert_eq!(HostTiming::PAPERS.link_span(7), Span::from_ns(5_600));
         let slow = HostTiming { link_bytes_per_s: 3, ..HostTiming::PAPERS };
         assert_eq!(slow.link_span(1), Span(1_333_333_333_333));

@@ -6,7 +6,7 @@ use std::ops::Range;
 pub const RING_MEMORY: Range<u32> = 0xF_0000..0x10_0000;
 
 /// First address of the uncached part of memory, which ends with [`RING_MEMORY`]. The ring interface reads and writes
-/// this part directly. The i860 does not watch the bus, so the board keeps these addresses out of the caches (KEN#
+/// this part directly. The i860 does not snoop the bus, so the board keeps these addresses out of the caches (KEN#
 /// pin).
 pub(crate) const WINDOW: u32 = 0xF_4000;
 

@@ -18,7 +18,7 @@ pub trait Work {
     /// Returns [`ProcessorFault`] if the code does not return.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault>;
 
-    /// Returns the number of vertices that the work transforms: corners of triangles and centres of spheres. Each
+    /// Returns the number of vertices that the work transforms: corners of triangles and centres of spheres. A vertex
     /// counts once for each view. Most kinds of work transform no vertices.
     fn vertex_transforms(&self) -> u64 {
         0
@@ -61,8 +61,8 @@ impl Gp {
         self.shared.borrow().processor.is_some()
     }
 
-    /// Calls `image` to write data to the memory of the i860. On boards that do not run i860 code this function does
-    /// nothing.
+    /// Calls `image`, which writes data to the memory of the i860. On boards that do not run i860 code, the function
+    /// does nothing.
     ///
     /// # Errors
     ///
@@ -83,7 +83,7 @@ mod tests {
 
     const SCHEDULED: Option<CodeVersion> = Some(CodeVersion::Scheduled);
 
-    /// Work whose code is a loop of this many turns, or a trap for `None`.
+    /// Work whose code is a loop of this many turns. For `None`, the code traps.
     struct Turns(Option<u32>);
 
     impl Work for Turns {

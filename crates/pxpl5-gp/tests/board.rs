@@ -1,5 +1,5 @@
-//! Tests of each promise of [`Gp`] and [`GpBoard`]. Times are sums of spans that the test sets. Numbers of events
-//! follow from the waits that each event can end.
+//! Tests of each promise of [`Gp`] and [`GpBoard`]. The expected times are sums of spans that the test sets. The
+//! expected numbers of events follow from the waits that each event can end.
 
 use pxpl5_gp::{
     Account, CodeVersion, Fault, Gp, GpBoard, GpEvent, GpOutput, GpTiming, Mark, OutOfMemory, PLACE_BITS, Priority,
@@ -14,7 +14,7 @@ use std::sync::Arc;
 const BOARD: NodeId = NodeId(9);
 const MESSAGE_NS: u64 = 1_000;
 const CYCLE: Span = Span(25_000);
-/// Times and numbers that the programs of a test record.
+/// Pairs of a time and a number, which the programs of a test record.
 type Notes = Rc<RefCell<Vec<(Time, u64)>>>;
 
 fn note(notes: &Notes, gp: &Gp, value: u64) {
@@ -133,8 +133,8 @@ fn acceptances_wake_the_board_when_the_next_chain_can_go() {
     assert_eq!(sent, first.chain([(ns(12_000) + CYCLE, 2 << PLACE_BITS)]).collect::<Vec<_>>());
 }
 
-/// Sends a chain to receivers whose acceptances follow 10 us apart in a given order. Returns the times at which
-/// `draining`, `accepted` and `clump_buffer_free` end.
+/// Sends a chain to receivers that accept their messages at intervals of 10 us in a given order. Returns the times at
+/// which `draining`, `accepted` and `clump_buffer_free` end.
 fn waits_of_a_chain(receivers: [u16; 3], order: [u64; 3]) -> Vec<(Time, u64)> {
     let notes = Notes::default();
     let told = Rc::clone(&notes);
@@ -165,7 +165,7 @@ fn a_chain_drains_when_each_receiver_has_taken_one_message_and_is_accepted_when_
     assert_eq!(waits_of_a_chain([1, 2, 3], [2, 0, 1]), all_at_the_end);
 }
 
-/// The interrupt program is polled first. It sees progress of the other program at the same instant.
+/// The interrupt program is polled first. It gets the progress of the other program at the same instant.
 #[test]
 fn what_one_program_does_for_the_other_is_found_at_once() {
     let notes = Notes::default();
@@ -303,7 +303,7 @@ fn a_message_can_be_taken_for_nothing() {
     assert_eq!(*notes.borrow(), [(ns(300), 3), (ns(300), 8), (ns(300), 0), (paid, 1)]);
 }
 
-/// The foreground works 3 us from the start; a message at 1 us takes the interrupt's program 0.5 us.
+/// The foreground program works for 3 us from the start. A message at 1 us takes 0.5 us of the interrupt program.
 fn interrupted() -> Rig {
     let rig = Rig::new().with(Priority::Foreground, |gp| async move {
         gp.spend(Span::from_ns(3_000)).await;
@@ -341,7 +341,7 @@ fn a_snapshot_shows_the_remaining_work_and_the_waiting_messages() {
     let waits = program(Priority::Interrupt, "a message", None);
     assert_eq!(programs(&rig, 900), [waits, program(Priority::Foreground, WORK, Some(2_100))]);
 
-    // The foreground stands still while the interrupt's program works.
+    // The foreground program is suspended while the interrupt program works.
     rig.run_to(1_260);
     let both = [program(Priority::Interrupt, WORK, Some(200)), program(Priority::Foreground, WORK, Some(2_000))];
     assert_eq!(programs(&rig, 1_300), both);
@@ -424,12 +424,13 @@ impl Work for BinHandoffWork {
     }
 }
 
-/// A request for the interrupt program: its arrival, the time of its work if any, and the number of answers before the
-/// last one.
+/// A request for the interrupt program: the arrival time, the time of the work if any, and the number of answers before
+/// the last answer.
 type Order = (u64, Option<u64>, usize);
 
-/// Returns the sent messages with their times, and the busy time. The foreground repeats work and a message. Message n
-/// is accepted `delays[n]` after its departure, in hundreds of ns; the delays repeat.
+/// Returns the sent messages with their times, and the busy time. The foreground program alternates between work and a
+/// message. Message n is accepted `delays[n]` hundreds of nanoseconds after its departure. The delays repeat
+/// cyclically.
 fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, u16, u64)>, Span) {
     let all = Rc::new(RefCell::new(orders.to_vec()));
     let mut rig = Rig::new().with(Priority::Interrupt, |gp| async move {
@@ -465,8 +466,8 @@ fn answers(orders: &[Order], foreground: &[u64], delays: &[u64]) -> (Vec<(Time, 
     (sent.collect(), rig.board.busy())
 }
 
-/// Reception and work take 0.3 us, then each message follows. The second message begins at the acceptance of the first:
-/// a cycle and 0.1 us after its software.
+/// Reception and work take 0.3 us together, and then each message follows. The second message begins at the acceptance
+/// of the first message, which is a cycle and 0.1 us after the end of the first message's software.
 #[test]
 fn an_answer_takes_a_message_for_what_is_received_and_for_each_that_is_sent() {
     for (count, expected_ns) in [(0, vec![3_300]), (1, vec![3_300, 4_300]), (2, vec![3_300, 4_425, 5_425])] {

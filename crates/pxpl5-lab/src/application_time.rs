@@ -1,13 +1,14 @@
 //! Effect of the application's time per frame on the latencies of fly-throughs. No paper prints this time.
 //!
 //! The host of a real viewer ran a loop under Unix that read input, changed its scene, and asked for the next frame.
-//! The simulated host asks for the next frame at once unless `host.application_ns` and `host.application_jitter_ns` are
-//! set. This module varies both parameters and reports the mean and standard deviation of each figure. Nothing is
-//! fitted.
+//! The simulated host asks for the next frame immediately unless `host.application_ns` and `host.application_jitter_ns`
+//! are set. This module varies both parameters and reports the mean and standard deviation of each figure. No parameter
+//! is fitted to the results.
 //!
 //! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. No rate is printed
-//! for the fly-throughs, so their application may have taken longer. In this module the mean time reaches 40 ms, with a
-//! jitter of up to 30 ms. A Unix host polled its serial lines once in 30 ms (TR94). Both maxima are assumed.
+//! for the fly-throughs, so the application of a fly-through may have taken longer than this range. In this module,
+//! therefore, the mean time reaches 40 ms, with a jitter of up to 30 ms. A Unix host polled its serial ports once in 30
+//! ms (TR94). Both maxima are assumed.
 
 use crate::figures::{Bench, FIGURES};
 use crate::parallel;
@@ -23,8 +24,8 @@ const JITTER: &str = "host.application_jitter_ns";
 /// second.
 const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 
-/// Jitters of the application's time to simulate, in milliseconds. A jitter is left out for shorter mean times.
-/// Assumed: up to the polling period (TR94).
+/// Jitters of the application's time to simulate, in milliseconds. A jitter above the mean time is not simulated,
+/// because some times would be negative. Assumed: up to the polling period (TR94).
 const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
 /// Numbers of the figures in TR94 that show fly-throughs.
@@ -41,7 +42,7 @@ pub struct Spread {
     pub sd: f64,
 }
 
-/// Latencies of all fly-throughs for one setting of the application's time.
+/// Latencies of all fly-throughs for one mean and one jitter of the application's time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ApplicationTime {
     /// Mean time of the application for a frame, in milliseconds.
@@ -52,8 +53,8 @@ pub struct ApplicationTime {
     pub figures: Vec<Spread>,
 }
 
-/// Simulates the fly-throughs for all application times at the analytic level. Interpretation, seeds and frames are
-/// those of the given bench (common settings).
+/// Simulates the fly-throughs for all application times at the analytic level. The interpretation of the papers and the
+/// numbers of seeds and frames come from the given bench (common settings of all measurements).
 ///
 /// # Errors
 ///

@@ -2,8 +2,8 @@
 //! evaluation.
 //!
 //! [`CompareQuery`] describes a comparison. [`Comparison`] is its result. Each [`ComparisonRow`] has the latency from
-//! head to display, the prediction interval, and the error in pixels by cause. It also has the number of triangles that
-//! the pipeline could draw.
+//! head to display, the prediction interval, and the error in pixels by cause. The row also has the largest number of
+//! triangles that the pipeline can draw in time.
 
 mod bootstrap;
 mod contender;

@@ -60,7 +60,7 @@ const SETTINGS: [&str; 17] = [
     "fields",
 ];
 
-/// First parts of the paths that are not compared, because their values say nothing about the simulated machine.
+/// First parts of the paths that are not compared, because their values do not describe the simulated machine.
 const LEFT_OUT: [&str; 4] = ["config_hash", "trace_hash", "host_seconds", "events"];
 
 /// Compares two reports as JSON, such as the contents of two files `report.json`.
@@ -111,8 +111,8 @@ fn flatten<'a>(path: String, value: &'a Value, leaves: &mut BTreeMap<String, &'a
     }
 }
 
-/// Returns the name of an entry in a list, such as a part of the latency. An entry without a name is identified by its
-/// index.
+/// Returns the name of an entry in a list, such as a part of the latency. For an entry without a name, returns the
+/// index of the entry in the list.
 fn name_of(value: &Value) -> Option<String> {
     let texts = ["name", "resource", "port", "of", "until"].map(|key| value[key].as_str());
     let texts: Vec<&str> = texts.into_iter().flatten().collect();

@@ -6,8 +6,8 @@ use pxpl5_run::{ExperimentError, HeadError};
 use thiserror::Error;
 use tracking::rig::RigError;
 
-/// An error that prevents a study: a comparison, a limit over a setting, a published figure of a pipeline, or a
-/// measurement with the latency rig.
+/// An error that prevents a study. A study is a comparison, a search for a limit, a published figure, or a measurement
+/// with the latency rig.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -28,7 +28,7 @@ pub enum StudyError {
     /// The query has no seeds.
     #[error("expected at least one seed, found none")]
     NoSeed,
-    /// The registry has no pipeline that is to be compared.
+    /// The registry has no pipeline that takes part in comparisons.
     #[error("expected a registry with a pipeline that is compared, found none")]
     NoPipeline,
     /// A row in the query does not exist.
@@ -44,7 +44,7 @@ pub enum StudyError {
     /// The settings have no head motion, so there is no error to compare.
     #[error("expected a head.motion, found none: without a head there is no error to compare")]
     NoHead,
-    /// The query asks for a precision, but more seeds cannot move the head otherwise.
+    /// The query asks for a precision, but the head moves in the same way for every seed.
     #[error(
         "this motion is the same for all seeds: its interval is a bootstrap over time, which more seeds do not make narrower; \
          use head.motion = synthetic or a longer recording, or compare without a precision"
@@ -55,7 +55,7 @@ pub enum StudyError {
     Seeds {
         /// The expected seeds, in words.
         expected: String,
-        /// The seed or the number of seeds in the query.
+        /// The unusable seed, or the unusable number of seeds, in the query.
         found: u64,
     },
     /// A file of finished rows cannot be read or written.
@@ -101,7 +101,8 @@ pub enum StudyError {
     /// The settings of the tracker are invalid.
     #[error(transparent)]
     Tracker(#[from] HeadError),
-    /// The tracker reported no low point of the pendulum, or the photodiode saw no bright pixel.
+    /// The pendulum rig gave no measurement: the tracker reported no low point of the pendulum, or the photodiode
+    /// detected no bright pixel.
     #[error(transparent)]
     Rig(#[from] RigError),
     /// A requested frame was not shown completely.
@@ -114,7 +115,7 @@ pub enum StudyError {
         /// Number of requested frames that were shown completely, according to the pipeline's records.
         found: usize,
     },
-    /// The photodiode cannot tell when a frame of this pipeline appears.
+    /// The photodiode cannot detect the appearance of a frame of this pipeline.
     #[error("expected a pipeline whose frames a photodiode can distinguish, found {pipeline}: {reason}; {definition}")]
     NoFrames {
         /// Name of the pipeline.

@@ -65,10 +65,11 @@ pub(crate) struct Setting {
     pub(crate) folder: PathBuf,
 }
 
-/// Name of the head motion that takes its seed from the run.
+/// Name of the head motion whose seed is the seed of the run.
 const SYNTHETIC: &str = "synthetic";
 
-/// The settings of an experiment by path. Each was read, but their combination is not yet checked.
+/// The settings of an experiment by path. Each setting was read, but the combination of all settings is not yet
+/// checked.
 #[derive(Clone, Debug)]
 pub struct ExperimentFile {
     registry: Arc<Registry>,
@@ -81,13 +82,13 @@ pub struct ExperimentFile {
 }
 
 impl ExperimentFile {
-    /// Returns a file without settings that can name the built-in pipelines and displays.
+    /// Creates an experiment file without settings. The settings can name the built-in pipelines and displays.
     #[must_use]
     pub fn new() -> Self {
         Self::with(crate::registry())
     }
 
-    /// Returns a file without settings that can name the pipelines and displays of a registry.
+    /// Creates an experiment file without settings. The settings can name the pipelines and displays of a registry.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
         let contents = BTreeMap::new();
@@ -182,8 +183,8 @@ impl ExperimentFile {
         self.put(path, value.into(), place.to_owned(), Path::new(""))
     }
 
-    /// Provides the contents of a model file or recording from memory. They are used wherever a setting names the file
-    /// `name`. Hosts without a file system, such as browsers, need this function.
+    /// Provides the contents of a model file or recording from memory. The contents are used wherever a setting names
+    /// the file `name`. Hosts without a file system, such as browsers, need this function.
     #[must_use]
     pub fn with_contents(mut self, name: impl Into<String>, contents: impl Into<Arc<[u8]>>) -> Self {
         self.contents.insert(name.into(), contents.into());
@@ -223,7 +224,8 @@ impl ExperimentFile {
         file.resolve()
     }
 
-    /// Returns true if each seed moves the head otherwise: the head has the synthetic motion without a seed of its own.
+    /// Returns true if the head moves differently for each seed. The head does so for the motion `synthetic` if the
+    /// setting states no seed for the motion.
     ///
     /// # Errors
     ///
@@ -281,7 +283,7 @@ impl ExperimentFile {
         self.settings.keys().map(String::as_str)
     }
 
-    /// Copies all settings of another file into this one. They override the current settings.
+    /// Copies all settings of another file into this file. The copied settings override the current settings.
     pub fn overlay(&mut self, other: Self) {
         if other.is_sweep() {
             self.sweep = other.sweep;
@@ -290,7 +292,7 @@ impl ExperimentFile {
         self.settings.extend(other.settings);
     }
 
-    /// Returns true if the file describes a sweep.
+    /// Returns true if the file describes a sweep (one experiment at many points of a parameter space).
     #[must_use]
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()
@@ -303,8 +305,8 @@ impl Default for ExperimentFile {
     }
 }
 
-/// Returns the leaves of a TOML value with their paths and byte positions. An empty table counts as a leaf, so that it
-/// is not lost.
+/// Returns the leaves of a TOML value with their paths and byte positions. An empty table counts as a leaf, so that the
+/// result contains the table.
 fn flat(
     path: String,
     value: Value,

@@ -1,16 +1,16 @@
 //! Published figures compared with the model: the printed value, the simulated value and their difference.
 //!
 //! ```text
-//!   FIGURES (data) --> Bench::measure (one experiment each) --> Row: published, simulated, error, interval, standing
+//!   FIGURES (data) --> Bench::measure (one experiment each) --> Row: published, simulated, error, interval, provenance
 //! ```
 //!
 //! Papers about other systems have separate families of rows ([`FigureFamily`]), measured together with the figures of
 //! Pixel-Planes 5.
 //!
 //! All rows come from the same machine parameters. Rows 3, 5 and 6 describe machines with other loads or costs than the
-//! presets. Their experiments change only the parameters that the paper's statement changes.
+//! presets. The experiments of these rows change only the parameters that the paper's statement changes.
 //!
-//! Sources: TR94, I3D95. The loads of the experiments are chosen by this project.
+//! Sources: TR94, I3D95. This project chose the loads of the experiments.
 
 mod applications;
 mod document;
@@ -90,7 +90,8 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
 }
 
 /// Measures all figures in parallel, with their intervals. `finished` is called with the number of finished steps and
-/// the number of all steps. A step is one figure of the main table, or one of the other parts of [`Figures`].
+/// the number of all steps. A step is the measurement of one figure of the main table, or of one other field of
+/// [`Figures`].
 ///
 /// # Errors
 ///

@@ -38,11 +38,12 @@ const SCENES: [u32; 2] = [10_000, 59_592];
 /// Sizes of the machines: number of GPs and number of renderers. Each machine draws each of the [`SCENES`].
 const MACHINES: [(usize, usize); 9] = [(2, 5), (4, 5), (13, 5), (24, 5), (50, 5), (13, 1), (13, 2), (13, 10), (13, 20)];
 
-/// Memory of a GP in bytes in these runs. A million triangles do not fit into the 8 MB of 50 real GPs.
+/// Memory of a GP in bytes in these runs. A million triangles do not fit into 50 real graphics processors with 8 MB
+/// each.
 const MEMORY_BYTES: u64 = 1 << 30;
 
-/// Time to process a triangle in nanoseconds: on its GP, and on a renderer for the 1.35 regions that it touches. The
-/// length of a run follows from these times.
+/// Time to process a triangle in nanoseconds: on its graphics processor, and on a renderer for the 1.35 regions that
+/// the triangle touches. The number of fields of a run is computed from these times.
 const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 
 /// Number of frames that a run must be long enough to show.
@@ -115,7 +116,7 @@ pub fn by_machine() -> Result<Vec<Point>, ExperimentError> {
     all.map(|(triangles, (n_gps, n_renderers))| run(triangles, n_gps, n_renderers)).collect()
 }
 
-/// Result of an application scene on a machine preset. The papers do not say which machine they used.
+/// Result of an application scene on a machine preset. The papers do not state which machine drew the scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Application {
     /// Name of the built-in scene.
@@ -220,8 +221,9 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
     table(&mut text, machines);
     text.push_str(
         "\n## Application scenes\n\nThe papers do not name the machine that drew their application scenes. The table has results for three machines. Each\n\
-         result is the mean over 30 seeds of head motion with 616 fields each, which are 300 frames at 30 Hz. The published latency of the Mig\n\
-         is 4.61 fields with a deviation of 0.589 fields.\n\n\
+         result is the mean over the runs of 30 seeds of head motion. A run has 616 fields: a short warm-up, and then about 300 frames\n\
+         at 30 Hz. The column *frames* counts the frames of all runs after the warm-up. The published latency of the Mig is 4.61 fields\n\
+         with a standard deviation of 0.589 fields.\n\n\
          | scene | machine | latency, fields | sd | frames/s | frames |\n|---|---|---|---|---|---|\n",
     );
     // The papers' scenes on three possible machines.
@@ -276,8 +278,8 @@ fn table(text: &mut String, points: &[Point]) {
     }
 }
 
-/// Writes a chart of host time over triangles, both logarithmic. Each row is one scene size, and each column a tenth of
-/// a decade.
+/// Writes a chart of host time over triangles, both logarithmic. Each row of the chart is one scene size, and each
+/// column is a tenth of a decade of the host time.
 fn chart(text: &mut String, points: &[Point]) {
     let least = points.iter().filter(|p| p.frames > 0).map(|p| p.host_ms).fold(f64::INFINITY, f64::min).log10().floor();
     for p in points.iter().filter(|p| p.frames > 0) {

@@ -28,7 +28,7 @@ pub enum MotionError {
         what: &'static str,
         /// The unknown name.
         found: String,
-        /// The names that are known, as text.
+        /// List of the accepted names, as text.
         expected: &'static str,
     },
     /// The text after the colon is not a number, or the number is out of range.
@@ -77,7 +77,7 @@ const HIGHEST_HZ: f64 = 100.0;
 /// Options for replaying a recorded head motion: the format of its file, and the behaviour at its end.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Replay {
-    /// Columns and axes of the recording's file, unless its header states them.
+    /// Columns and axes of the recording's file, for a file whose header does not state them.
     pub format: RecordingFormat,
     /// Behaviour after the last sample of the recording.
     pub end: End,
@@ -89,8 +89,8 @@ pub fn is_walk(name: &str) -> bool {
     name.split(':').next() == Some("walk")
 }
 
-/// Builds a walk along a closed path from its name. In `walk:M_PER_S` the viewer looks straight ahead. In
-/// `walk:M_PER_S:SEED` the viewer looks around as in `synthetic:SEED`.
+/// Builds a walk along a closed path from its name. With `walk:M_PER_S`, the viewer always faces ahead. With
+/// `walk:M_PER_S:SEED`, the viewer's head turns at random as in `synthetic:SEED`.
 ///
 /// # Errors
 ///

@@ -19,7 +19,7 @@ use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOU
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
 use pxpl5_sim::mix;
-use pxpl5_sim::parameters::Standing;
+use pxpl5_sim::parameters::Provenance;
 use serde::Serialize;
 
 /// Number of random machines in the joint sample.
@@ -42,7 +42,7 @@ pub struct Variation {
     /// Minimum and maximum value of the parameter that the sources allow.
     pub range: (u64, u64),
     /// Provenance of the parameter's value in the preset: derived or assumed, never published.
-    pub standing: Standing,
+    pub provenance: Provenance,
 }
 
 /// Effect of one parameter on one figure.
@@ -69,7 +69,8 @@ pub struct Interval {
     pub one_at_a_time: [f64; 2],
     /// Minimum and maximum value of the figure over the interpretations that change one answer at a time.
     pub readings: [f64; 2],
-    /// Interpretations that change the figure, each with the resulting value of the figure. The strongest comes first.
+    /// Interpretations that change the figure, each with the resulting value of the figure. The interpretation with the
+    /// greatest change comes first.
     pub rules: Vec<(String, f64)>,
     /// Minimum and maximum value of the figure over the random machines of the joint sample.
     pub joint: [f64; 2],
@@ -80,7 +81,8 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Returns the minimum and maximum of the figure over all designs, as computed at the analytic level.
+    /// Returns the minimum and maximum of the figure over all three designs of experiments, as computed at the analytic
+    /// level.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
@@ -102,21 +104,21 @@ const FITTED: [(&str, u64, (u64, u64)); 2] =
 /// Returns all parameters that are derived or assumed, have a range, and can change a figure at the analytic level.
 ///
 /// Parameters of the i860 are left out. The analytic level uses formulas with the timing tables and executes no code,
-/// so an interval would wrongly suggest that these parameters never matter. At the cycle level they do matter. Here the
-/// range of `gp.triangle_ns` stands for their effect.
+/// so an interval would wrongly suggest that these parameters never matter. At the cycle level these parameters do
+/// matter. In the intervals, the range of `gp.triangle_ns` stands for the effect of these parameters.
 #[must_use]
 pub fn variations() -> Vec<Variation> {
     let parameters = MachineConfig::small_hmd().parameters().into_iter().filter(|p| !p.path.starts_with("i860."));
-    let open = parameters.filter(|p| p.info.standing != Standing::Published && p.info.range.0 < p.info.range.1);
+    let open = parameters.filter(|p| p.info.provenance != Provenance::Published && p.info.range.0 < p.info.range.1);
     let of_machine = open.filter_map(|p| {
         let range = p.info.whole_range()?;
-        Some(Variation { path: p.path, value: p.value.whole()?, range, standing: p.info.standing })
+        Some(Variation { path: p.path, value: p.value.whole()?, range, provenance: p.info.provenance })
     });
     let fitted = FITTED.iter().map(|(path, value, range)| Variation {
         path: (*path).to_owned(),
         value: *value,
         range: *range,
-        standing: Standing::Derived,
+        provenance: Provenance::Derived,
     });
     of_machine.chain(fitted).collect()
 }
@@ -135,7 +137,7 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
 }
 
-/// Computes the intervals of all figures at the analytic level, around their values for the given bench (common
+/// Computes the intervals of all figures at the analytic level, around the figures' values for the given bench (common
 /// settings of all measurements).
 #[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
@@ -171,11 +173,12 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
 /// requested.
 const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 
-/// Paths of the machine parameters without a source. They vary for figures that need a simulation with events.
+/// Paths of the machine parameters without a source. These parameters vary for figures that need a simulation with
+/// events.
 const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
 
 /// Computes the interval of a figure that needs a simulation with events. Each parameter of [`OF_EVENTS`] takes both
-/// ends of its range, one at a time.
+/// ends of its range, while the other parameters keep their presets.
 fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     let variations: Vec<_> = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str())).collect();
     let nominal = bench.measure(id).ok()?.value;
@@ -216,11 +219,11 @@ fn of_rig(bench: &Bench) -> Option<Interval> {
 pub(crate) fn photodiode_line() -> Option<Variation> {
     let line = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE)?;
     let (value, range) = (line.value.whole()?, line.info.whole_range()?);
-    Some(Variation { path: line.path, value, range, standing: line.info.standing })
+    Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
 }
 
-/// Combines two designs into the interval of one figure. `ends` has the values at both ends of every range in turn, and
-/// `joint` the values of the random machines.
+/// Combines two designs into the interval of one figure. `ends` has the figure's values at both ends of each parameter
+/// range, one parameter after the other. `joint` has the figure's values on the random machines.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {
@@ -236,7 +239,7 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
 }
 
 impl Interval {
-    /// Adds the values of the figure under other interpretations to the interval.
+    /// Adds the values of the figure under other interpretations of the papers to the interval.
     fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
         let reach = |value: f64| (value / self.nominal - 1.0).abs();
         // Interpretations without a visible effect are left out.
@@ -266,7 +269,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Smallest relative change of a figure that is listed.
+/// Smallest relative change of a figure for which a parameter is listed.
 const VISIBLE: f64 = 1e-3;
 
 fn effects(variations: &[Variation], ends: &[f64], nominal: f64) -> Vec<Effect> {

@@ -1,7 +1,7 @@
 //! Searches for limits: the largest number of triangles that a pipeline can draw in time.
 //!
-//! A limit is found by simulation, not by a formula. Some pipelines have a closed-form formula (the analytic level). It
-//! only gives hints: the size at which the search starts, and sizes that may miss the goal.
+//! A limit is found by simulation, not by a formula. Some pipelines have a closed-form formula (the analytic level).
+//! This formula only gives hints: the size at which the search starts, and sizes that may miss the goal.
 //!
 //! ```text
 //!   analytic level --about this many; least margin at these--> Hints
@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A larger scene can reach a goal that a smaller scene misses. The reason is that a nearly empty clump (group of
-//! triangles) costs as many messages as a full one. The search therefore also tries sizes below the result of the
+//! triangles) costs as many messages as a full clump. The search therefore also tries sizes below the result of the
 //! bisection, and the smallest miss counts. [`most`] states the guarantee.
 
 mod over;
@@ -117,8 +117,8 @@ impl LimitQuery {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on it. A scene that does
-    /// not fit into a board's memory, or is never shown, misses the goal.
+    /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on the machine. A scene
+    /// that does not fit into a board's memory, or is never shown, misses the goal.
     pub fn search(&self) -> Result<Limit, ExperimentError> {
         self.search_with(|_| {})
     }
@@ -142,8 +142,8 @@ impl LimitQuery {
         Ok(limit)
     }
 
-    /// Returns an error if the goal is an update rate and the scene has no measurable one. A display with cube faces
-    /// redraws so little of some scenes that fewer than two updates occur.
+    /// Returns an error if the goal is an update rate and the scene has no measurable update rate. A display with cube
+    /// faces redraws so little of some scenes that fewer than two updates occur.
     fn check_rate(&self) -> Result<(), ExperimentError> {
         let (Goal::RateHz(hz), true) = (self.criterion.goal, self.pipeline.draws_faces()) else { return Ok(()) };
         let outcome = self.experiment(1)?.run()?;
@@ -169,8 +169,8 @@ impl LimitQuery {
     /// Returns the hints of the analytic level. The hints are empty if the pipeline has no closed form, or if the
     /// search itself uses the analytic level.
     ///
-    /// For a model, each size needs a decimated scene and its views. This takes as long at the analytic level as at any
-    /// other level. Small triangles therefore stand in for the model.
+    /// For a model, each number of triangles needs a decimated scene. Building this scene takes as long at the analytic
+    /// level as at any other level. The hints therefore use a test scene of small triangles in place of the model.
     fn hints(&self) -> Hints {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
@@ -184,8 +184,8 @@ impl LimitQuery {
         Hints { near, doubtful: doubtful.unwrap_or_default() }
     }
 
-    /// Returns numbers of triangles up to 5 % above `near` that have a smaller margin to the goal than their
-    /// neighbours. The smallest margin comes first.
+    /// Returns numbers of triangles, up to 5 % above `near`, that reach the goal with a smaller margin than the
+    /// neighbouring numbers. The smallest margin comes first.
     fn doubtful(&self, near: u32) -> Vec<u32> {
         let most = near + near / 20;
         let step = most.div_ceil(MARGINS).max(1) as usize;
@@ -198,8 +198,8 @@ impl LimitQuery {
         least.into_iter().take(DOUBTFUL).map(|(_, triangles)| triangles).collect()
     }
 
-    /// Returns the margin by which a number of triangles reaches the goal, in the unit of the goal. A negative margin
-    /// is a miss.
+    /// Returns a number that is greater if the goal is easier to reach: the update rate, the negative latency, or the
+    /// negative time of the first copy. Only the comparison of two numbers of triangles has a meaning.
     fn margin(&self, triangles: u32) -> Option<f64> {
         let summary = self.summary(triangles).ok()?;
         match self.criterion.goal {

@@ -1,7 +1,7 @@
 //! The manifest of an output folder, which lists the files of the last command that wrote there.
 //!
-//! A folder may hold files of several runs and files of the user. The manifest distinguishes them. Readers trust only
-//! files that are listed and unchanged. The next run removes the listed files that it does not write again.
+//! A folder may hold files of several runs and files of the user. The manifest distinguishes these files. Readers trust
+//! only files that are listed and unchanged. The next run removes each listed file that the run does not write again.
 
 use pxpl5_measure::program;
 use pxpl5_run::Fingerprint;
@@ -28,7 +28,8 @@ pub struct ManifestEntry {
 pub struct Manifest {
     schema: String,
     version: String,
-    /// Commit from which the writing program was built, if known. Manifests of earlier programs have none.
+    /// Commit from which the writing program was built, if that program stated the commit. Manifests of earlier
+    /// programs have no commit.
     #[serde(default)]
     commit: Option<String>,
     command: String,
@@ -84,8 +85,8 @@ impl Manifest {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-manifest/1";
 
-    /// Command name in the manifest of a sweep. Its rows may be the work of hours, so other commands never replace
-    /// them.
+    /// Command name in the manifest of a sweep. The rows of a sweep may be the work of hours, so other commands never
+    /// replace these rows.
     pub const SWEEP: &'static str = "sweep";
 
     /// Creates an empty manifest for a command.
@@ -163,7 +164,7 @@ impl Manifest {
         self.put(ManifestEntry { name: name.to_owned(), contents: None });
     }
 
-    /// Adds all files of another manifest to this one.
+    /// Adds all files of another manifest to this manifest.
     pub fn add_all(&mut self, other: &Self) {
         other.files.iter().for_each(|entry| self.put(entry.clone()));
     }
@@ -191,8 +192,8 @@ impl Manifest {
         if entry.is_of(&bytes) { Ok(Some(bytes)) } else { Err(changed("other contents")) }
     }
 
-    /// Declares that this manifest replaces the previous one (`before`). Returns the old files to remove. These are
-    /// files that the new run does not write and that have not changed since they were written.
+    /// Declares that this manifest replaces the previous manifest (`before`). Returns the old files to remove. These
+    /// are files that the new run does not write and that have not changed since they were written.
     #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {
         let gone = before.files.iter().chain(&before.replaced).filter(|entry| !self.lists(&entry.name));

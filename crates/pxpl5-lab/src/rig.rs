@@ -1,11 +1,12 @@
 //! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
 //! with the system's own time stamps.
 //!
-//! As in I3D95, the host starts a frame when it sees the pendulum's low point. Frames alternate between dark and light,
-//! and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is not full,
-//! and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives the line,
-//! so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats, switches the line
-//! when it samples the pose of a frame.
+//! As in I3D95, the host starts a frame when the host detects the pendulum's low point. Frames alternate between dark
+//! and light, and the output of a D/A converter (the D/A line) changes when the program starts a frame. Frames
+//! therefore come on demand, the pipeline is not full, and the latency contains no wait for stages of an earlier frame.
+//! Under Rendering Control the host drives the line, so SEND and EDIT belong to the rendering part of the latency.
+//! Firmware that starts frames itself, such as Slats, switches the D/A line when the firmware samples the pose of a
+//! frame.
 //!
 //! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The low points come
 //! from the pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from
@@ -44,8 +45,8 @@ pub struct Rig {
     pub passes: usize,
 }
 
-/// Default number of low points to measure. They fall anywhere in a field. With this number, the mean wait for a
-/// retrace is known to a fifth of a field.
+/// Default number of low points to measure. Low points occur at any time within a field. With this number, the mean
+/// wait for a retrace is known to a fifth of a field.
 pub const PASSES: usize = 24;
 
 impl Rig {
@@ -93,7 +94,7 @@ impl Rig {
         pipeline: Arc<dyn Pipeline>,
         sightings: &[LowPointReport],
     ) -> Result<Experiment, StudyError> {
-        // Even sightings make a light frame, odd ones a dark frame.
+        // Even sightings make a light frame, odd sightings a dark frame.
         let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
             measured_ps: sighting.measured_ps,
@@ -116,7 +117,7 @@ impl Rig {
     }
 }
 
-/// Returns an error for a pipeline in which a photodiode on the screen cannot tell when a frame appears.
+/// Returns an error for a pipeline in which a photodiode on the screen cannot detect the appearance of a frame.
 fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), StudyError> {
     let refused = |reason| {
         let definition = pipeline.due_definition();
@@ -144,7 +145,7 @@ fn away() -> Pose {
 }
 
 /// Returns a scene with a white wall straight ahead (along -z) that fills the view. The scene's own viewer looks away
-/// from the wall. The wall's two triangles are the minimal data set.
+/// from the wall. The wall has two triangles, the smallest number for a rectangle.
 fn lamp() -> Scene {
     const CORNERS: [[f32; 2]; 4] = [[-1.6, -1.6], [1.6, -1.6], [1.6, 1.6], [-1.6, 1.6]];
     let vertex = |[x, y]: [f32; 2]| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
@@ -192,8 +193,7 @@ impl Photodiode {
         Self { line, place_ps: 0, samples: Vec::new(), ring: Vec::new() }
     }
 
-    /// Runs an experiment and samples the photodiode. A run that ends before it can fill the pipeline with pictures is
-    /// accepted here.
+    /// Runs an experiment and samples the photodiode. A run that is too short for statistics is accepted here.
     fn watch(&mut self, experiment: &Experiment) -> Result<Outcome, StudyError> {
         self.check(experiment.build()?.record().display())?;
         let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
@@ -233,9 +233,9 @@ impl Photodiode {
         self.samples.push((at.0, is_light));
     }
 
-    /// Returns the sample of two periods ago, if no message has been on the ring since the beginning of that period.
-    /// The same line was lit then, and the screen of an idle machine does not change. (The ring is read one period
-    /// later than the screen.)
+    /// Returns the sample of two periods ago if the screen cannot have changed since then. In this case the picture
+    /// need not be read again. The screen does not change while the ring carries no message. Two periods ago, the
+    /// display lit the same line. The state of the ring is recorded one period later than the sample of the screen.
     fn unchanged(&self) -> Option<bool> {
         let [.., before, _, _, _, now] = self.ring[..] else { return None };
         let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;
@@ -267,7 +267,8 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<V
 }
 
 /// Returns the time at which a program sampled the head pose for a frame and switched the D/A line. Under Rendering
-/// Control the host does so when SEND begins. Under Slats the graphics processor does so when a field begins.
+/// Control this is the time at which the host begins SEND. Under Slats this is the time at which a graphics processor
+/// begins a field.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();
     let begun = marks

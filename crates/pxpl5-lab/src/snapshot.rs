@@ -1,14 +1,14 @@
 //! Saves and restores a run at the boundary between two display fields.
 //!
-//! A [`Snapshot`] is a checkpoint: a saved run that can be continued. It does not hold the state of the boards, because
-//! their programs are suspended `async` functions, whose state cannot be serialized. Instead, the checkpoint holds the
-//! data that determine this state: the experiment, the identity of the scene, and the field. It also holds the trace hash
-//! and the number of events, which identify the state.
+//! A [`Snapshot`] is a checkpoint: a saved run that can be continued. The checkpoint does not hold the state of the
+//! boards, because their programs are suspended `async` functions, whose state cannot be serialized. Instead, the
+//! checkpoint holds the data that determine this state: the experiment, the identity of the scene, and the field. The
+//! checkpoint also holds the trace hash and the number of events, which identify the state.
 //!
-//! To restore a checkpoint, the program repeats the run up to the saved field without computing pixels. It then compares
-//! the hash and number of events with the saved ones, and continues the run. A restored run is therefore identical to
-//! the original run. Restoring takes as long as the original simulation up to that field (thousands of fields a second
-//! for small scenes).
+//! To restore a checkpoint, the program repeats the run up to the saved field without computing pixels. The program
+//! then compares the hash and the number of events with the saved values, and continues the run. A restored run is
+//! therefore identical to the original run. Restoring takes as long as the original simulation up to that field
+//! (thousands of fields a second for small scenes).
 //!
 //! The file is JSON with a version and a checksum. Damaged and foreign files are refused with the reason.
 
@@ -66,7 +66,7 @@ pub enum SnapshotError {
         /// Description of the error in the text of the file.
         reason: String,
     },
-    /// The snapshot has a layout of another version.
+    /// The snapshot has a JSON layout of another version.
     #[error(
         "{file}: expected a checkpoint of layout {expected}, found {found}; use the version of pxpl5 that wrote it"
     )]
@@ -167,7 +167,8 @@ impl Snapshot {
 
     /// Creates a snapshot of a run of an experiment that was built in code.
     ///
-    /// The file does not describe such an experiment. [`Snapshot::resume`] needs the same experiment again.
+    /// The file of the snapshot does not describe such an experiment, so the caller must give the same experiment to
+    /// [`Snapshot::resume`].
     ///
     /// # Errors
     ///
@@ -201,8 +202,8 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError::Differs`] if the experiment, the scene or the repeated run is not the saved one, and
-    /// [`SnapshotError::Run`] if the experiment cannot run.
+    /// Returns [`SnapshotError::Differs`] if the experiment, the scene or the repeated run differs from the saved data,
+    /// and [`SnapshotError::Run`] if the experiment cannot run.
     pub fn resume(&self, experiment: &Experiment, file: &str) -> Result<Stepper, SnapshotError> {
         // A different experiment is refused before its run.
         self.check_scene(experiment.scene(), file)?;
@@ -280,7 +281,7 @@ impl Snapshot {
             .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error: Box::new(error) })
     }
 
-    /// Compares the scene with the saved one.
+    /// Compares the scene with the saved scene.
     ///
     /// # Errors
     ///
@@ -289,7 +290,7 @@ impl Snapshot {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
-    /// Compares a machine with the saved one. The machine must have repeated the run up to the saved field.
+    /// Compares a machine with the saved machine. The machine must have repeated the run up to the saved field.
     ///
     /// # Errors
     ///
@@ -334,7 +335,7 @@ mod tests {
     use tracking::predict::PredictorKind;
     use tracking::tracker::TrackerConfig;
 
-    /// Returns a plan, a snapshot of its run at field 9, and the trace hash at the end of the run.
+    /// Returns a plan (checked experiment), a snapshot of the run at field 9, and the trace hash at the end of the run.
     fn saved() -> (Plan, Snapshot, String) {
         let text = "pipeline = \"rendering-control\"\nscene = \"mig\"\ntriangles = 40\nfields = 24\nseed = 5\n";
         let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");

@@ -15,14 +15,14 @@
 //! - After a crash the last line may be incomplete. [`Store::open`] removes this line, and only the point of this line
 //!   is computed again.
 //! - A point that cannot be simulated has a row with the reason. The other points continue.
-//! - Two processes never write into one folder. The second process is refused.
-//! - Every row has the number of pictures due, of pictures not shown, and of evaluated pixels, whatever the file measures.
-//!   Without these counts, a mean over few pictures looks like a mean over all.
+//! - Two processes never write into one folder. The second process gets an error.
+//! - Every row has the numbers of due pictures, of pictures not shown, and of evaluated pixels, even if the file
+//!   selects other quantities. Without these counts, a mean over few pictures looks like a mean over all.
 //!
 //! # Not modelled
 //!
 //! Random sampling and adaptive refinement of the space are not supported. Several hosts can share a sweep only if each
-//! runs a different shard (part) of it.
+//! host runs a different shard (part) of the sweep.
 
 mod chunk;
 mod cost;
@@ -108,8 +108,8 @@ impl Sweep {
     }
 }
 
-/// Returns the quantities of a row: those of the plan, then the counts without which no mean can be compared
-/// ([`Measure::counts`]).
+/// Returns the quantities of a row: the quantities that the experiment file selects, then the counts that are necessary
+/// to compare means ([`Measure::counts`]).
 fn measures(plan: &Plan) -> Vec<Measure> {
     let mut all = plan.measure.clone();
     all.extend(Measure::counts().into_iter().filter(|count| !plan.measure.contains(count)));

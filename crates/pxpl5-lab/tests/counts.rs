@@ -113,13 +113,13 @@ fn where_nothing_was_complete_in_time_there_is_no_latency_no_update_and_no_error
         ] {
             assert_eq!(report.pointer(path), Some(&serde_json::Value::Null), "{pipeline}: {path}");
         }
-        for path in ["/latency_ms/n", "/head/end_to_end/n", "/head/error/pixels/n", "/head/error/judged"] {
+        for path in ["/latency_ms/n", "/head/end_to_end/n", "/head/error/pixels/n", "/head/error/evaluated"] {
             assert_eq!(report.pointer(path), Some(&0.into()), "{pipeline}: {path}");
         }
         assert!(report["too_heavy"]["advice"].is_string() && report["ends_complete"] == false, "{pipeline}");
         // With the aircraft, no line of just-in-time pixels arrives in time, and regions of Slats arrive late.
-        let unjudged = ["incomplete", "empty"].map(|key| report["head"]["error"][key].as_u64().expect("a number"));
-        assert!(unjudged.iter().sum::<u64>() > 0, "{pipeline}");
+        let not_evaluated = ["incomplete", "empty"].map(|key| report["head"]["error"][key].as_u64().expect("a number"));
+        assert!(not_evaluated.iter().sum::<u64>() > 0, "{pipeline}");
     }
 }
 
@@ -145,7 +145,7 @@ fn a_picture_of_start_up_that_stays_on_the_screen_has_no_error() {
         let due = report.due.expect("fields are due");
         assert_eq!((due.shown, due.due), (0, fields - WARM_UP_PERIODS), "{due:?}");
         let error = report.head.expect("a head").error;
-        assert_eq!((error.judged, error.behind), (0, 0), "{error:?}");
+        assert_eq!((error.evaluated, error.behind), (0, 0), "{error:?}");
         assert!(error.pixels.mean.is_nan() && error.before > 0, "{error:?}");
         assert!(ErrorCauses::of(&outcome, Showing::Plain, &error).is_none());
     }

@@ -47,7 +47,7 @@ fn offset_px(outcome: &Outcome, (x, y): (u32, u32)) -> DVec2 {
 fn a_translation_is_off_by_focal_length_times_way_over_distance() {
     const SPEED: f64 = 0.5;
     let room = || pxpl5_scene::builtin("room").expect("built in");
-    // The wall ahead is 2 m away. `head.judge_at` overrides this distance.
+    // The wall ahead is 2 m away. `head.evaluate_at` overrides this distance.
     for (evaluated_at, distance_m) in [(None, 2.0), (Some(5.0), 5.0), (Some(0.5), 0.5)] {
         let head = head(Slide::right_at(SPEED));
         let head =
@@ -137,6 +137,6 @@ fn a_recording_that_is_shorter_than_the_run_is_refused_and_held_on_request() {
         "what comes after the end belongs to the experiment"
     );
     // With `hold`, the head stands still at the end of the run. With `loop`, the head moves on.
-    assert!(held.report().head.expect("a head").error.by_field.last().expect("judged").mean_px < 1e-9);
-    assert!(looped.report().head.expect("a head").error.by_field.last().expect("judged").mean_px > 0.1);
+    assert!(held.report().head.expect("a head").error.by_field.last().expect("evaluated").mean_px < 1e-9);
+    assert!(looped.report().head.expect("a head").error.by_field.last().expect("evaluated").mean_px > 0.1);
 }

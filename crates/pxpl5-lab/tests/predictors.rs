@@ -21,7 +21,7 @@ fn experiment(pipeline: impl Pipeline + 'static, motion: impl Motion + Send + Sy
 }
 
 fn mean(all: &Predictors, kind: PredictorKind) -> f64 {
-    all.of(kind).and_then(|one| one.error.as_ref()).expect("judged").pixels.mean
+    all.of(kind).and_then(|one| one.error.as_ref()).expect("evaluated").pixels.mean
 }
 
 fn shown(name: &str, all: &Predictors) {
@@ -56,12 +56,12 @@ fn on_a_still_head_a_tuned_filter_costs_nothing_against_no_prediction() {
         // Each picture shows one report, and 60 independent reports come each second. The lengths of their errors
         // without prediction deviate by at most their mean.
         let independent =
-            all.of(PredictorKind::None).and_then(|one| one.error.as_ref()).expect("judged").by_field.len() / 2;
+            all.of(PredictorKind::None).and_then(|one| one.error.as_ref()).expect("evaluated").by_field.len() / 2;
         let tolerance = 3.0 / (independent as f64).sqrt();
         assert!(kalman <= none * (1.0 + tolerance), "{name}: {kalman} px with the filter, {none} without");
         assert_eq!(all.chosen, PredictorKind::Kalman);
         let least = PredictorKind::ALL.map(|kind| mean(&all, kind)).into_iter().fold(f64::INFINITY, f64::min);
-        assert_eq!(mean(&all, all.best.expect("judged")), least);
+        assert_eq!(mean(&all, all.best.expect("evaluated")), least);
     }
 }
 
@@ -76,7 +76,7 @@ fn the_report_says_for_what_a_filter_was_tuned_and_the_interval_is_the_pipelines
     // middle.
     let expected_ms = head.end_to_end.total_ms + 1001.0 / 60.0 / 2.0;
     assert!((interval_ms - expected_ms).abs() <= 1.0, "{interval_ms} {expected_ms}");
-    assert_ne!(training.seed, 1, "not on the noise that is judged");
+    assert_ne!(training.seed, 1, "not on the noise that is evaluated");
     assert_eq!(head.prediction.kind, PredictorKind::Kalman);
     // The requested predictor determines the experiment's hash. The tuned predictor has a hash of its own.
     let asked = outcome.experiment().tracked_head().expect("asked for").fingerprint().to_string();

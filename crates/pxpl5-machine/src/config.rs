@@ -15,7 +15,7 @@ use thiserror::Error;
 
 /// The boards of a machine and all their timing parameters.
 ///
-/// There is no `Default`: start from a preset, which states its source.
+/// The type does not implement `Default`. A configuration starts from a preset, which states its source.
 #[derive(Clone, Debug)]
 pub struct MachineConfig {
     /// Name of the preset that this configuration started from.
@@ -26,10 +26,10 @@ pub struct MachineConfig {
     pub n_renderers: usize,
     /// Timing of the ring: number of channels, clock and overhead.
     pub ring: RingTiming,
-    /// Times of the graphics processors' work, used where a run does not execute i860 code.
+    /// Times of the graphics processors' work, for runs that do not execute i860 code.
     pub gp: GpTiming,
-    /// Version of the i860 code that the graphics processors execute at the cycle level. `None` takes the times from
-    /// `gp` instead.
+    /// Version of the i860 code that the graphics processors execute at the cycle level. With `None`, the times come
+    /// from `gp` instead.
     pub code: Option<CodeVersion>,
     /// Timing of the i860 core and its memory at the cycle level: clocks of pipeline freezes and of DRAM accesses.
     pub i860: i860::Config,
@@ -37,7 +37,7 @@ pub struct MachineConfig {
     pub renderer: RendererTiming,
     /// Timing of the host workstation and its link to the ring.
     pub host: HostTiming,
-    /// The displays. The first display is the sync generator, and pipelines draw pictures for the first display.
+    /// The displays. The first display is the sync generator, for which the pipelines draw their pictures.
     pub displays: Vec<Box<dyn DisplayConfig>>,
     /// Parameter tables of firmware, each with the prefix of its parameter paths.
     pub firmware: Vec<(&'static str, Box<dyn FirmwareTable>)>,
@@ -121,7 +121,7 @@ pub enum ConfigError {
     Parameter {
         /// Prefix of the parameter table, such as `ring`.
         board: String,
-        /// The expected values and the refused one.
+        /// The expected values and the refused value.
         error: ParameterError,
     },
     /// A board, a display or a pipeline refused its configuration. The text states the reason.
@@ -167,7 +167,7 @@ impl Parameter {
         (low..=high).contains(&self.value)
     }
 
-    /// Returns a warning that the value is out of range. The text contains the range and the source of the range.
+    /// Returns a warning that the value is out of range. The text contains the range and its source.
     #[must_use]
     pub fn warning(&self) -> String {
         let Self { path, info, value, .. } = self;
@@ -175,7 +175,7 @@ impl Parameter {
         let unit = info.unit;
         format!(
             "{path} = {value} {unit} is outside its range, {low} to {high} {unit} ({}: {})",
-            info.standing, info.source
+            info.provenance, info.source
         )
     }
 }
@@ -224,8 +224,9 @@ impl MachineConfig {
 
     /// Returns the parameters that identify this machine in names of experiments.
     ///
-    /// The result omits parameters of firmware and of the i860 that have the values from the papers. Older versions
-    /// could not set these parameters. Omitting them keeps the names of old experiments valid.
+    /// The result omits parameters of firmware and of the i860 that have the values from the papers. In older versions,
+    /// experiments could not set these parameters. Without the omitted parameters, the names of old experiments stay
+    /// valid.
     #[must_use]
     pub fn identifying_parameters(&self) -> Vec<Parameter> {
         let all = self.parameters().into_iter();
@@ -262,7 +263,8 @@ impl MachineConfig {
 
     /// Returns the parameters that differ from the preset's values, by path.
     ///
-    /// A table that the preset lacks (of firmware or of another display) is compared with the values from the papers.
+    /// The preset may lack a table, for example the table of a firmware or of another display. The parameters of such a
+    /// table are compared with the values from the papers.
     #[must_use]
     pub fn overrides(&self) -> BTreeMap<String, Value> {
         let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
@@ -275,7 +277,7 @@ impl MachineConfig {
 
     /// Returns the changed parameters whose values lie outside their stated range.
     ///
-    /// The model accepts such values, but no source supports the results.
+    /// The model accepts such values, but no source supports them.
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let changed = self.overrides();
@@ -350,7 +352,7 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] describes the first invalid value and the values expected.
+    /// Returns a [`ConfigError`] with the first invalid value and the expected values.
     pub fn check(&self) -> Result<(), ConfigError> {
         check("n_gps", self.n_gps as u64, 1, MAX_BOARDS)?;
         check("n_renderers", self.n_renderers as u64, 1, MAX_BOARDS)?;
@@ -378,7 +380,7 @@ impl MachineConfig {
         Self { n_renderers, ..self }
     }
 
-    /// Returns an error for a ring whose channels can all be blocked by commands for full renderer FIFOs.
+    /// Returns an error for a ring in which commands for full renderer FIFOs can block all channels.
     ///
     /// A renderer empties its FIFO only when it can send pixels. Without a free channel, the pixels would wait for
     /// ever. Each renderer receives one message at a time, and each graphics processor sends on at most

@@ -9,15 +9,15 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::DisplayEvent;
 
-/// An event that one board, or the ring, handles.
+/// An event. One board, or the ring, handles the event.
 #[derive(Debug)]
 pub(crate) enum Event {
     Ring(RingEvent),
-    /// Output of the ring for one of the other boards.
+    /// Output of the ring to one of the other boards.
     FromRing(RingOutput),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
-    /// Arrival of messages on a host line, a connection that bypasses the ring. The value is the line's index.
+    /// Arrival of messages on a host line, a connection that bypasses the ring. The number is the line's index.
     HostLine(usize),
     /// Event that a display has scheduled for itself.
     Display(usize, DisplayEvent),
@@ -28,7 +28,7 @@ pub(crate) enum Event {
 }
 
 impl Event {
-    /// Returns true for events of displays and clocks. Such events continue while all programs wait.
+    /// Returns true for events of displays and clocks. Such events occur even while all programs wait.
     pub(crate) const fn is_of_displays(&self) -> bool {
         matches!(self, Self::Edge | Self::Tick(..) | Self::Display(..) | Self::HostLine(_))
     }

@@ -25,10 +25,10 @@ pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
     [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
 }
 
-/// Returns the code of a surface in the trace. Code 2 stands for no surface, so a surface number of 2 or more is
-/// increased by one.
+/// Returns the code of a surface in the trace. Code 2 stands for no surface. The code of surface 2 or more is therefore
+/// its number plus 1.
 ///
-/// Code 2 for no surface dates from versions with at most two surfaces. Old trace hashes remain valid.
+/// This code comes from versions with at most two surfaces. It is kept so that old trace hashes remain valid.
 fn surface_fact(surface: Option<SurfaceId>) -> u64 {
     match surface {
         None => 2,

@@ -6,7 +6,7 @@ use std::fmt::Debug;
 
 /// A connection from the host to the first display that bypasses the ring.
 ///
-/// An example is the line that carries orientations of the head. Traffic on the ring does not delay messages of this
+/// An example is the line that carries orientations of the head. Traffic on the ring does not delay messages of a host
 /// line.
 pub trait HostLine: Debug {
     /// Returns the time of the first arrival after the instant `after`, or `None` if no more messages follow.

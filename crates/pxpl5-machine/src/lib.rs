@@ -5,8 +5,8 @@
 //!   ([`PRESETS`]).
 //! - [`Record`] holds the boards after a run and all observations of the run.
 //!
-//! A machine owns any number of displays ([`pxpl5_wire::display::Display`]). The machine uses only the
-//! [`pxpl5_wire::display::Display`] interface and contains no code for a particular kind of display.
+//! A machine owns any number of displays ([`pxpl5_wire::display::Display`]). The machine uses only this interface and
+//! contains no code for a particular kind of display.
 //!
 //! **Not here:** clocks, threads and files of the host computer. To compute pixels on a thread, a caller passes in a
 //! [`PixelWorker`].

@@ -26,7 +26,7 @@ use crate::savings::Optimization;
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, GpUse, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
-use pxpl5_sim::{Clock, Context, Cycles, EventQueue, Phase, Span, Time};
+use pxpl5_sim::{Context, EventQueue, Phase, Time};
 use pxpl5_wire::display::{DisplayContext, DisplayEvent};
 use pxpl5_wire::{Body, CopyTarget, Message, NodeId, PeriodNumber};
 use std::collections::{BTreeMap, BTreeSet};
@@ -37,7 +37,7 @@ use std::rc::Rc;
 pub struct Machine {
     record: Record,
     queue: EventQueue<Event>,
-    /// All boards that run programs, indexed by port: the host, then the graphics processors.
+    /// The host and the graphics processors, indexed by port. Only these boards run programs.
     processors: Vec<GpBoard>,
     contexts: Contexts,
     /// Number of swaps so far at each display port.
@@ -45,7 +45,7 @@ pub struct Machine {
     /// Host lines into the first display, which bypass the ring.
     host_lines: Vec<Box<dyn HostLine>>,
     pixels: Option<Box<dyn PixelWorker>>,
-    /// True if every edge of the boards' clock is an event (optimization `IdleBoards` disabled).
+    /// True if every edge of the boards' clock causes an event (optimization `IdleBoards` disabled).
     every_edge: bool,
     failure: Option<RunError>,
     /// Number of events of boards other than displays and clocks since the last tick of the first display.
@@ -66,17 +66,12 @@ struct Contexts {
 
 /// Number of idle ticks of the first display after which a machine with waiting programs counts as deadlocked.
 ///
-/// A tick is idle if no other event happened since the previous tick and no other event is pending.
+/// A tick is idle if no other event happened since the previous tick, and no other event is pending.
 pub const DEADLOCK_TICKS: u64 = 120;
 
 /// Number of events caused by each tick: the signal to the first graphics processor, and the poll of the first graphics
 /// processor's programs.
 const EVENTS_OF_A_TICK: u64 = 2;
-
-/// Returns the delay of a signal that leaves a board: one cycle of the boards' 40 MHz clock.
-fn cycle() -> Span {
-    Clock::from_hz(40_000_000).map_or(Span(25_000), |clock| clock.span(Cycles(1)))
-}
 
 impl Machine {
     /// Builds a machine in which each display has ring ports for `pictures` pictures: 1, or 2 for two eyes.
@@ -94,11 +89,12 @@ impl Machine {
         let ring =
             Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
         // Build the boards in the order of their ports.
-        let host = GpBoard::new(ports.host, config.host.board(), cycle());
-        let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, cycle()));
+        let signal = config.ring.signal();
+        let host = GpBoard::new(ports.host, config.host.board(), signal);
+        let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, signal));
         // All renderers share one pool for their pixel arrays.
         let pool = ArrayPool::new(layout);
-        let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), cycle(), pool.clone());
+        let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), signal, pool.clone());
         let displays = config.displays.iter().zip(&ports.displays).map(|(display, nodes)| display.build(nodes));
         let displays = displays.collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
@@ -129,7 +125,7 @@ impl Machine {
         })
     }
 
-    /// Handles simultaneous events in a pseudo-random order derived from `seed`.
+    /// Handles simultaneous events in a pseudo-random order. The order depends on `seed`.
     ///
     /// Tests use this method to prove that no result depends on the order of simultaneous events.
     pub fn shuffle_ties(&mut self, seed: u64) {
@@ -141,8 +137,8 @@ impl Machine {
         self.pixels = Some(worker);
     }
 
-    /// Takes the times of the graphics processors' work from executed i860 code, if the configuration names a code
-    /// version.
+    /// Makes the graphics processors execute i860 code for the times of their work. The call has an effect only if the
+    /// configuration has a code version.
     ///
     /// Call this method before loading programs.
     pub fn run_code(&mut self) {
@@ -170,14 +166,14 @@ impl Machine {
         self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
     }
 
-    /// Discards time stamps of stages, region arrivals and swaps before an instant, to save memory. No simulated time
-    /// changes.
+    /// Discards time stamps of stages, region arrivals and swaps before an instant, to save memory. The call changes no
+    /// simulated time.
     pub fn discard_before(&mut self, instant: Time) {
         let Record { observation, displays, .. } = &mut self.record;
         observation.discard_before(instant, |period| displays[0].tick(period));
     }
 
-    /// Returns the boards and everything observed so far.
+    /// Returns the boards and all observations so far.
     #[must_use]
     pub const fn record(&self) -> &Record {
         &self.record
@@ -226,7 +222,8 @@ impl Machine {
         self.processors[usize::from(node.0)].load(level, program);
     }
 
-    /// Adds a host line to the first display, which bypasses the ring. Call this method before [`Machine::switch_on`].
+    /// Adds a host line to the first display. A host line bypasses the ring. Call this method before
+    /// [`Machine::switch_on`].
     pub fn plug_host_line(&mut self, line: Box<dyn HostLine>) {
         self.host_lines.push(line);
     }
@@ -267,7 +264,7 @@ impl Machine {
     ///
     /// # Errors
     ///
-    /// [`RunError`] of this event or of an earlier one. A machine that has failed handles no more events.
+    /// Returns the [`RunError`] of this event or of an earlier event. A machine that has failed handles no more events.
     pub fn step_before(&mut self, end: Time) -> Result<Option<Time>, RunError> {
         let taken = self.takes_event_before(end);
         self.failure.clone().map_or(Ok(taken), Err)
@@ -312,7 +309,7 @@ impl Machine {
     fn edge(&mut self, now: Time) {
         (0..self.processors.len()).for_each(|board| self.gp_event(now, board, GpEvent::Poll));
         self.ring_event(now, RingEvent::Arbitrate);
-        self.queue.schedule(now + cycle(), Phase::Work, Event::Edge);
+        self.queue.schedule(now + self.record.config.ring.signal(), Phase::Work, Event::Edge);
     }
 
     /// Handles a display's clock tick. The first display's tick also signals a retrace to the first graphics processor.
@@ -326,8 +323,8 @@ impl Machine {
         }
     }
 
-    /// Detects a deadlock: programs wait, [`DEADLOCK_TICKS`] ticks passed without another event, and no work is
-    /// pending.
+    /// Detects a deadlock. In a deadlock, programs wait, [`DEADLOCK_TICKS`] ticks have passed without another event,
+    /// and no work is pending.
     ///
     /// Pending work is checked because one task of a board may take longer than [`DEADLOCK_TICKS`] ticks.
     fn watch(&mut self, now: Time) {
@@ -357,22 +354,22 @@ impl Machine {
 
     /// Returns true if all pending events belong to displays or to the boards' clock.
     ///
-    /// The next tick of a display may still wake a program.
+    /// The next tick of a display can still end the wait of a program.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.queue.pending().all(Event::is_of_displays)
     }
 
-    /// Returns the boards that wait, with the condition and the board that each one waits for.
+    /// Returns the waiting boards. Each entry has the condition of the wait, and the board that must act first.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let Record { ports, renderers, ring, .. } = &self.record;
-        // Programs: a program that waits for a message does not state who sends the message.
+        // Programs. A program that waits for a message does not state the sender of the message.
         let processors = self.processors.iter().enumerate().filter_map(|(port, processor)| {
             let waits_for = processor.blocked()?.to_owned();
             Some(Blocked { board: Board::of_processor(port), waits_on: None, waits_for })
         });
-        // Renderers that a copy stops.
+        // Renderers that wait for the end of a copy.
         let renderers = renderers.iter().enumerate().filter_map(|(number, renderer)| {
             let CopyTarget { frame_buffer, region, .. } = renderer.blocked()?;
             let waits_for = format!("frame buffer at node {} to take region {}", frame_buffer.0, region.0);
@@ -483,7 +480,7 @@ impl Machine {
         if let Some(fault) = processor.fault().cloned() {
             self.failure = Some(RunError::Fault { board: Board::of_processor(board), time: now, fault });
         }
-        // Record the time stamps that its programs have set.
+        // Record the time stamps that the board's programs have set.
         let Record { hash, observation, .. } = &mut self.record;
         processor.drain_marks(|mark| {
             hash.record(mark.time, &mark_facts(&mark));
@@ -503,7 +500,7 @@ impl Machine {
         }
         schedule_own(queue, context, |event| Event::Renderer(board, event));
         let destination = record.ports.renderers[board];
-        // Schedule its answers to the ring: acceptance of a message, or a region to send.
+        // Schedule the board's answers to the ring: acceptance of a message, or a region to send.
         for (order, (time, output)) in (0..).zip(context.drain_outputs()) {
             let event = match output {
                 RendererOutput::Accept { last_word_at } => RingEvent::Accept { destination, last_word_at },

@@ -1,4 +1,4 @@
-//! Observations of a run, and the history of each picture derived from them.
+//! Observations of a run, and the history of each picture that follows from the observations.
 
 use crate::traffic::Traffic;
 use pxpl5_gp::{Mark, Stage, StageEdge};
@@ -28,7 +28,8 @@ impl Arrival {
     }
 }
 
-/// A change of the visible buffer of a double-buffered display, at the start of a display period.
+/// A change of the visible buffer of a double-buffered display. The change takes place at the start of a display
+/// period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Swap {
     /// The surface whose visible buffer changes.
@@ -39,11 +40,11 @@ pub struct Swap {
     pub number: u64,
     /// The display period at whose start the swap takes effect.
     pub tick: PeriodNumber,
-    /// The buffer shown from now on. It may be the same as before.
+    /// The buffer shown from this swap on. It can be the buffer that was shown before.
     pub buffer: u8,
 }
 
-/// A picture, or a part of it, that a double-buffered port has shown.
+/// A picture, or a part of a picture, that a double-buffered port has shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
     /// Number of the picture, as counted by its pipeline.
@@ -77,13 +78,14 @@ pub struct DiscardedSummary {
     /// Time stamps of stages, arrivals and swaps before this instant were discarded. The last swap of each port was
     /// kept.
     pub before: Time,
-    /// Period of the first swap in the whole run.
+    /// Period of the first swap in the whole run, including discarded swaps.
     pub first_swap: Option<PeriodNumber>,
-    /// Largest number of regions in memory for one picture at the times when observations were discarded.
+    /// Largest number of regions of one picture that were in memory when observations were discarded.
     pub most_regions: u32,
 }
 
-/// One stage of a picture on one surface, from the time the first board begins to the time the last board ends.
+/// One stage of a picture on one surface, from the time at which the first board begins to the time at which the last
+/// board ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageSpan {
     /// Number of the picture that the boards worked on, as counted by its pipeline.
@@ -137,7 +139,7 @@ impl Observation {
     /// Returns the frames that all of the first `surfaces` surfaces have shown. The key is the number of swaps before
     /// the frame.
     ///
-    /// The value is the period of the latest of the surfaces' swaps to this frame. Frames with discarded swaps are
+    /// The value is the period of the latest swap to this frame, over all surfaces. Frames with discarded swaps are
     /// missing.
     #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
@@ -185,7 +187,7 @@ impl Observation {
         self.marks.retain(|mark| mark.time >= instant);
         self.arrivals.retain(|arrival| arrival.last_part_at >= instant);
         self.drawn.retain(|(_, region)| region.copy_at >= instant);
-        // Keep the last old swap of each port: it tells which buffer is visible.
+        // Keep the last old swap of each port, because this swap determines the visible buffer.
         let first_swap = self.first_swap();
         let mut last: BTreeMap<NodeId, u64> = BTreeMap::new();
         let is_old = |swap: &Swap| tick(swap.tick) < instant;
@@ -193,7 +195,7 @@ impl Observation {
             last.entry(swap.port).and_modify(|last| *last = swap.number.max(*last)).or_insert(swap.number);
         }
         self.swaps.retain(|swap| !is_old(swap) || last[&swap.port] == swap.number);
-        // Keep capacity for twice the records in memory, because a run that discards regularly soon needs the space
+        // Keep capacity for twice the number of records. A run that discards records regularly soon needs the space
         // again.
         self.marks.shrink_to(2 * self.marks.len());
         self.arrivals.shrink_to(2 * self.arrivals.len());
@@ -207,7 +209,7 @@ impl Observation {
     }
 }
 
-/// A region that arrived after its deadline.
+/// A region that arrived after its deadline, the instant from which the display needs its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct LateRegion {
     /// The display period for which the region was drawn. For NTSC, a period is one field.
@@ -247,8 +249,8 @@ mod tests {
         let mut observation = stereo();
         let all = observation.frames(2);
         assert!(all.iter().all(|(number, tick)| tick.0 == 2 * number + 1) && all.len() == 20);
-        // This instant lies between the swaps of both eyes for frame 7. The first eye's swap is the last one before it
-        // and is kept.
+        // This instant lies between the swaps of both eyes for frame 7. The first eye's swap is the last swap before
+        // the instant, so the swap is kept.
         observation.discard_before(Time(1_450), tick);
         let left = observation.frames(2);
         assert_eq!(left, all.into_iter().filter(|(number, _)| *number >= 7).collect());

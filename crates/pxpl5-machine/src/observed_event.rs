@@ -63,7 +63,7 @@ pub enum ObservedKind {
     Message {
         /// The board that receives the message.
         to: Board,
-        /// Length in words of 32 bits, including the header.
+        /// Length of the message in words of 32 bits, without the overhead of the ring.
         words: u32,
         /// Time at which the receiver finished taking the last word.
         end: Time,
@@ -107,8 +107,8 @@ impl fmt::Display for ObservedKind {
 impl Record {
     /// Returns all observed events in memory, in the order of time.
     ///
-    /// These are stages of programs, regions that renderers copied, regions that arrived at displays, and swaps. If
-    /// traffic was recorded, ring messages are included. The ports of boards are replaced by the boards' names.
+    /// The events are stages of programs, regions that renderers copied, regions that arrived at displays, and swaps.
+    /// If traffic was recorded, the list also has the ring messages. Boards have their names instead of their ports.
     #[must_use]
     pub fn observed_events(&self) -> Vec<ObservedEvent> {
         let observed = self.observation();

@@ -1,4 +1,5 @@
-//! Interface for computing pixels during a run. The caller supplies a worker. The computation takes no simulated time.
+//! Interface for computing pixels during a run. The caller provides a worker for this purpose. The computation takes no
+//! simulated time.
 
 use pxpl5_wire::PixelSource;
 use std::fmt::Debug;

@@ -100,9 +100,9 @@ impl MachineConfig {
         Ok(Self::from_preset(preset))
     }
 
-    /// Returns the machine with times of primitives computed from its i860 code, instead of published or fitted times.
+    /// Returns the machine with the times of its i860 code for primitives, instead of published or fitted times.
     ///
-    /// `of` names the use of the code. A machine without code takes the times of compiled code.
+    /// `of` is the pipeline that uses the code. A machine without a code version gets the times of compiled code.
     #[must_use]
     pub fn with_times_of_code(self, of: CodeUse) -> Self {
         let gp = self.gp.of_code(self.code.unwrap_or(CodeVersion::Compiled), of);

@@ -60,7 +60,7 @@ impl Record {
         &self.displays
     }
 
-    /// Returns the first display. Pipelines draw for it, and its clock defines the periods of a run.
+    /// Returns the first display. Pipelines draw for this display, and its clock defines the periods of a run.
     ///
     /// # Panics
     ///

@@ -1,11 +1,11 @@
 //! Optimizations of the simulator that change no result.
 
-/// An optimization of the simulator. An experiment can disable each one (`Experiment::without`).
+/// An optimization of the simulator. An experiment can disable each optimization (`Experiment::without`).
 ///
-/// No optimization changes a time or a visible pixel: `tests/savings.rs` repeats runs with each one disabled. `cargo
-/// bench --bench savings` measures the speed-ups.
+/// No optimization changes a time or a visible pixel. The test `tests/savings.rs` repeats runs with each optimization
+/// disabled. `cargo bench --bench savings` measures the speed-ups.
 ///
-/// Unread pixels are skipped by a separate setting, `Pixels` of the experiment.
+/// A separate setting of the experiment, `Pixels`, skips the computation of pixels that no reader needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Optimization {
     /// Boards sleep until their next event.
@@ -17,14 +17,14 @@ pub enum Optimization {
     /// The ring computes the end of a message when it grants the channel. If disabled, every word on every channel
     /// causes an event.
     Transfers,
-    /// A region without primitives is drawn once. Its pixels are reused while the region's other commands stay the
-    /// same.
+    /// The pixels of a region without primitives are computed once. They are reused while the other commands of the
+    /// region stay the same.
     ///
     /// Firmware of Slats also sends triangles to regions that they do not touch. Such triangles are skipped when pixels
-    /// are computed. If disabled, every region and triangle is drawn.
+    /// are computed. If disabled, the pixels of every region and triangle are computed.
     EmptyRegions,
-    /// Repeated code whose instructions and data are all in the caches takes the clocks counted at an earlier execution
-    /// (cycle level).
+    /// At the cycle level, the clocks of repeated code are reused from an earlier execution. The reuse requires that
+    /// all instructions and data of the code are in the caches.
     ///
     /// If disabled, the i860s count every clock.
     RepeatedCode,

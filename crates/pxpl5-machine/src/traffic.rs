@@ -11,7 +11,7 @@ pub struct Transfer {
     pub source: NodeId,
     /// Port of the receiver.
     pub destination: NodeId,
-    /// Length in words of 32 bits, including the header.
+    /// Length of the message in words of 32 bits, without the overhead of the ring.
     pub words: u32,
     /// Arrival of the first word at the receiver.
     pub begin: Time,
@@ -22,15 +22,15 @@ pub struct Transfer {
 /// Messages, channel use and FIFO changes recorded during a run.
 #[derive(Clone, Debug, Default)]
 pub struct Traffic {
-    /// Messages, in the order in which their receivers finished taking them.
+    /// Messages, in the order of their `end` times.
     pub transfers: Vec<Transfer>,
-    /// Number of occupied channels after each change. A channel counts as occupied during overhead and stalls too.
+    /// Number of occupied channels after each change. A channel also counts as occupied during overhead and stalls.
     pub busy_channels: Vec<(Time, u32)>,
     /// Changes of the renderers' FIFOs: index of the renderer, time, and change in words.
     ///
     /// A complete command adds its words. A command that starts removes its words.
     pub fifo_changes: Vec<(usize, Time, i64)>,
-    /// Messages on the way to a renderer that has not accepted them yet, by destination port.
+    /// Messages that a renderer has not yet accepted, by destination port.
     announced: BTreeMap<NodeId, Transfer>,
 }
 
@@ -55,8 +55,8 @@ impl Traffic {
         self.transfers.len() + self.busy_channels.len() + self.fifo_changes.len()
     }
 
-    /// Discards messages and changes before an instant. The first remaining entries give the channel use and FIFO
-    /// levels at that instant.
+    /// Discards messages and changes before an instant. The first remaining entries have the channel use and the FIFO
+    /// levels at this instant.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         self.transfers.retain(|transfer| transfer.end >= instant);
         let last = self.busy_channels.partition_point(|(time, _)| *time < instant).saturating_sub(1);

@@ -29,7 +29,7 @@ fn depths(width: u32, height: u32) -> DepthPicture {
     })
 }
 
-/// Moves pictures by what a head turns and steps in 50 ms at 100 degrees and 1 m per second.
+/// Moves pictures to the pose of a head after 50 ms of motion at 100 degrees per second and 1 m per second.
 fn fields(criterion: &mut Criterion) {
     let now = Pose {
         position: DVec3::new(0.05, 0.0, -0.02),

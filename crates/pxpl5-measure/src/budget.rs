@@ -9,27 +9,27 @@ use std::collections::BTreeMap;
 /// The stages add up to the total. All means are NaN (null in JSON) if no picture was measured.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Budget {
-    /// From the measurement of the pose until its report reaches the host: tracker, cable and kernel of the host.
+    /// Time from the measurement of the pose until its report reaches the host: tracker, cable and kernel of the host.
     #[serde(deserialize_with = "number_or_nan")]
     pub tracking_ms: f64,
-    /// From the arrival of the tracker's report until the pipeline uses it.
+    /// Time from the arrival of the tracker's report until the pipeline uses the report.
     #[serde(deserialize_with = "number_or_nan")]
     pub waiting_ms: f64,
-    /// From the use of the report to the start of TRANSFORM: link of the host, EDIT, and the wait for TRANSFORM.
+    /// Time from the use of the report to the start of TRANSFORM: link of the host, EDIT, and the wait for TRANSFORM.
     #[serde(deserialize_with = "number_or_nan")]
     pub sending_ms: f64,
-    /// From the start of TRANSFORM until the frame buffer holds the picture: TRANSFORM, RENDER, COPY.
+    /// Time from the start of TRANSFORM until the frame buffer holds the picture: TRANSFORM, RENDER and COPY.
     #[serde(deserialize_with = "number_or_nan")]
     pub drawing_ms: f64,
-    /// From the end of COPY until the picture is shown: wait for the retrace or for the display's beam.
+    /// Time from the end of COPY until the picture is shown: the wait for the retrace or for the display's beam.
     ///
-    /// Negative if the last pixels arrive after the first pixels are shown.
+    /// The time is negative if the last pixels arrive after the first pixels are shown.
     #[serde(deserialize_with = "number_or_nan")]
     pub showing_ms: f64,
-    /// From the time the picture is shown until the display's beam reaches the middle of the picture.
+    /// Time from the start of the display of the picture until the display's beam reaches the middle of the picture.
     #[serde(deserialize_with = "number_or_nan")]
     pub scanning_ms: f64,
-    /// From the measurement of the pose until the middle of the picture is lit.
+    /// Time from the measurement of the pose until the middle of the picture is lit.
     #[serde(deserialize_with = "number_or_nan")]
     pub total_ms: f64,
     /// Number of pictures over which the means are computed.
@@ -38,7 +38,7 @@ pub struct Budget {
 
 impl Default for Budget {
     fn default() -> Self {
-        BudgetSum::default().said()
+        BudgetSum::default().result()
     }
 }
 
@@ -67,8 +67,8 @@ impl Budget {
 
 /// Returns the sum of two means that the papers add, in milliseconds. `None` if no picture was measured.
 ///
-/// The first is the time from the measurement of the pose until its report reaches the host. The second is the time from
-/// the start of TRANSFORM until the picture is shown, over both eyes. The sum leaves out three stages of
+/// The first mean is the time from the measurement of the pose until its report reaches the host. The second mean is
+/// the time from the start of TRANSFORM until the picture is shown, over both eyes. The sum leaves out three stages of
 /// [`Budget::total_ms`]: the wait for the pipeline, SEND and EDIT, and the scan to the middle of the picture.
 #[must_use]
 pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
@@ -79,7 +79,8 @@ pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
     Some(tracking_ms + rendering_ms).filter(|sum| sum.is_finite())
 }
 
-/// Sums of the stages over complete pictures in the result window that have a measured pose, in milliseconds.
+/// Sums of the time of each latency stage, in milliseconds. The sums cover the complete pictures in the result window
+/// that have a measured pose.
 #[derive(Debug, Default)]
 pub(crate) struct BudgetSum {
     /// First period of the result window. `None` while the window is unknown.
@@ -92,10 +93,11 @@ pub(crate) struct BudgetSum {
     poses: Poses,
 }
 
-/// Number of poses kept from before the newest picture. A slow display memory shows older views than a fast one.
+/// Number of poses that are kept from before the newest picture. They are needed because a slow display memory shows
+/// older views than a fast display memory.
 const OLDER_POSES: usize = 64;
 
-/// Sampled views by their numbers.
+/// Poses of the head that a pipeline requested, by the numbers of their views.
 pub(crate) type Poses = BTreeMap<ViewNumber, SampledPose>;
 
 pub(crate) const STAGES: usize = 6;
@@ -120,8 +122,8 @@ impl BudgetSum {
         }
     }
 
-    /// Returns the mean of each stage.
-    pub(crate) fn said(self) -> Budget {
+    /// Returns the mean time of each latency stage.
+    pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
         let means = self.stages_ms.map(|samples| samples.statistics().mean);
         let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms] = means;
@@ -145,7 +147,8 @@ pub(crate) fn of_pictures<'a>(
     complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 
-/// Returns the durations of a picture's stages from the measured pose until the picture is lit, in milliseconds.
+/// Returns the durations of a picture's latency stages, from the measurement of the pose until the picture is lit, in
+/// milliseconds.
 fn of_picture(run: &FinalResults<'_>, times: &PictureTimes, sampled: &SampledPose) -> Option<[f64; STAGES]> {
     let light = run.pipeline.light(run.record, times);
     let taken_at = sampled.known.max(sampled.arrived_at?);

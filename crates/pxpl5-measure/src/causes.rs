@@ -17,7 +17,7 @@ pub struct ErrorCauses {
     pub whole_px: f64,
     /// Contribution of each cause in pixels, in the order of [`Cause::ALL`].
     pub parts_px: Vec<ErrorPart>,
-    /// Difference between `whole_px` and the sum of the parts, in pixels.
+    /// Interaction of the causes: `whole_px` minus the sum of the contributions `parts_px`, in pixels.
     pub interaction_px: f64,
 }
 
@@ -38,7 +38,7 @@ impl ErrorCauses {
     #[must_use]
     pub fn of(outcome: &Outcome, showing: Showing, whole: &PixelErrors) -> Option<Self> {
         outcome.head()?;
-        if whole.judged == 0 {
+        if whole.evaluated == 0 {
             return None;
         }
         let whole_px = whole.pixels.mean;

@@ -1,6 +1,6 @@
 //! Moves a picture with depth to another pose. The picture's pixels are a mesh, whose cells are drawn from the new pose.
 //!
-//! No crate for warping images is used. `imageproc` maps pictures by one homography, and knows neither depth nor the
+//! No crate for warping images is used. `imageproc` maps pictures by one homography, and supports neither depth nor the
 //! rows of a field.
 
 use crate::reproject::direction;
@@ -18,7 +18,8 @@ pub struct DepthPicture {
     height: u32,
     /// Depth along the axis of the view in metres, row after row.
     depths: Vec<f32>,
-    /// Smallest and largest depth that is not 0.
+    /// Smallest and largest depth of the picture's pixels in metres, except depths of 0 (rows that do not belong to the
+    /// field).
     range: (f32, f32),
 }
 
@@ -39,22 +40,25 @@ impl DepthPicture {
     }
 }
 
-/// Largest ratio of the depths of two neighbours that belong to one surface. Between other neighbours, the picture has a
-/// gap behind which content is hidden. Assumed, 1.02 to 1.2: a floor that is seen under 5 degrees changes by 1.03.
+/// Largest ratio of the depths of two neighbours that belong to one surface. Between other neighbours, the surface has
+/// an edge, and the nearer surface hides content of the farther surface. Assumed, 1.02 to 1.2: the depth of a floor
+/// that is seen at a grazing angle of 5 degrees changes by a factor of 1.03 from row to row.
 const SAME_SURFACE: f32 = 1.1;
 
-/// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that the
-/// compiler computes several pixels at once.
+/// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that vector
+/// instructions can compute several pixels together.
 #[derive(Debug, Default)]
 struct SeenRow {
-    /// Positions on the screen, in pixels and in rows of the field.
+    /// Positions on the screen, horizontally in pixels and vertically in rows of the field.
     x: Vec<f32>,
     row: Vec<f32>,
-    /// Depth from the new pose.
+    /// Depth of each pixel's content, seen from the new pose.
     depth: Vec<f32>,
-    /// Depth from the old pose, or infinity if the point is behind the eye of the new pose.
+    /// Depth of each pixel's content, seen from the old pose. Infinity if the content is behind the eye of the new
+    /// pose.
     old_depth: Vec<f32>,
-    /// First column and first row at or after the position, within the limits of the target.
+    /// First column and first row of the screen at or after each position, within the limits of the rows that are
+    /// drawn.
     next_column: Vec<i32>,
     next_row: Vec<i32>,
 }
@@ -78,7 +82,8 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Computes the smaller and the larger number for each pair of pixels, one above the other.
+    /// Computes these ranges for each pair of pixels, one above the other: the smaller and the larger of their two
+    /// numbers.
     fn join(&mut self, above: &SeenRow, below: &SeenRow) {
         smaller(&mut self.near, &above.old_depth, &below.old_depth);
         larger(&mut self.far, &above.old_depth, &below.old_depth);
@@ -105,13 +110,13 @@ pub(crate) struct Drawing<'a> {
     pub(crate) picture: &'a RgbImage,
     pub(crate) depths: &'a DepthPicture,
     pub(crate) view: &'a HmdView,
-    /// Rows that the picture has.
+    /// Rows of the screen that the picture contains: all rows, or the rows of one field.
     pub(crate) rows: Rows,
     pub(crate) drawn_for: &'a Pose,
 }
 
 impl Drawing<'_> {
-    /// Writes the pixels of some rows of the field, seen from another pose. `targets` counts rows of the field.
+    /// Writes the pixels of the rows `targets` of the field, seen from another pose. Rows are counted within the field.
     ///
     /// Pixels without content become black. Returns the number of these pixels.
     pub(crate) fn move_rows(&self, now: &Pose, targets: Range<u32>, out: &mut RgbImage) -> u64 {
@@ -178,15 +183,16 @@ impl Drawing<'_> {
 
     /// Returns the rows of the field whose pixels can lie in some rows of the moved field.
     ///
-    /// The sources of a target row lie between the rows that its ends have at the smallest and the largest depth. The
-    /// sources of points between these depths lie between these rows, because projections keep lines straight.
+    /// For both ends of a target row, the source rows at the smallest and at the largest depth are computed. The
+    /// sources of all points of the target row lie between these rows, because projections keep lines straight.
     fn source_rows(&self, now: &Pose, targets: &Range<u32>) -> Range<u32> {
         let all = 0..self.rows.count(self.picture.height());
         if *targets == all {
             return all;
         }
-        // The depths are those from the old pose. Those from the new pose differ by the step and the turn of the head. A
-        // turn by an angle changes the depth in a corner of the view by a factor of up to 1 + angle * (1 + tangent).
+        // The depths are seen from the old pose. Depths that are seen from the new pose differ by the step and the turn
+        // of the head. A turn by an angle changes the depth in a corner of the view by a factor of up to 1 + angle * (1
+        // + tangent).
         let step = now.position.distance(self.drawn_for.position);
         let tangent = self.view.centre_px().length() / self.view.focal_px();
         let factor = 1.0 + now.orientation.angle_between(self.drawn_for.orientation) * (1.0 + tangent);
@@ -215,9 +221,9 @@ impl Drawing<'_> {
 struct Target {
     width: u32,
     rows: Range<u32>,
-    /// Depth of the content.
+    /// Depth of the nearest content found so far, for each pixel.
     depths: Vec<f32>,
-    /// Source of the content: column plus width times row of the field.
+    /// Source pixel of the nearest content found so far, for each pixel: column plus width times row of the field.
     sources: Vec<u32>,
 }
 
@@ -232,7 +238,7 @@ impl Target {
         Self { width, rows, depths: vec![f32::INFINITY; size], sources: vec![NOTHING; size] }
     }
 
-    /// Draws the cells between two rows of the picture, of which `upper_row` is the upper one.
+    /// Draws the cells of the mesh between the row `upper_row` of the picture and the next lower row.
     fn draw_cells(&mut self, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
         let count = pairs.near.len();
         let first = upper_row * self.width;
@@ -251,8 +257,9 @@ impl Target {
                 }
                 continue;
             }
-            // The cell is the box around its corners, because views of one head a few milliseconds apart roll by little.
-            // It covers pixels from its left and upper sides up to, and without, its right and lower sides.
+            // The cell is the box around its corners, because views of one head a few milliseconds apart roll by
+            // little. The cell covers pixels from its left and upper sides up to, and without, its right and lower
+            // sides.
             let columns = left[x - 1].min(left[x])..right[x - 1].max(right[x]);
             for row in top[x - 1].min(top[x])..bottom[x - 1].max(bottom[x]) {
                 for column in columns.clone() {
@@ -266,7 +273,8 @@ impl Target {
         }
     }
 
-    /// Draws a pixel that a cell covers. The content of the nearest corner is what a device without filters shows.
+    /// Draws a pixel that a cell of the mesh covers. The pixel gets the content of the nearest corner of the cell, as
+    /// in a device without filters.
     #[inline]
     fn draw_covered(&mut self, [column, row]: [i32; 2], [above, below]: [&SeenRow; 2], x: usize, first: u32) {
         let [at_column, at_row] = [column as f32, row as f32];
@@ -286,7 +294,7 @@ impl Target {
         }
     }
 
-    /// Draws the pixel in which a pixel of the picture has its middle.
+    /// Draws the pixel that is nearest to the new position of a pixel of the picture.
     fn draw_pixel(&mut self, seen: &SeenRow, row: u32, x: usize) {
         if seen.old_depth[x] == f32::INFINITY {
             return;
@@ -309,7 +317,7 @@ impl Target {
         }
     }
 
-    /// Copies the colours of the sources. Returns the number of pixels without a source.
+    /// Copies the colour of each pixel's source to the moved picture. Returns the number of pixels without a source.
     fn copy(&self, drawing: &Drawing<'_>, out: &mut RgbImage) -> u64 {
         let width = self.width as usize;
         let pixels = drawing.picture.as_raw();
@@ -332,9 +340,11 @@ impl Target {
     }
 }
 
-/// Returns the first whole number at or after a position, within two limits that are not negative.
+/// Returns the first whole number at or after a position, clamped to the range from `least` to `greatest`. Neither
+/// limit is negative.
 ///
-/// The function `ceil` of the standard library is a call on processors without SSE 4.1.
+/// The function `ceil` of the standard library is not used, because `ceil` is a function call on processors without SSE
+/// 4.1.
 #[inline]
 fn next(position: f32, least: f32, greatest: f32) -> i32 {
     let inside = if position > least { position } else { least };
@@ -345,8 +355,8 @@ fn next(position: f32, least: f32, greatest: f32) -> i32 {
 
 /// Moves a whole picture from the pose for which it was drawn to another pose, by the depths of its pixels.
 ///
-/// Each pixel of the result is the nearest content that the picture has for it. Pixels without content are black: content
-/// beyond the edge of the picture, and content that nearer objects hid. Returns the result and the number of black pixels,
+/// Each pixel of the result shows the nearest content that falls on this pixel. A pixel is black if its content lies
+/// beyond the edge of the picture, or was hidden by nearer objects. Returns the result and the number of black pixels,
 /// or `None` if the picture, the depths and the view differ in size.
 #[must_use]
 pub fn reproject_with_depth(
@@ -464,7 +474,8 @@ mod tests {
         }
     }
 
-    /// An approach magnifies. A floor seen from above is slanted. Neither may open cracks.
+    /// Checks a picture that grows because the head approaches, and a slanted floor that is seen from above. Neither
+    /// picture may have cracks.
     #[test]
     fn surfaces_that_grow_or_lean_have_no_cracks() {
         let floor = |_: u32, y: u32| 1.6 * HmdView::ntsc().focal_px() as f32 / (y as f32 + 60.0);

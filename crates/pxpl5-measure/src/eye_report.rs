@@ -6,7 +6,8 @@ use pxpl5_run::{KEPT_SAMPLES, Reprojection};
 use pxpl5_sim::Time;
 use serde::Serialize;
 
-/// Results in addition to the pixel errors. They exist if pixels shine for some time, or if a device moves pictures.
+/// Results in addition to the pixel errors. These results exist if pixels shine for some time, or if a device moves
+/// pictures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EyeReport {
     /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels
@@ -19,7 +20,7 @@ pub struct EyeReport {
 /// Results of a device that moves pictures to the newest pose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReprojectionReport {
-    /// Setting of the device.
+    /// Setting of the device: the method of moving, the part of a scan that gets one pose, and the latency.
     pub device: Reprojection,
     /// Number of pixels that the device computes per second for one eye.
     pub pixels_per_s: f64,
@@ -27,7 +28,7 @@ pub struct ReprojectionReport {
     pub poses_per_s: f64,
     /// Age of the newest pose when the pixel is lit: time since the measurement of the pose, in milliseconds.
     pub pose_age_ms: Percentiles,
-    /// Number of pixels for which the evaluation checked if the picture has content for them.
+    /// Number of checked pixels. For each of these pixels, the evaluation searched the picture for the pixel's content.
     pub looked_at: u64,
     /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was checked.
     pub empty_share: Option<f64>,
@@ -36,7 +37,7 @@ pub struct ReprojectionReport {
     pub disoccluded_share: Option<f64>,
 }
 
-/// The setting of a device, and the rates that follow from the setting and the display.
+/// A device that moves pictures: its setting, and the pixels and poses per second that it needs on the display.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Device {
     pub(crate) setting: Reprojection,
@@ -45,7 +46,7 @@ pub(crate) struct Device {
     pub(crate) has_depth: bool,
 }
 
-/// Sums for an [`EyeReport`].
+/// Sums from which an [`EyeReport`] is computed.
 #[derive(Debug)]
 pub(crate) struct EyeSum {
     smear: Option<Distribution>,
@@ -57,8 +58,8 @@ pub(crate) struct EyeSum {
 }
 
 impl EyeSum {
-    /// Returns empty sums that keep up to `limit` values of each kind. `smears` is true if pixels are lit for more than
-    /// an instant.
+    /// Creates empty sums that keep up to `limit` smears and pose ages individually. `smears` is true if pixels are lit
+    /// for more than an instant.
     pub(crate) fn keeping(limit: usize, smears: bool, device: Option<Device>) -> Self {
         // The limit is the same in every run. Beyond the limit, numbers are summed in another way, which can change the
         // last digit of a mean.
@@ -67,7 +68,7 @@ impl EyeSum {
         Self { smear, device, age_ms: Distribution::keeping(limit), looked_at: 0, beyond: 0, hidden: 0 }
     }
 
-    /// Adds the distance that a pixel's content moves while the pixel is lit.
+    /// Adds a smear: the distance in pixels that a pixel's content moves while the pixel is lit.
     pub(crate) fn smeared(&mut self, px: f64) {
         self.smear.iter_mut().for_each(|smear| smear.push(px));
     }
@@ -79,15 +80,16 @@ impl EyeSum {
         }
     }
 
-    /// Adds a pixel for which the evaluation checked if the picture has content.
+    /// Adds a checked pixel, for whose content the evaluation has searched the picture.
     pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
         self.looked_at += 1;
         self.beyond += u64::from(is_beyond);
         self.hidden += u64::from(is_hidden);
     }
 
-    /// Returns the results. `None` if pixels are lit for an instant only and no device moves pictures.
-    pub(crate) fn said(self) -> Option<EyeReport> {
+    /// Returns the report of the added values. `None` if pixels are lit for an instant only and no device moves
+    /// pictures.
+    pub(crate) fn result(self) -> Option<EyeReport> {
         let share = |count: u64| (self.looked_at > 0).then(|| count as f64 / self.looked_at as f64);
         let reprojection = self.device.map(|device| ReprojectionReport {
             device: device.setting,

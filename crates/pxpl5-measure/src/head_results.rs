@@ -1,18 +1,19 @@
-//! Results that concern the head: from the streaming observer, or else computed from the records still in memory.
+//! Results that concern the head. They come from the streaming observer, or else from the records of the run that are
+//! still in memory.
 
 use crate::budget::{Budget, BudgetSum, of_pictures, poses};
-use crate::error_sum::ErrorSum;
+use crate::error_observer::ErrorSum;
 use crate::errors::{PixelErrors, Showing};
 use crate::eye_report::EyeReport;
-use crate::head_sum::HeadResults;
-use crate::step_sum::{StepSum, Steps};
-use crate::turn_sum::{RotationLatencySum, Turns};
+use crate::head_observer::HeadResults;
+use crate::step_observer::{StepSum, Steps};
+use crate::turn_observer::{RotationLatencySum, Turns};
 use pxpl5_run::{Cause, Outcome};
 
 impl HeadResults {
     /// Returns the results of the streaming observer, if the run had one.
     fn from_observer(outcome: &Outcome) -> Option<&Self> {
-        outcome.said()
+        outcome.observed()
     }
 }
 
@@ -27,7 +28,7 @@ const MISSING_RESULTS: &str = "latencies from the head to light and errors in pi
     streaming observer (Experiment::observed_by; or keep all records with Keep::Everything)";
 
 impl PixelErrors {
-    /// Returns the errors of a run whose pictures are shown as drawn. Empty for a run without a head.
+    /// Returns the errors of a run whose pictures are shown as drawn. The result is empty for a run without a head.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         Self::shown(outcome, Showing::Plain)
@@ -36,13 +37,13 @@ impl PixelErrors {
     /// Returns the errors of a run in the display mode `showing`.
     ///
     /// A run that discarded its records ([`Outcome::has_discarded_records`]) covers all periods only if
-    /// [`HeadSum`](crate::HeadSum) observed it and `showing` is the head's own display mode. Otherwise the result
+    /// [`HeadSum`](crate::HeadSum) observed the run and `showing` is the head's own display mode. Otherwise the result
     /// covers only the last periods.
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
         let said = HeadResults::from_observer(outcome).filter(|_| showing == head.head().raster().into());
-        said.map_or_else(|| judged(outcome, showing, None).0, |said| said.error.clone())
+        said.map_or_else(|| evaluated(outcome, showing, None).0, |said| said.error.clone())
     }
 
     /// Returns the errors that the run would have without one cause of error. All times stay the same.
@@ -50,32 +51,32 @@ impl PixelErrors {
     /// For a run that discarded its records, the result covers only the last periods.
     #[must_use]
     pub fn without(outcome: &Outcome, showing: Showing, cause: Cause) -> Self {
-        judged(outcome, showing, Some(cause)).0
+        evaluated(outcome, showing, Some(cause)).0
     }
 }
 
-fn judged(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (PixelErrors, Option<EyeReport>) {
+fn evaluated(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (PixelErrors, Option<EyeReport>) {
     let mut sum = ErrorSum::of(showing, without);
-    sum.take(&outcome.settled());
-    sum.said()
+    sum.take(&outcome.final_results());
+    sum.result()
 }
 
 impl EyeReport {
     /// Evaluates a run with a head in the display mode `showing`.
     ///
-    /// Returns `None` without a head. Returns `None` too for a display without persistence and without reprojection.
+    /// Returns `None` for a run without a head, and for a display without persistence and without reprojection.
     #[must_use]
     pub fn shown(outcome: &Outcome, showing: Showing) -> Option<Self> {
-        outcome.head().and_then(|_| judged(outcome, showing, None).1)
+        outcome.head().and_then(|_| evaluated(outcome, showing, None).1)
     }
 }
 
-/// Returns the pixel errors in the display mode of the head's display, and the results of the eye. Returns `None` for a
-/// run without a head.
+/// Returns the pixel errors in the display mode of the head's display, and the [`EyeReport`] if there is one. Returns
+/// `None` for a run without a head.
 pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
     let showing = outcome.head()?.head().raster().into();
     let said = HeadResults::from_observer(outcome).map(|said| (said.error.clone(), said.eye.clone()));
-    Some(said.unwrap_or_else(|| judged(outcome, showing, None)))
+    Some(said.unwrap_or_else(|| evaluated(outcome, showing, None)))
 }
 
 /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
@@ -85,21 +86,23 @@ pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
 }
 
 impl Budget {
-    /// Returns the mean time of each stage over the complete pictures in the result window whose pose was measured.
+    /// Returns the mean time of each stage of the latency, over the complete pictures in the result window whose pose
+    /// was measured.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         if let Some(said) = HeadResults::from_observer(outcome) {
             return said.end_to_end;
         }
         let mut sum = BudgetSum::default();
-        sum.take(&outcome.settled());
-        sum.said()
+        sum.take(&outcome.final_results());
+        sum.result()
     }
 
-    /// Returns the latency of each picture in memory, from the measured pose until the middle is lit, in milliseconds.
+    /// Returns the latency of each picture whose records are in memory, in milliseconds. The latency lasts from the
+    /// measurement of the pose until the middle of the picture is lit.
     #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
-        let run = outcome.settled();
+        let run = outcome.final_results();
         let stages = of_pictures(&run, &poses(&run), run.steady_pictures());
         stages.iter().map(|stages| stages.iter().sum()).collect()
     }
@@ -112,13 +115,13 @@ impl Turns {
             return said.turns.clone();
         }
         let mut sum = RotationLatencySum::default();
-        sum.take(&outcome.settled());
-        sum.said()
+        sum.take(&outcome.final_results());
+        sum.result()
     }
 }
 
 impl Steps {
-    /// Returns the latencies of a step of the head, for each display memory of a run.
+    /// Returns the latencies from a step (translation) of the head until the content of each display memory is lit.
     ///
     /// The result is empty if the run discarded its records without a streaming observer.
     pub(crate) fn of(outcome: &Outcome) -> Vec<Self> {
@@ -129,7 +132,7 @@ impl Steps {
             return Vec::new();
         }
         let mut sum = StepSum::default();
-        sum.take(&outcome.settled());
+        sum.take(&outcome.final_results());
         sum.result()
     }
 }

@@ -1,4 +1,4 @@
-//! Measurements of a run: latencies and their parts, errors in pixels, pictures, and a report of all of them.
+//! Measurements of a run: latencies and their parts, errors in pixels, pictures, and a report of all these results.
 //!
 //! | question | answer |
 //! |---|---|
@@ -21,12 +21,12 @@ mod critical_path;
 mod depth_warp;
 mod distribution;
 mod drawn;
-mod error_sum;
+mod error_observer;
 mod errors;
 mod eye_report;
 mod faces_report;
+mod head_observer;
 mod head_results;
-mod head_sum;
 mod latency;
 mod latency_curve;
 mod measured;
@@ -45,11 +45,11 @@ mod resource;
 mod rows;
 mod screen;
 mod shown;
-mod step_sum;
+mod step_observer;
 mod summary;
 mod too_heavy;
 mod trail;
-mod turn_sum;
+mod turn_observer;
 mod turned;
 mod utilisation;
 
@@ -60,8 +60,8 @@ pub use depth_warp::{DepthPicture, reproject_with_depth};
 pub use errors::{FieldMisregistration, PixelErrors, Showing};
 pub use eye_report::{EyeReport, ReprojectionReport};
 pub use faces_report::{FacesReport, MemoryReport};
+pub use head_observer::HeadSum;
 pub use head_results::pixel_errors;
-pub use head_sum::HeadSum;
 pub use latency::{LatencyPartStatistics, SurfaceStatistics, latency_by_surface, latency_parts};
 pub use latency_curve::LatencyCurve;
 pub use measured::Measured;
@@ -76,7 +76,7 @@ pub use reproject::reproject;
 pub use resource::Resource;
 pub use summary::summary;
 pub use too_heavy::TooHeavy;
-pub use turn_sum::RotationPart;
+pub use turn_observer::RotationPart;
 pub use utilisation::{
     GpUtilisation, PortShare, PortUtilisation, RendererUtilisation, RingUtilisation, Shares, Utilisation,
 };

@@ -29,7 +29,7 @@ pub trait Measured {
     /// Returns the latency parts of each complete picture in the result window whose records are in memory.
     fn latency_parts(&self) -> Vec<LatencyParts>;
 
-    /// Returns the latencies of both eyes and of the pair. Empty if the eyes share one TRANSFORM.
+    /// Returns the latencies of each eye and of the pair of eyes. Empty if the eyes share one TRANSFORM.
     fn latency_by_surface(&self) -> Vec<SurfaceStatistics>;
 
     /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.

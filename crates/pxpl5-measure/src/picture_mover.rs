@@ -22,7 +22,7 @@ pub(crate) struct PictureMover<'a> {
     evaluator: Evaluator,
     shown: Shown,
     setting: Reprojection,
-    /// The latest depths of a picture. Successive fields often show the same picture.
+    /// The depths that were computed last, kept because successive fields often show the same picture.
     latest: RefCell<Option<(Moment, Rows, Arc<DepthPicture>)>>,
 }
 
@@ -39,7 +39,7 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Writes the moved rows that a field lights. Rows without a drawn picture stay unchanged.
+    /// Writes the moved rows that a field lights. Rows that show no drawn picture stay unchanged.
     pub(crate) fn move_rows(&self, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
         let reprojector = self.reprojector(screen, field);
         if self.setting.by != Warp::Depth || !self.move_whole_rows(&reprojector, screen, field, out) {
@@ -47,7 +47,7 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns the newest poses for all parts of a field.
+    /// Returns the newest poses of the head for all parts of a field that one pose can move.
     fn reprojector(&self, screen: &RgbImage, field: PeriodNumber) -> Reprojector {
         let display = self.run.record.display();
         let mut reprojector = Reprojector::new(&self.head, self.setting, None);
@@ -57,7 +57,7 @@ impl<'a> PictureMover<'a> {
         reprojector
     }
 
-    /// Writes the moved rows of a field piece by piece, each from the picture that it shows.
+    /// Writes the moved rows of a field in pieces, because the pieces of a row can show different pictures.
     fn move_pieces(&self, reprojector: &Reprojector, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
         let display = self.run.record.display();
         for y in Rows::lit(display, field).of(screen.height()) {
@@ -67,8 +67,8 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns the ranges of pixels in a row that have one pose: one range per region, or single pixels if each column
-    /// has its own pose.
+    /// Returns ranges of pixels in a row, so that all pixels of a range move to one pose. A range covers a region, or a
+    /// single pixel if each column has its own pose.
     fn pieces(&self, display: &dyn Display, width: u32) -> impl Iterator<Item = Range<u32>> + use<> {
         let sideways = matches!(display.light().scan, Scan::Right | Scan::Left);
         let length = if sideways && self.setting.every == Every::Line { 1 } else { REGION_SIZE };
@@ -106,8 +106,8 @@ impl<'a> PictureMover<'a> {
         true
     }
 
-    /// Returns the moment for which all pixels of a field were drawn. `None` if they differ or a pixel shows no complete
-    /// picture.
+    /// Returns the moment for which all pixels of a field were drawn. Returns `None` if the pixels were drawn for
+    /// different moments, or if a pixel shows no complete picture.
     fn only_moment(&self, screen: &RgbImage, field: PeriodNumber) -> Option<Moment> {
         let display = self.run.record.display();
         let mut only: Option<Moment> = None;
@@ -125,7 +125,8 @@ impl<'a> PictureMover<'a> {
         only
     }
 
-    /// Returns the depths of a picture's rows. One ray for each pixel finds its depth, once for a picture.
+    /// Returns the depths of a picture's rows. The depth of each pixel comes from one ray, which is cast only once for
+    /// a picture.
     fn depths(&self, drawn_for: &Moment, size: [u32; 2], rows: Rows) -> Arc<DepthPicture> {
         let mut latest = self.latest.borrow_mut();
         if let Some((moment, of_rows, depths)) = &*latest
@@ -218,7 +219,7 @@ mod tests {
         let scene = Arc::new(builtin("gallery").expect("built in"));
         let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
         let outcome = experiment.fields(24).pixels(Pixels::Off).run().expect("it is small");
-        let run = outcome.settled();
+        let run = outcome.final_results();
         let places = |x: u32, y: u32| Rgb([(x >> 8) as u8 + 1 + 8 * (y >> 8) as u8, x as u8, y as u8]);
         let screen = RgbImage::from_fn(640, 480, places);
         let place = |pixel: &Rgb<u8>| {

@@ -43,7 +43,7 @@ pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbIm
     }
 }
 
-/// Returns the picture before a viewer at the end of a display period, with the rows shifted by `offsets` if given.
+/// Returns the picture that a viewer sees at the end of a display period, with the rows shifted by `offsets` if given.
 ///
 /// Returns a black picture for a surface that does not exist.
 #[must_use]

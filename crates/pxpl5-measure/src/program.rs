@@ -1,7 +1,7 @@
 //! Identity of the running program, for the origin of its outputs.
 //!
-//! A library does not know the commit from which it was built. A program that knows its commit states the commit once,
-//! before the first report, and all outputs of the process then name it.
+//! A library has no access to the commit from which it was built. Instead, a program states its own commit once, before
+//! the first report. All outputs of the process then contain this commit.
 
 use std::sync::OnceLock;
 

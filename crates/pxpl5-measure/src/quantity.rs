@@ -34,9 +34,9 @@ impl Eq for Quantity {}
 
 #[derive(Debug)]
 enum Value {
-    /// Computed from a summary, which every level of modelling provides.
+    /// The quantity is computed from a summary, which every level of modelling provides.
     OfSummary(fn(&Summary) -> f64),
-    /// Computed from a simulated run and its report.
+    /// The quantity is computed from a simulated run and its report.
     OfRun(fn(&Outcome, &Report) -> Option<f64>),
 }
 
@@ -125,7 +125,7 @@ pub static QUANTITIES: [Quantity; 57] = [
         |o, r| r.head.as_ref().and_then(|_| tracking_and_rendering_ms(o)),
     ),
     of_run("error_px.n", "evaluated pixels: those of error_px; only with a head.motion", |_, r| {
-        Some(r.head.as_ref()?.error.judged as f64)
+        Some(r.head.as_ref()?.error.evaluated as f64)
     }),
     of_run("error_px.mean", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.mean)),
     of_run("error_px.p50", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p50)),
@@ -212,7 +212,7 @@ impl Measure {
     }
 
     /// Returns the counts that every row of results needs: pictures due, pictures not shown, and evaluated pixels.
-    /// Without them, a mean over few pictures looks like a mean over all.
+    /// Without these counts, a mean over few pictures looks like a mean over all pictures.
     #[must_use]
     pub fn counts() -> Vec<Self> {
         let is_count = |q: &&Quantity| [Self::DUE, Self::NOT_SHOWN, Self::EVALUATED].contains(&q.name);
@@ -228,19 +228,20 @@ impl Measure {
     /// Name of the number of evaluated pixels.
     pub const EVALUATED: &'static str = "error_px.n";
 
-    /// Returns the name with the unit.
+    /// Returns the name of the quantity, which includes the unit.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         self.0.name
     }
 
-    /// Returns the description of the measured interval or count, in one sentence.
+    /// Returns the definition of the quantity: a description of the measured interval or count, in one sentence.
     #[must_use]
     pub const fn definition(&self) -> &'static str {
         self.0.definition
     }
 
-    /// Returns the value, or `None` if the run has no finite value for this quantity.
+    /// Returns the value of this quantity in the given results, or `None` if they have no finite value for this
+    /// quantity.
     #[must_use]
     pub fn of(&self, results: &Results) -> Option<f64> {
         let value = match self.0.value {
@@ -252,9 +253,9 @@ impl Measure {
 }
 
 impl Measure {
-    /// Returns the value for a run, or `None` if the run has no finite value for this quantity.
+    /// Returns the value of this quantity for a run, or `None` if the run has no finite value for this quantity.
     ///
-    /// [`Measure::of`] avoids a second report if a report already exists.
+    /// This method computes a report of the run. If a report already exists, [`Measure::of`] takes less time.
     #[must_use]
     pub fn of_outcome(&self, outcome: &Outcome) -> Option<f64> {
         let value = match self.0.value {

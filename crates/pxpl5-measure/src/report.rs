@@ -24,11 +24,11 @@ use tracking::predict::{PredictorConfig, Training};
 /// All numbers of one experiment, as written to JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// Name and version of this record's layout.
+    /// Name and version of the layout of this report.
     pub schema: String,
     /// Version of the program that wrote the report.
     pub version: String,
-    /// Commit from which the program was built. `None` if the program does not know its commit.
+    /// Commit from which the program was built. `None` if the program did not state its commit.
     pub commit: Option<String>,
     /// Name of the machine's preset.
     pub machine: String,
@@ -48,8 +48,8 @@ pub struct Report {
     pub overrides: BTreeMap<String, Value>,
     /// Warnings, such as parameters outside the range that the sources allow.
     pub warnings: Vec<String>,
-    /// Messages that each display could not use, with the first reason. If not empty, the displays show less than the
-    /// pipeline drew.
+    /// Messages that each display could not use, with the first reason. If the list is not empty, the displays show
+    /// less than the pipeline drew.
     pub display_faults: Vec<String>,
     /// Number of graphics processors in the machine, including the master.
     pub n_gps: usize,
@@ -69,12 +69,12 @@ pub struct Report {
     pub window: Option<ResultWindow>,
     /// Number of complete pictures in the result window. The statistics are computed over these pictures.
     pub pictures: usize,
-    /// Latency in display periods. For NTSC, a period is one field of 1001/60000 s.
+    /// Latency of the pictures in display periods. For NTSC, a period is one field of 1001/60000 s.
     pub latency_fields: DefinedStatistics,
-    /// The same latency in milliseconds of simulated time.
+    /// Latency of the pictures in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
-    /// Parts of the latency in milliseconds. They add up to the time from the sample of the pose until the picture is
-    /// lit.
+    /// Parts of the latency in milliseconds. The parts add up to the time from the sample of the pose until the picture
+    /// is lit.
     pub latency_parts_ms: Vec<LatencyPartStatistics>,
     /// Latency of each eye and of the pair, in milliseconds: to the end of COPY, to the swap, and until the pixels are
     /// lit.
@@ -83,9 +83,11 @@ pub struct Report {
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
     /// Number of complete pictures shown in the whole run, including the warm-up.
     pub shown: u64,
-    /// Number of complete new pictures per second within the result window. `None` if fewer than two were shown.
+    /// Number of complete new pictures per second within the result window. `None` if fewer than two pictures were
+    /// shown.
     pub updates_hz: Option<f64>,
-    /// Number of pictures due in the result window, by result. `None` if no picture was due.
+    /// Number of pictures that were due in the result window, counted by result (shown, late, incomplete or missed).
+    /// `None` if no picture was due.
     pub due: Option<DuePictures>,
     /// Definition of a picture due: the time when it is due, the time by which it must be shown, and the pictures that
     /// count.
@@ -102,7 +104,7 @@ pub struct Report {
     pub first_late_regions: Vec<LateRegion>,
     /// Counters of the first display since the start of the run.
     pub display_counters: Vec<Counter>,
-    /// Results that concern the head. `None` for a run without a tracker.
+    /// Results that concern the head: prediction, latency and pixel errors. `None` for a run without a tracker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadReport>,
     /// Smear, and results of a device that moves pictures.
@@ -113,7 +115,8 @@ pub struct Report {
     /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Head-mounted display before the viewer's eyes. A display with faces around the head has its own optics instead.
+    /// Head-mounted display before the viewer's eyes. A display with cube faces around the head uses other optics
+    /// instead, which belong to its own settings.
     pub hmd: HmdConfig,
     /// Share of time in which each kind of board was busy. `None` if the machine has not run.
     pub utilisation: Option<Utilisation>,
@@ -148,7 +151,7 @@ pub struct HeadReport {
     /// Hash of all settings of the head, including the parameters of its predictor.
     pub fingerprint: String,
     /// Fixed distance at which errors are evaluated, in metres. `None` if errors are evaluated at the scene's content.
-    pub judged_at_m: Option<f64>,
+    pub evaluated_at_m: Option<f64>,
     /// Raster of the head-mounted display: plain or shifted.
     pub display: Raster,
     /// Latency from the measurement of the head's pose until the picture is lit, by stage, in milliseconds.
@@ -167,7 +170,7 @@ impl HeadReport {
             prediction: *head.predictor(),
             training: head.training().copied(),
             fingerprint: head.fingerprint().to_string(),
-            judged_at_m: head.judge_at_m(),
+            evaluated_at_m: head.evaluate_at_m(),
             display: head.raster(),
             end_to_end: Budget::of(outcome),
             error,
@@ -202,7 +205,7 @@ fn faults(record: &Record) -> impl Iterator<Item = String> {
 }
 
 impl Report {
-    /// Name and version of the record's layout.
+    /// Name and version of the layout of this report.
     pub const SCHEMA: &'static str = "pxpl5-report/2";
 
     /// Computes the report of an outcome.
@@ -299,10 +302,10 @@ impl Report {
     }
 }
 
-/// Computes the trace hash of a text without storing the text: one record at time zero with the fact 9 and the text's
+/// Computes the hash of a text, as the trace hash of one record at time zero with the fact number 9 and the text's
 /// bytes.
 ///
-/// The text of a long run would be large.
+/// The text is not stored, because the text of a long run would be large.
 struct HashedText(u64);
 
 impl Default for HashedText {
@@ -326,7 +329,7 @@ mod tests {
     use pxpl5_renderer::Layout;
     use pxpl5_wire::{Body, swap_request};
 
-    /// A program requests the invalid buffer 2 of a double-buffered frame buffer, `asks` times.
+    /// Runs a program that requests the invalid buffer 2 of a double-buffered frame buffer `asks` times.
     #[test]
     fn displays_say_what_they_could_not_use_and_nothing_else() {
         for asks in [0, 1, 3] {

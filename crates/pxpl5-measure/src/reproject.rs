@@ -19,15 +19,16 @@ pub(crate) fn direction(view: &HmdView, place: DVec2) -> DVec3 {
 pub(crate) enum Move {
     /// The whole picture is shifted by this offset, in pixels.
     Shift(DVec2),
-    /// The view is rotated, from the axes of the head now to the axes of the head for which the picture was drawn.
+    /// The view is rotated. The rotation converts directions from the head's newest axes to the head's axes for which
+    /// the picture was drawn.
     Turn(DQuat),
 }
 
 impl Move {
     /// Returns the mapping from the pose for which a picture was drawn to the newest pose.
     ///
-    /// This mapping ignores depth, so [`Warp::Depth`] gives only the rotation. Callers that know the depth must treat
-    /// it separately.
+    /// This mapping ignores depth, so [`Warp::Depth`] gives only the rotation. Callers that have depths must correct
+    /// for depth separately.
     pub(crate) fn between(by: Warp, view: &HmdView, drawn_for: &Pose, now: &Pose) -> Self {
         match by {
             Warp::Shift => Self::Shift(RasterOffset::between(drawn_for, now, 0).shift_px(view, 0)),
@@ -35,7 +36,8 @@ impl Move {
         }
     }
 
-    /// Returns the picture position that is seen at a screen position. `None` if it lies behind the picture's eye.
+    /// Returns the picture position that is seen at a screen position. `None` if this position lies behind the eye for
+    /// which the picture was drawn.
     pub(crate) fn source(&self, view: &HmdView, place: DVec2) -> Option<DVec2> {
         match self {
             Self::Shift(shift) => Some(place - *shift),
@@ -44,7 +46,7 @@ impl Move {
     }
 }
 
-/// Writes some pixels of a row, each copied from a position of the source picture.
+/// Writes some pixels of a row. Each pixel is copied from a position of the source picture.
 ///
 /// Pixels without a source become black. Returns the number of these pixels.
 pub(crate) fn fill_row(
@@ -107,8 +109,8 @@ pub(crate) fn move_row(
 /// Moves a whole picture from the pose for which it was drawn to another pose, by a shift or a rotation.
 ///
 /// Each pixel of the result is the nearest pixel of the picture. Pixels without a source are black. Returns the result
-/// and the number of these black pixels, or `None` if the picture and the view differ in size. [`Warp::Depth`] is treated
-/// as a rotation, because no depth is known here.
+/// and the number of these black pixels, or `None` if the picture and the view differ in size. [`Warp::Depth`] is
+/// treated as a rotation, because the function receives no depths.
 #[must_use]
 pub fn reproject(
     picture: &RgbImage,

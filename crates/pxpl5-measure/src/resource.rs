@@ -56,7 +56,7 @@ impl Resource {
         }
     }
 
-    /// Returns a text that describes the work of the resource while a picture waits for it.
+    /// Returns a text that describes the work of the resource while a picture waits for the resource.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {

@@ -3,7 +3,7 @@
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
 
-/// The first row that a display period lights, and the distance to the next row.
+/// The rows that a display period lights: the first row, and the distance from each row to the next row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Rows {
     pub(crate) first: u32,
@@ -30,12 +30,12 @@ impl Rows {
         height.saturating_sub(self.first).div_ceil(self.distance)
     }
 
-    /// Returns the row of the picture with a number among the lit rows.
+    /// Returns the row of the picture that has the given number among the lit rows.
     pub(crate) const fn row(self, number: u32) -> u32 {
         self.first + number * self.distance
     }
 
-    /// Returns the lit row of the pair or group of rows that contains a row.
+    /// Returns the lit row that belongs to the same pair or group of rows as the given row.
     pub(crate) const fn beside(self, row: u32) -> u32 {
         row / self.distance * self.distance + self.first
     }

@@ -105,8 +105,8 @@ fn causes_of_an_error_add_up_to_it() {
     let late = TrackerConfig::ideal().with_latency_ps(40 * PS_PER_MS);
     let outcome = run(&slats, Some(head(Slide::right_at(1.0), late, PredictorKind::None)), 90);
     let whole = PixelErrors::of(&outcome);
-    let causes = ErrorCauses::of(&outcome, Showing::Plain, &whole).expect("there is a head, and pixels were judged");
-    assert!(whole.judged > 0 && causes.whole_px == whole.pixels.mean && causes.whole_px > 5.0, "{causes:?}");
+    let causes = ErrorCauses::of(&outcome, Showing::Plain, &whole).expect("there is a head, and pixels were evaluated");
+    assert!(whole.evaluated > 0 && causes.whole_px == whole.pixels.mean && causes.whole_px > 5.0, "{causes:?}");
     assert_eq!(causes.parts_px.iter().map(|part| part.cause).collect::<Vec<_>>(), Cause::ALL);
     let part = |cause| causes.parts_px.iter().find(|part| part.cause == cause).expect("listed").px;
     for cause in Cause::ALL {
@@ -124,6 +124,6 @@ fn a_still_head_has_no_error_of_any_cause() {
     let slats = Arc::new(Slats::split()) as Arc<dyn Pipeline>;
     let still = head(Still(Pose::at(DVec3::ZERO)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity);
     let outcome = run(&slats, Some(still), 60);
-    let causes = ErrorCauses::of(&outcome, Showing::Plain, &PixelErrors::of(&outcome)).expect("judged");
+    let causes = ErrorCauses::of(&outcome, Showing::Plain, &PixelErrors::of(&outcome)).expect("evaluated");
     assert!(causes.whole_px.abs() < 1e-6 && causes.parts_px.iter().all(|part| part.px.abs() < 1e-6), "{causes:?}");
 }

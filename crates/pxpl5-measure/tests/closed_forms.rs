@@ -121,7 +121,7 @@ impl Run {
 
     /// Returns the newest picture shown in a field: the field in which it was first shown, and its view.
     fn newest(&self, field: u64) -> (u64, ViewNumber) {
-        *self.shown.iter().rev().find(|shown| shown.0 <= field).expect("shown before fields are judged")
+        *self.shown.iter().rev().find(|shown| shown.0 <= field).expect("shown before fields are evaluated")
     }
 
     fn content(&self, field: u64, row: u64, x: u64) -> Content {
@@ -188,7 +188,7 @@ impl Run {
     /// Returns the evaluated pixels: five by five in every field of the window, as in [`PixelErrors`].
     ///
     /// For Rendering Control, only pixels of frames shown within the window count.
-    fn judged(&self) -> impl Iterator<Item = (u64, u64, u64)> + '_ {
+    fn evaluated(&self) -> impl Iterator<Item = (u64, u64, u64)> + '_ {
         let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
         let in_field = move |field| places(480).flat_map(move |y| places(640).map(move |x| (field, y / 2, x)));
         let window = self.outcome.window().expect("long enough");
@@ -203,7 +203,7 @@ impl Run {
     fn expected(&self, turned_rad: impl Fn(&Content, f64) -> f64) -> [f64; 2] {
         let mut sum = [0.0, 0.0];
         let mut n = 0.0;
-        for (field, row, x) in self.judged() {
+        for (field, row, x) in self.evaluated() {
             let turned = turned_rad(&self.content(field, row, x), beam(field, row, x));
             let y = (2 * row + field % 2) as f64;
             let [pixels, degrees] = error(x as f64 + 0.5 - 320.0, 240.0 - (y + 0.5), turned);
@@ -235,7 +235,7 @@ fn error(right: f64, up: f64, turned_rad: f64) -> [f64; 2] {
     let (sin, cos) = turned_rad.sin_cos();
     let seen = [right * cos + focal * sin, up, focal * cos - right * sin];
     let place = [seen[0] * focal / seen[2], seen[1] * focal / seen[2]];
-    // The point moves on a circle about the vertical. The angle of the error is that of the chord.
+    // The point moves on a circle about the vertical. The angle of the error is the angle of the chord.
     let radius = right.hypot(focal);
     let chord = radius / radius.hypot(up) * (turned_rad.abs() / 2.0).sin();
     [(place[0] - right).hypot(place[1] - up), 2.0 * chord.asin().to_degrees()]
@@ -325,7 +325,7 @@ fn blocks_of_frameless_rendering_are_drawn_for_the_middle_of_the_time_in_which_t
     let run = Run::new("frameless", Aim::Middle, Pan::at(20.0));
     let pass_s = 1.0 / run.outcome.report().updates_hz.expect("two passes");
     let early = |(field, row, x)| beam(field, row, x) - run.content(field, row, x).drawn_for;
-    let all: Vec<f64> = run.judged().map(early).collect();
+    let all: Vec<f64> = run.evaluated().map(early).collect();
     let mean_s = all.iter().sum::<f64>() / all.len() as f64;
     println!("mean {:.3} ms of a pass of {:.3} ms", mean_s * 1e3, pass_s * 1e3);
     assert!(mean_s.abs() < pass_s * 0.1, "{mean_s} {pass_s}");

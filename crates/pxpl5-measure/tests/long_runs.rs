@@ -86,7 +86,7 @@ fn run(experiment: &Experiment, keep: Keep) -> Outcome {
 /// Returns all values of a report except the time on this computer. Numbers have enough digits to be distinguished.
 fn said(outcome: &Outcome) -> String {
     let report = Report { host_seconds: None, ..outcome.report() };
-    // A streaming observer knows the latency of translation also of a run that has discarded records.
+    // A streaming observer also has the latency of translation of a run that has discarded records.
     for memory in report.arp.iter().flat_map(|faces| &faces.memories) {
         assert_eq!(memory.translation_latency_ms.is_some(), memory.updates > 0);
     }
@@ -107,7 +107,7 @@ fn assert_same(experiment: &Experiment) {
         "{name}: records were discarded"
     );
     let of_head = everything.report().head.expect("tracked");
-    assert!(of_head.error.judged > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
+    assert!(of_head.error.evaluated > 500 && of_head.end_to_end.n > 50, "{name}: there is something to be said");
     let [all, last] = [&everything, &statistics].map(|outcome| outcome.head().expect("tracked").sampled());
     assert!(4 * last.len() < 3 * all.len(), "{name}: {} poses of {} are held", last.len(), all.len());
     assert_eq!(last, all[all.len() - last.len()..], "{name}: the last ones");

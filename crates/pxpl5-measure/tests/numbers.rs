@@ -74,7 +74,7 @@ fn every_quantity_is_the_number_of_that_name_in_the_report() {
         ("late_regions", report.late_regions as u64),
         ("pictures", report.pictures as u64),
         ("events", report.events),
-        ("error_px.n", head.error.judged),
+        ("error_px.n", head.error.evaluated),
     ];
     for (name, expected) in counted {
         assert_eq!(value(&results, name), Some(expected as f64), "{name}");

@@ -169,7 +169,7 @@ fn a_flat_raster_leaves_what_a_shift_is_no_turn() {
 #[test]
 fn an_ideal_view_of_a_steady_turn_has_no_error() {
     let errors = PixelErrors::shown(&run(DVec3::Y, Raster::Plain), Showing::Ideal);
-    assert_eq!(errors.judged, 25 * (FIELDS - WARM_UP_PERIODS));
+    assert_eq!(errors.evaluated, 25 * (FIELDS - WARM_UP_PERIODS));
     assert!(errors.pixels.max < 1e-6 && errors.degrees.max < 1e-6, "{errors:?}");
 }
 
@@ -191,7 +191,7 @@ fn errors_by_field_are_those_of_all_pixels_at_the_time_of_their_retraces() {
     };
     assert!((mean(|error| error.mean_px) - errors.pixels.mean).abs() < 1e-9);
     assert!((mean(|error| error.centre_px) - errors.centre_px.mean).abs() < 1e-9);
-    assert_eq!((errors.all_px.len() as u64, errors.behind, errors.empty), (errors.judged, 0, 0));
+    assert_eq!((errors.all_px.len() as u64, errors.behind, errors.empty), (errors.evaluated, 0, 0));
 }
 
 /// The head rotates at 1,450 deg/s, and its reports are 100 ms late.
@@ -208,6 +208,6 @@ fn what_is_behind_the_eye_when_it_lights_has_no_error_and_is_counted() {
     let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
     let outcome = experiment.fields(fields).pixels(Pixels::Off).run().expect("two triangles");
     let errors = outcome.pixel_errors().expect("a head");
-    assert_eq!((errors.judged, errors.behind), (0, 25 * (fields - WARM_UP_PERIODS)));
+    assert_eq!((errors.evaluated, errors.behind), (0, 25 * (fields - WARM_UP_PERIODS)));
     assert!(errors.pixels.mean.is_nan() && errors.by_field.is_empty());
 }

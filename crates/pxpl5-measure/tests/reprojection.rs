@@ -130,7 +130,7 @@ fn a_rotation_cancels_a_turn_but_for_what_the_head_turns_between_its_pose_and_li
         for every in [Every::Field, Every::Strip, Every::Line] {
             let errors = PixelErrors::shown(&outcome, device(by, every));
             let expected = turned_px(2.0, every);
-            assert_eq!(errors.judged, 25 * (FIELDS - WARM_UP_PERIODS), "{by:?} {every:?}");
+            assert_eq!(errors.evaluated, 25 * (FIELDS - WARM_UP_PERIODS), "{by:?} {every:?}");
             let found = errors.pixels.mean;
             assert!((found / expected - 1.0).abs() < 2e-3, "{by:?} {every:?}: {found} for {expected}");
         }
@@ -223,7 +223,7 @@ fn a_global_display_is_right_everywhere_and_a_rolling_one_in_the_middle_of_its_s
         let outcome = on_panel(PanelConfig { scan, ..PanelConfig::PAPERS }, RATE);
         outcome.pixel_errors().expect("a head")
     });
-    assert!(global.judged > 0 && global.pixels.max < 1e-3, "{}", global.pixels.max);
+    assert!(global.evaluated > 0 && global.pixels.max < 1e-3, "{}", global.pixels.max);
     // A pixel lights by its number in the scan, of 96 lines of 128; the picture is drawn for half of the number of the last one.
     let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
     let pixels = places(96).flat_map(|y| places(128).map(move |x| (x, y)));
@@ -252,7 +252,7 @@ fn persistence_moves_the_centre_of_light_by_half_and_smears_by_the_way_of_all_of
         let in_the_middle = 2.0 * focal_px(128.0) * (RATE * width / 2.0).tan();
         let mean_factor = smear.mean / in_the_middle;
         assert!((1.0..1.15).contains(&mean_factor), "{} of {in_the_middle}", smear.mean);
-        assert_eq!(smear.n, errors.judged);
+        assert_eq!(smear.n, errors.evaluated);
     }
 }
 
@@ -282,7 +282,7 @@ fn delayed_video_has_no_error_before_an_ideal_tracker_and_lags_by_all_of_the_lat
     let head = Head::new(Arc::new(Turning(2.0)), late, PredictorKind::None, 1).expect("in range");
     let outcome = fields(head, "full-screen:2");
     let delayed = PixelErrors::shown(&outcome, Showing::DelayedVideo);
-    assert!(delayed.judged > 0 && delayed.pixels.max < 1e-6, "{:?}", delayed.pixels);
+    assert!(delayed.evaluated > 0 && delayed.pixels.max < 1e-6, "{:?}", delayed.pixels);
     let plain = PixelErrors::shown(&outcome, Showing::Plain);
     assert!(plain.pixels.mean > focal_px(640.0) * 0.1, "{}: 50 ms of 2 rad/s and more", plain.pixels.mean);
 }
@@ -335,7 +335,7 @@ fn an_ideal_machine_that_is_reprojected_at_every_line_is_the_ideal_but_for_what_
     let eye =
         EyeReport::shown(&outcome, Showing::Reprojected(setting)).and_then(|eye| eye.reprojection).expect("a device");
     let plain = PixelErrors::of(&outcome);
-    assert!(errors.judged > 400 && errors.pixels.max < 0.1, "{} {}", errors.judged, errors.pixels.max);
+    assert!(errors.evaluated > 400 && errors.pixels.max < 0.1, "{} {}", errors.evaluated, errors.pixels.max);
     assert!(plain.pixels.mean > 10.0 * errors.pixels.mean, "{} {}", plain.pixels.mean, errors.pixels.mean);
     let share = eye.disoccluded_share.expect("depth");
     assert!((0.0..0.05).contains(&share), "{share}");

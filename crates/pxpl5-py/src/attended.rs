@@ -1,5 +1,5 @@
-//! Execution of long work on a separate thread without the interpreter's lock. Meanwhile the calling thread reports
-//! progress and reacts to Ctrl-C.
+//! Execution of long work on a separate thread without the interpreter's lock. During the work, the calling thread
+//! reports progress and reacts to Ctrl-C.
 
 use crate::errors::failed_run;
 use pyo3::prelude::*;
@@ -13,40 +13,40 @@ use std::time::Duration;
 pub(crate) struct Progress {
     done: AtomicU64,
     of: AtomicU64,
-    given_up: Arc<AtomicBool>,
+    stopped: Arc<AtomicBool>,
 }
 
 impl Progress {
     /// Stores that `done` of `of` steps are finished.
-    pub(crate) fn tell(&self, done: u64, of: u64) {
+    pub(crate) fn report(&self, done: u64, of: u64) {
         self.of.store(of, Ordering::Relaxed);
         self.done.fetch_max(done, Ordering::Relaxed);
     }
 
     /// Asks the work to stop.
     pub(crate) fn stop(&self) {
-        self.given_up.store(true, Ordering::Relaxed);
+        self.stopped.store(true, Ordering::Relaxed);
     }
 
     /// Returns the flag that becomes true when the caller asks the work to stop.
     pub(crate) fn stop_flag(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.given_up)
+        Arc::clone(&self.stopped)
     }
 
     /// Returns true if the caller has asked the work to stop.
     pub(crate) fn is_stopped(&self) -> bool {
-        self.given_up.load(Ordering::Relaxed)
+        self.stopped.load(Ordering::Relaxed)
     }
 }
 
 /// Time between two checks for new progress and Ctrl-C.
 pub(crate) const LOOK: Duration = Duration::from_millis(50);
 
-/// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps. It
-/// is called at most twenty times a second, and once at the end.
+/// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps.
+/// The callback is called at most twenty times a second, and only when the progress has changed.
 ///
 /// Ctrl-C or an exception of the callback asks the work to stop. If `waits` is true, the exception is raised after the
-/// work has stopped. If `waits` is false, the exception is raised at once, and the result of the work is discarded.
+/// work has stopped. If `waits` is false, the exception is raised immediately, and the result of the work is discarded.
 ///
 /// # Errors
 ///
@@ -60,17 +60,17 @@ pub(crate) fn attended<T: Send + 'static>(
 ) -> PyResult<T> {
     let progress = Arc::new(Progress::default());
     let (sender, mut results) = sync_channel(1);
-    let told = Arc::clone(&progress);
+    let watch = Arc::clone(&progress);
     let worker = std::thread::Builder::new().name("pxpl5".to_owned()).stack_size(STACK_BYTES).spawn(move || {
         // After an early return of the caller the receiver no longer exists, so an error is ignored.
-        let _ = sender.send(work(told));
+        let _ = sender.send(work(watch));
     });
     worker.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
-    let mut told = None;
+    let mut watch = None;
     loop {
         // Wait without the interpreter's lock, then check for Ctrl-C and report progress.
         let result = py.detach(|| wait(&mut results));
-        let looked = py.check_signals().and_then(|()| tell(callback, &progress, &mut told));
+        let looked = py.check_signals().and_then(|()| tell(callback, &progress, &mut watch));
         if let Err(error) = looked {
             // Ask the work to stop, and raise the exception.
             progress.stop();
@@ -89,8 +89,8 @@ pub(crate) fn attended<T: Send + 'static>(
     }
 }
 
-/// Stack size of the worker thread in bytes, equal to that of a main thread. The emulator has not been tested with a
-/// smaller stack.
+/// Stack size of the worker thread in bytes, equal to the stack of a main thread. The emulator has not been tested with
+/// a smaller stack.
 pub(crate) const STACK_BYTES: usize = 8 << 20;
 
 // The receiver is borrowed mutably. It can be sent to another thread, but threads cannot share it.
@@ -104,9 +104,9 @@ fn end<T>(results: &mut Receiver<T>) -> Option<T> {
 }
 
 /// Calls the callback if the progress has changed since its last call.
-fn tell(callback: Option<&Bound<'_, PyAny>>, progress: &Progress, told: &mut Option<(u64, u64)>) -> PyResult<()> {
+fn tell(callback: Option<&Bound<'_, PyAny>>, progress: &Progress, watch: &mut Option<(u64, u64)>) -> PyResult<()> {
     let now = (progress.done.load(Ordering::Relaxed), progress.of.load(Ordering::Relaxed));
-    let Some(callback) = callback.filter(|_| now.1 > 0 && *told != Some(now)) else { return Ok(()) };
-    *told = Some(now);
+    let Some(callback) = callback.filter(|_| now.1 > 0 && *watch != Some(now)) else { return Ok(()) };
+    *watch = Some(now);
     callback.call1(now).map(drop)
 }

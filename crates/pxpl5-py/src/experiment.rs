@@ -33,8 +33,8 @@ pub(crate) struct Experiment {
 
 #[pymethods]
 impl Experiment {
-    /// Creates an experiment from settings. If ``scene``, ``motion`` or ``policy`` is given, it replaces the one in the
-    /// settings.
+    /// Creates an experiment from settings. If ``scene``, ``motion`` or ``policy`` is given, this argument replaces the
+    /// scene, motion or policy in the settings.
     ///
     /// Raises :class:`pxpl5.SettingError` for the first invalid or missing setting, and for a scene that cannot be
     /// loaded.
@@ -75,20 +75,20 @@ impl Experiment {
 
     /// Returns a hash of all settings and inputs on which the trace of the run depends.
     ///
-    /// Raises any exception of a Python function that the experiment calls.
+    /// Raises any exception that a Python function of the experiment raises, such as the function of a motion.
     fn config_hash(&self, py: Python<'_>) -> PyResult<String> {
         let hash = py.detach(|| self.native.config_hash().to_string());
         self.functions.check()?;
         Ok(hash)
     }
 
-    /// Returns warnings about results that no source supports. They concern parameters outside their plausible range,
-    /// and work at the cycle level that no code executes.
+    /// Returns warnings about results that no source supports. The warnings concern parameters outside their plausible
+    /// range, and runs at the cycle level in which some times do not come from executed code.
     fn warnings(&self) -> Vec<String> {
         self.native.warnings()
     }
 
-    /// Returns all parameters by path with values, units and sources, including those of the tracker.
+    /// Returns all parameters by path with values, units and sources, including the parameters of the tracker.
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         crate::catalogue::python(py, &crate::catalogue::described(&self.plan.parameters()))
     }
@@ -110,7 +110,7 @@ impl Experiment {
         let workstation = threads.map_or_else(Workstation::new, Workstation::with_threads);
         let functions = self.functions.clone();
         let native = self.native.clone().keep(keep);
-        let result = attended(py, progress, true, move |told| run(&native, workstation, functions, told));
+        let result = attended(py, progress, true, move |watch| run(&native, workstation, functions, watch));
         // An exception of a Python function takes precedence over the error that it causes in the run.
         self.functions.check()?;
         outcome_of_run(py, result?, &self.plan.measure)
@@ -123,8 +123,8 @@ impl Experiment {
     #[pyo3(signature = (keep_everything = true))]
     fn stepper(&self, py: Python<'_>, keep_everything: bool) -> PyResult<Stepper> {
         let keep = if keep_everything { Keep::Everything } else { Keep::Statistics };
-        let (native, told) = self.on_host(Workstation::with_threads(0));
-        let thread = MachineThread::start(py, native.keep(keep), told.stop_flag());
+        let (native, watch) = self.on_host(Workstation::with_threads(0));
+        let thread = MachineThread::start(py, native.keep(keep), watch.stop_flag());
         self.functions.check()?;
         let thread = thread?.map_err(|error| exception(py, error, &self.plan.measure))?;
         Ok(Stepper { thread, checks: self.functions.clone(), measures: self.plan.measure.clone() })
@@ -132,12 +132,12 @@ impl Experiment {
 
     /// Returns an iterator over the pictures of a run, one for each of ``fields`` display periods from ``first`` on. A
     /// picture shows the screen at the end of its period. ``surface`` is the number of a surface, or None for all
-    /// surfaces side by side. The experiment is run again for this, with pixels.
+    /// surfaces side by side. The experiment runs again with pixels to compute the pictures.
     ///
     /// Raises :class:`pxpl5.SettingError` for a surface or a number of fields that does not exist.
     fn frames(&self, surface: Option<u16>, first: u64, fields: u64) -> PyResult<Frames> {
-        let (film, told) = self.film_of(surface, first, fields);
-        Frames::start(film, told, self.functions.clone())
+        let (film, watch) = self.film_of(surface, first, fields);
+        Frames::start(film, watch, self.functions.clone())
     }
 
     /// Returns the pictures of :meth:`frames` as an animated PNG at the true rate.
@@ -150,13 +150,13 @@ impl Experiment {
         first: u64,
         fields: u64,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let (film, told) = self.film_of(surface, first, fields);
+        let (film, watch) = self.film_of(surface, first, fields);
         let texts = [
             ("config_hash", self.native.config_hash().to_string()),
             ("settings", self.plan.settings_for_any_folder().to_string()),
         ];
         let texts = texts.map(|(key, text)| (key.to_owned(), text)).into();
-        Ok(PyBytes::new(py, &film_bytes(py, film, texts, &told, &self.functions)?))
+        Ok(PyBytes::new(py, &film_bytes(py, film, texts, &watch, &self.functions)?))
     }
 
     /// Returns the number of display periods that the experiment simulates.
@@ -165,14 +165,14 @@ impl Experiment {
         self.native.length()
     }
 
-    /// Returns the effect of 10 % more of each resource of the machine, as dictionaries. The experiment is run again
-    /// for each resource, unless formulas give the pipeline's times.
+    /// Returns the effect of 10 % more of each resource of the machine, as dictionaries. The experiment runs again for
+    /// each resource, unless formulas give the times of the pipeline.
     ///
     /// Raises the same exceptions as :meth:`run`.
     fn what_if<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (native, functions) = (self.native.clone(), self.functions.clone());
-        let result = attended(py, None, true, move |told| {
-            let host = StoppableHost { workstation: Workstation::with_threads(1), told, functions };
+        let result = attended(py, None, true, move |watch| {
+            let host = StoppableHost { workstation: Workstation::with_threads(1), watch, functions };
             what_if(&registry(), &native.host(host)).map_err(Box::new)
         });
         self.functions.check()?;
@@ -180,19 +180,20 @@ impl Experiment {
     }
 
     /// Returns the measured quantities by name, at the experiment's own level of modelling, which may be the analytic
-    /// one. The value is None for a quantity that the run does not have.
+    /// level. The value is None for a quantity that the run does not define, such as the latency of a run without
+    /// complete pictures.
     ///
     /// Raises the same exceptions as :meth:`run`.
     fn measure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (native, functions) = (self.native.clone().pixels(Pixels::Off), self.functions.clone());
         let is_analytic = self.plan.level == Level::Analytic;
         // Formulas do not check for a stop, so Ctrl-C does not wait for their result.
-        let result = attended(py, None, !is_analytic, move |told| {
+        let result = attended(py, None, !is_analytic, move |watch| {
             let workstation = Workstation::with_threads(1);
             if !is_analytic {
-                return run(&native, workstation, functions, told).map(Results::of_run);
+                return run(&native, workstation, functions, watch).map(Results::of_run);
             }
-            let host = StoppableHost { workstation, told, functions };
+            let host = StoppableHost { workstation, watch, functions };
             let summary = levels::summarise(&registry(), &native.host(host)).map_err(Box::new);
             summary.map(Results::of_closed_form)
         });
@@ -207,39 +208,40 @@ impl Experiment {
 }
 
 impl Experiment {
-    /// Returns the experiment on a host that Python can stop, and the flag that stops the host.
+    /// Returns the experiment with a host computer that Python can stop, and the flag with which Python stops the run.
     fn on_host(&self, workstation: Workstation) -> (Native, Arc<Progress>) {
-        let told = Arc::new(Progress::default());
-        let host = StoppableHost { workstation, told: Arc::clone(&told), functions: self.functions.clone() };
-        (self.native.clone().host(host), told)
+        let watch = Arc::new(Progress::default());
+        let host = StoppableHost { workstation, watch: Arc::clone(&watch), functions: self.functions.clone() };
+        (self.native.clone().host(host), watch)
     }
 
     fn film_of(&self, surface: Option<u16>, first: u64, fields: u64) -> (Film, Arc<Progress>) {
-        let (native, told) = self.on_host(Workstation::with_threads(0));
+        let (native, watch) = self.on_host(Workstation::with_threads(0));
         // The last picture is final only one field later.
         let length = self.native.length().max(first.saturating_add(fields).saturating_add(1));
         let surfaces = surface.map_or(FilmSurfaces::All, |surface| FilmSurfaces::One(SurfaceId(surface)));
         let native = native.pixels(Pixels::Lazy).fields(length);
-        (Film::new(native, PeriodNumber(first), fields, surfaces), told)
+        (Film::new(native, PeriodNumber(first), fields, surfaces), watch)
     }
 }
 
-/// Greatest number of fields of a run that checks for Ctrl-C in every field.
+/// Greatest number of fields of a run that pauses in every field, so that progress is reported and Ctrl-C takes effect
+/// soon. A longer run does not pause.
 const LOOKED_AT: u64 = 20_000;
 
 fn run(
     native: &Native,
     workstation: Workstation,
     functions: PythonFunctions,
-    told: Arc<Progress>,
+    watch: Arc<Progress>,
 ) -> Result<pxpl5::Outcome, Box<ExperimentError>> {
     let fields = native.length();
     // A short run stops in every field so that Ctrl-C takes effect soon. A long run stops only to report progress.
     let each = if fields <= LOOKED_AT { fields } else { 0 };
     let stops: Vec<PeriodNumber> = PeriodNumber::FIRST.until(PeriodNumber::FIRST.after(each)).collect();
-    let host = StoppableHost { workstation, told: Arc::clone(&told), functions };
+    let host = StoppableHost { workstation, watch: Arc::clone(&watch), functions };
     let at = |field: PeriodNumber, _: &mut pxpl5::Machine| {
-        told.tell(field.since(PeriodNumber::FIRST), fields);
+        watch.report(field.since(PeriodNumber::FIRST), fields);
         Ok(())
     };
     native.clone().host(host).run_stopping(&stops, at).map_err(Box::new)
@@ -248,7 +250,7 @@ fn run(
 /// The host computer for a run, which lets Python stop the run.
 struct StoppableHost {
     workstation: Workstation,
-    told: Arc<Progress>,
+    watch: Arc<Progress>,
     functions: PythonFunctions,
 }
 
@@ -264,7 +266,7 @@ impl Host for StoppableHost {
     }
 
     fn is_stopped(&self) -> bool {
-        self.told.is_stopped() || self.functions.has_raised()
+        self.watch.is_stopped() || self.functions.has_raised()
     }
 
     fn pixel_worker(&self) -> Box<dyn PixelWorker> {

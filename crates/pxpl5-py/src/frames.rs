@@ -13,7 +13,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Greatest number of pictures that are computed before Python takes them.
+/// Greatest number of computed pictures that wait until Python reads them.
 const WAITING: usize = 4;
 
 /// An iterator over the pictures of a run, one for each display period. A separate thread runs the experiment.
@@ -25,7 +25,7 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
-    /// Starts the run of a film.
+    /// Starts a thread that runs the experiment of a film and sends the pictures to this iterator.
     pub(crate) fn start(film: Film, progress: Arc<Progress>, checks: PythonFunctions) -> PyResult<Self> {
         let (sender, pictures) = sync_channel(WAITING);
         let thread = std::thread::Builder::new().name("pxpl5-frames".to_owned()).stack_size(STACK_BYTES);

@@ -76,14 +76,15 @@ pub(crate) fn figures<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let level = self::level(level)?;
-    let figures =
-        attended(py, progress, false, move |told| run_all_with(&Bench::new(level), |done, of| told.tell(done, of)))?;
+    let figures = attended(py, progress, false, move |watch| {
+        run_all_with(&Bench::new(level), |done, of| watch.report(done, of))
+    })?;
     let rows: Vec<serde_json::Value> = figures.map_err(failed_run)?.rows.iter().map(row).collect();
     python(py, &rows)
 }
 
-/// Runs all pipelines with the same settings and compares them. Returns a dictionary whose `pipelines` has one row for
-/// each pipeline.
+/// Runs all pipelines with the same settings and compares the results. Returns a dictionary whose `pipelines` has one
+/// row for each pipeline.
 ///
 /// ``confidence`` is that of all intervals. With ``until_precision``, such as 10% or 0.2px, a row gets up to
 /// ``max_seeds`` seeds. Finished rows are stored in ``folder``. If ``resume`` is true, the rows in the folder are kept.
@@ -118,9 +119,9 @@ pub(crate) fn compare<'py>(
     // With a folder, Ctrl-C waits until all runs have stopped, so that the comparison can be resumed at once. A search
     // for the largest number of triangles cannot be stopped.
     let waits = folder.is_some() && !limits;
-    let comparison = attended(py, progress, waits, move |told| {
+    let comparison = attended(py, progress, waits, move |watch| {
         let store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?;
-        query.run_stoppable(store.as_ref(), &told.stop_flag(), |done, of| told.tell(done, of), |_| {})
+        query.run_stoppable(store.as_ref(), &watch.stop_flag(), |done, of| watch.report(done, of), |_| {})
     })?;
     python(py, &comparison.map_err(wrong_study)?)
 }
@@ -139,7 +140,9 @@ fn wrong_study(error: StudyError) -> PyErr {
 ///
 /// ``test_scene`` is full-screen, typical or None. If ``thinned`` is true, triangles of the settings' own scene are
 /// removed instead of using a test scene. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
-/// ``fields`` is the length of each run.
+/// ``first_miss`` is the smallest tried number that misses the goal. ``island`` is the largest tried number above
+/// first_miss that reaches the goal. From ``unbroken_from`` on, all numbers up to ``triangles`` were tried. ``fields``
+/// is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
@@ -192,8 +195,10 @@ pub(crate) fn limit<'py>(
 /// Finds the values of a setting with which an experiment reaches a goal. Returns a dictionary with over, goal, values,
 /// fields, least, most, reached, tried, missed_at and because.
 ///
-/// ``low`` and ``high`` are the ends of the range that is searched. Without them the range of the setting's sources is
-/// searched. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal. ``fields`` is the length of each run.
+/// ``low`` and ``high`` are the ends of the range that is searched. Without these two arguments, the search covers the
+/// range that the sources of the setting allow. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
+/// ``missed_at`` is a value that misses the goal, and ``because`` names the resource that limits the experiment with
+/// this value. ``fields`` is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting or range.
 #[pyfunction]
@@ -229,8 +234,8 @@ pub(crate) fn limit_over<'py>(
     let goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(first.limit.goal);
     let query = OverQuery { file, key: key.to_owned(), values, goal };
     let (tried, of) = (query.clone(), VALUES);
-    let limit = attended(py, progress, false, move |told| {
-        tried.search(|done| told.tell(done, of.max(done))).map_err(|error| error.to_string())
+    let limit = attended(py, progress, false, move |watch| {
+        tried.search(|done| watch.report(done, of.max(done))).map_err(|error| error.to_string())
     })?;
     let mut found = serde_json::to_value(limit.map_err(wrong_setting)?).map_err(wrong_setting)?;
     found["over"] = key.into();
@@ -241,11 +246,11 @@ pub(crate) fn limit_over<'py>(
     python(py, &found)
 }
 
-/// Estimated number of values that a search over a setting tries: five values, and seven of a bisection. More values
-/// move the end of the progress bar.
+/// Estimated number of values that a search over a setting tries: five values, and seven of a bisection. If a search
+/// tries more values, the end of the progress bar moves.
 const VALUES: u64 = 12;
 
-/// Whole numbers below this limit are exact as real numbers.
+/// Limit below which every whole number is exact as a real number.
 const MAX_WHOLE: f64 = 1e15;
 
 /// Compares two reports, each as JSON text. Returns a dictionary with same_trace, settings, results and equal.
@@ -326,8 +331,8 @@ pub(crate) fn rig<'py>(
 const LEVELS: &str = include_str!("../../pxpl5-cli/src/levels.json");
 
 /// Compares the levels of modelling by error and speed. Without ``experiments`` the result is the measurement that is
-/// recorded in the repository. Otherwise the errors are measured anew over this number of random experiments, and with
-/// ``speeds`` also the speeds. Returns the record as a dictionary.
+/// recorded in the repository. With ``experiments``, the errors are measured anew over this number of random
+/// experiments. If ``speeds`` is true, the simulation speeds are measured too. Returns the record as a dictionary.
 ///
 /// Raises :class:`pxpl5.RunError` if an experiment fails.
 #[pyfunction]
@@ -342,8 +347,8 @@ pub(crate) fn levels<'py>(
         None => LevelRecord::read(LEVELS).map_err(failed_run)?,
         Some(experiments) => {
             let query = LevelQuery { experiments, speeds };
-            let measured = attended(py, progress, false, move |told| {
-                compare_with(query, |done, of| told.tell(done, of)).map_err(|error| error.to_string())
+            let measured = attended(py, progress, false, move |watch| {
+                compare_with(query, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
             })?;
             measured.map_err(failed_run)?
         }
@@ -353,7 +358,9 @@ pub(crate) fn levels<'py>(
 
 /// Ranks the interpretations of the papers' open questions by their fit to the figures of Rendering Control. The best
 /// ``best`` interpretations are also simulated with events. ``seeds`` and ``frames`` are the size of the fly-throughs.
-/// Returns a dictionary with analytic, transaction, left_out, as_good and rounding_percent.
+/// Returns a dictionary with analytic, transaction, left_out, as_good and rounding_percent. ``left_out`` predicts each
+/// figure by the interpretation that fits all other figures best. ``as_good`` is the number of interpretations with the
+/// same mean error as the best, within the rounding of the printed digits.
 ///
 /// Raises :class:`pxpl5.RunError` if a figure cannot be simulated.
 #[pyfunction]
@@ -365,9 +372,9 @@ pub(crate) fn readings<'py>(
     frames: u64,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let ranked = attended(py, progress, false, move |told| {
+    let ranked = attended(py, progress, false, move |watch| {
         let bench = Bench::new(Level::Analytic).with_mig(seeds, frames);
-        rank(&bench, best, |done, of| told.tell(done, of)).map_err(|error| error.to_string())
+        rank(&bench, best, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
     })?;
     python(py, &ranked.map_err(failed_run)?)
 }

@@ -47,7 +47,7 @@ impl Picture {
     #[new]
     fn new(py: Python<'_>, pixels: &Bound<'_, PyAny>) -> PyResult<Self> {
         let mut array = py.import("numpy")?.call_method1("asarray", (pixels,)).map_err(wrong_setting)?;
-        // Integers of another type are taken if all of them fit. A cast alone would change those that do not.
+        // Integers of another type are taken if all integers fit. A cast alone would change integers that do not fit.
         let bytes = array.call_method1("astype", ("uint8",));
         if let Ok(bytes) = bytes
             && matches!(array.getattr("dtype")?.getattr("kind")?.extract()?, 'i' | 'u')
@@ -76,8 +76,8 @@ impl Picture {
         self.pixels.bind(py).clone()
     }
 
-    /// Returns the pixels for ``numpy.asarray``. They are copied only if another element type is requested or ``copy``
-    /// is true.
+    /// Returns the pixels for ``numpy.asarray``. The pixels are copied only if another element type is requested or
+    /// ``copy`` is true.
     #[pyo3(signature = (dtype = None, copy = None))]
     fn __array__<'py>(
         &self,
@@ -129,9 +129,9 @@ impl Picture {
     }
 }
 
-/// Returns the picture that `Picture.__reduce__` has taken apart.
+/// Rebuilds a picture from the parts that `Picture.__reduce__` returned, for the module `pickle`.
 ///
-/// Raises :class:`pxpl5.SettingError` as :class:`pxpl5.Picture`.
+/// Raises :class:`pxpl5.SettingError` in the same cases as :class:`pxpl5.Picture`.
 #[pyfunction]
 pub(crate) fn picture_of_parts(
     py: Python<'_>,
@@ -141,9 +141,9 @@ pub(crate) fn picture_of_parts(
     Ok(Picture { texts, ..Picture::new(py, pixels)? })
 }
 
-/// Returns the picture of a PNG file's bytes. Texts in the file are left out.
+/// Decodes the bytes of a PNG file and returns the picture. The picture does not get the texts of the file.
 ///
-/// Raises :class:`pxpl5.SettingError` for bytes that are no PNG.
+/// Raises :class:`pxpl5.SettingError` for bytes that are not a PNG file.
 #[pyfunction]
 pub(crate) fn picture_of_png(py: Python<'_>, bytes: &[u8]) -> PyResult<Picture> {
     let picture = py.detach(|| image::load_from_memory_with_format(bytes, image::ImageFormat::Png));

@@ -18,7 +18,8 @@ use std::sync::Arc;
 /// A column of a table with its name, its description and its values.
 pub(crate) struct Column {
     pub(crate) name: String,
-    /// Description of the column's values with their unit. It becomes the metadata `about` of the Arrow field.
+    /// Description of the column's values with their unit. The description becomes the metadata `about` of the Arrow
+    /// field.
     pub(crate) about: String,
     pub(crate) values: ArrayRef,
 }
@@ -62,7 +63,7 @@ impl Table {
     }
 
     /// Creates a table from JSON objects, one row for each object. Each key becomes a column, in the order in which
-    /// keys first occur. A nested key gets its parent's name and a point before its own name. Lists become JSON text.
+    /// keys first occur. A nested key `b` within `a` becomes the column `a.b`. Lists become JSON text.
     pub(crate) fn of_rows(rows: &[Map<String, Value>], about: &HashMap<String, String>) -> PyResult<Self> {
         let flat: Vec<Map<String, Value>> = rows.iter().map(flattened).collect();
         let mut names: Vec<&str> = Vec::new();
@@ -82,7 +83,7 @@ impl Table {
     }
 }
 
-/// Returns the object without nesting. A nested key becomes its parent's name, a point and its own name.
+/// Returns a JSON object without nested objects. A nested key `b` within `a` becomes the key `a.b`.
 fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
     let mut flat = Map::new();
     for (key, value) in row {
@@ -99,7 +100,7 @@ fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
 }
 
 /// Returns the column of values for one key. If all values are truth values, integers or numbers, the column has this
-/// type, otherwise it has text.
+/// type. Otherwise the values become text.
 fn column_of(name: &str, rows: &[Map<String, Value>], about: &str) -> Column {
     let known: Vec<Option<&Value>> = rows.iter().map(|row| row.get(name).filter(|value| !value.is_null())).collect();
     let all = |is: fn(&Value) -> bool| known.iter().flatten().all(|value| is(value));
@@ -131,7 +132,8 @@ pub(crate) fn table_of_rows(json: &str, about: HashMap<String, String>) -> PyRes
     Table::of_rows(&rows, &about)
 }
 
-/// Returns the table that `Table.__reduce__` has taken apart: name, description, type and values of each column.
+/// Rebuilds a table from the parts that `Table.__reduce__` returned: name, description, type and values of each column.
+/// The module `pickle` needs this function.
 ///
 /// Raises :class:`pxpl5.SettingError` for columns that `Table.__reduce__` does not make.
 #[pyfunction]
@@ -204,7 +206,7 @@ impl Table {
     }
 
     /// Returns the description of each column with its unit, by the column's name. The description is empty if the name
-    /// is sufficient.
+    /// of the column is sufficient.
     #[getter]
     fn definitions(&self) -> HashMap<String, String> {
         let schema = self.batch.schema();
@@ -214,7 +216,8 @@ impl Table {
 
     /// Returns the values of a column by its name. Numbers are returned as a NumPy array of shape (rows,), int64 or
     /// float64. If a number is missing, the array is float64 with NaN. Text and truth values are returned as a list
-    /// with None for missing values. The numbers are copied, unlike with Arrow's own readers.
+    /// with None for missing values. The numbers are copied, whereas readers of the Arrow stream share the memory of
+    /// the table.
     ///
     /// Raises KeyError with the existing names.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
@@ -270,7 +273,7 @@ impl Table {
     /// Creates a table from dictionaries, one for each row. Keys of nested dictionaries are joined with a point. Lists
     /// become JSON text. ``definitions`` maps names of columns to descriptions.
     ///
-    /// Raises :class:`pxpl5.SettingError` for a row that is no dictionary, or a value that no column can have.
+    /// Raises :class:`pxpl5.SettingError` for a row that is not a dictionary, or a value that no column can have.
     #[staticmethod]
     #[pyo3(signature = (rows, definitions = None))]
     fn from_rows<'py>(

@@ -1,10 +1,10 @@
 //! Speed of the pixel arrays: host time per command.
 //!
-//! Every list has 64 commands, about twice as many as a message, and criterion's throughput divides the time. Each list
-//! starts with a cleared or a covered array. Each primitive of a list is nearer than the one before, so its inside is
-//! stored.
+//! Every list has 64 commands, about twice as many as a message. The reported throughput is in commands. Each list
+//! starts with a cleared or a covered array. Each primitive of a list is nearer than the previous primitive, so all its
+//! inside pixels are stored.
 
-#![allow(missing_docs)] // Of what criterion's macros make.
+#![allow(missing_docs)] // The macros of criterion make items without docs.
 
 use criterion::{Bencher, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5_renderer::{
@@ -30,7 +30,7 @@ const fn component(level: i32) -> Linear {
     Linear { a: 311, b: -277, c: level << COLOUR_FRACTION_BITS }
 }
 
-/// Returns triangle `i` of a series in which each is nearer than the one before.
+/// Returns triangle `i` of a series in which each triangle is nearer than the previous triangle.
 fn triangle(v: [[i32; 2]; 3], i: i32) -> TriangleCommand {
     TriangleCommand {
         edges: [edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0])],
@@ -74,8 +74,8 @@ fn clears() -> Vec<u32> {
     list((0..COMMANDS as u32).map(|i| Command::Clear(Clear { colour: i })))
 }
 
-/// Returns sphere `i` of a series with radius `r` pixels around the middle, in which each is nearer than the one
-/// before.
+/// Returns sphere `i` of a series. Each sphere has a radius of `r` pixels, has its centre in the middle, and is nearer
+/// than the previous sphere.
 fn body(r: i64, i: i32) -> SphereBody {
     let depth = Linear::constant((1 << 30) - i * 1000);
     SphereBody { silhouette: silhouette(r), root_shift: 8, depth, depth_shift: 10 }
@@ -111,7 +111,7 @@ fn shades() -> Vec<u32> {
     list((0..COMMANDS).map(|_| Command::Shade(shade)))
 }
 
-/// Times `words` on an array that is cleared, or covered, before each run.
+/// Measures the time of `words` on an array that is cleared, or covered, before each run.
 fn timed(bencher: &mut Bencher<'_>, array: &mut impl PixelArray, words: &[u32], covered: bool) {
     let mut before = list(std::iter::once(Command::Clear(Clear { colour: 0 })));
     if covered {

@@ -18,7 +18,8 @@ const TOP: i32 = 128;
 
 type ScreenPoint = [f64; 2];
 
-/// Returns the edge from p to q, positive on its left, in sixteenths of a pixel, at pixel centres.
+/// Returns the expression of the edge from p to q, whose value is positive on the left of the edge. The points are in
+/// sixteenths of a pixel, and the expression is evaluated at pixel centres.
 fn edge(p: ScreenPoint, q: ScreenPoint) -> Linear {
     let a = -(q[1] - p[1]) * 16.0;
     let b = (q[0] - p[0]) * 16.0;
@@ -62,7 +63,8 @@ fn phong_triangle(v: [ScreenPoint; 3], depth: [f64; 3], normals: [[f64; 3]; 3], 
     Command::PhongTriangle(PhongTriangleCommand { edges: edges(v), depth: plane(v, depth, DEPTH), normal, colour })
 }
 
-/// A sphere without perspective of r < 64 pixels. Silhouette and root are in 2^-`fraction` of a square pixel.
+/// A sphere without perspective, with a radius r < 64 pixels. The unit of silhouette and root is 2^-`fraction` of a
+/// square pixel.
 struct FlatSphere {
     centre: ScreenPoint,
     radius: f64,
@@ -72,7 +74,7 @@ struct FlatSphere {
 impl FlatSphere {
     fn body(&self) -> SphereBody {
         let [x, y] = [self.centre[0] + f64::from(LEFT) - 0.5, self.centre[1] + f64::from(TOP) - 0.5];
-        // The root at the middle is 4000: 4000^2 = r^2 scale / 2^shift.
+        // The root at the middle is 4000, so 4000^2 = r^2 scale / 2^shift.
         let shift = 10_u8;
         let r = self.radius;
         let scale = 4000.0_f64.powi(2) * 1024.0 / (r * r);
@@ -128,7 +130,7 @@ const fn ball(x: f64, y: f64, radius: f64, depth: f64) -> FlatSphere {
 
 fn gouraud_picture() -> Vec<Command> {
     let light = [-0.5, -0.5, 0.7];
-    // Colours avoid 0 and 255: a component that rounds beyond the range of a plane wraps.
+    // Colours avoid 0 and 255, because a component that is rounded beyond the range wraps around.
     let corners = [[2.0, 2.0, 250.0], [250.0, 2.0, 2.0], [2.0, 250.0, 2.0]];
     vec![
         triangle([[10.0, 8.0], [120.0, 30.0], [30.0, 118.0]], [0.5, 0.5, 0.5], corners),

@@ -14,18 +14,19 @@ pub const EMPTY_PLANE: Plane = [0; PIXELS / 64];
 
 /// A 128 x 128 array of one-bit processors with 208 bits of memory each.
 ///
-/// After every instruction, all implementations agree in every bit of pixel memory and of Enable, and in [`Executed`].
+/// All implementations give the same result after every instruction: the same bits of pixel memory and of Enable, and
+/// the same [`Executed`].
 pub trait PixelArray {
     /// Executes a list of instructions.
     ///
     /// # Errors
-    /// [`ArrayFault`] at the first illegal word or operand. The instructions before the fault are executed. The illegal
-    /// instruction and the rest of the list are not executed. Faults are counted.
+    /// Returns [`ArrayFault`] for the first illegal word or operand. The instructions before the fault are executed.
+    /// The illegal instruction and the rest of the list are not executed. Faults are counted.
     fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault>;
 
     /// Executes the commands of a list that touch the region, and returns the regions whose pixels were copied.
     ///
-    /// A fault ends the execution, as on the hardware; pixels drawn before the fault stay. The final pixel memory is
+    /// A fault ends the execution, as on the hardware. Pixels drawn before the fault stay. The final pixel memory is
     /// the same as after [`Self::execute`], but Enable can differ. `room` is a buffer for words.
     fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
@@ -51,7 +52,7 @@ pub trait PixelArray {
     /// Overwrites the Enable register of all pixels.
     fn set_enable(&mut self, plane: &Plane);
 
-    /// Returns the colours of the selected context's upper left `width` x `height` pixels (at most 128 x 128). The
+    /// Returns the colours of the upper left `width` x `height` pixels (at most 128 x 128) of the selected context. The
     /// colours have the format 0x00RRGGBB and are ordered row by row.
     fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]>;
 
@@ -66,7 +67,7 @@ pub trait PixelArray {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Executed {
     pub instructions: u32,
-    /// Number of clocks for which the array was busy.
+    /// Number of clocks during which the array was busy.
     pub clocks: u64,
     /// Pixels sent to frame buffers, one entry for each output instruction.
     pub outputs: Vec<OutputRegion>,
@@ -94,7 +95,7 @@ pub struct ArrayFault {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FaultKind {
-    /// The words encode no instruction.
+    /// The words do not encode an instruction.
     #[error("{0}")]
     Illegal(DecodeErrorKind),
     /// A field extends beyond the end of pixel memory. The field's address is relative to the selected context.

@@ -1,6 +1,6 @@
 //! Bit-serial reference model of the pixel array: one bit of one instruction per clock, as in the hardware.
 //!
-//! The array has two modes. The default mode moves all planes of all pixels, and defines correct behaviour. The
+//! The array has two modes. The default mode moves all bit planes of all pixels, and defines correct behaviour. The
 //! skipping mode (see [`runs`]) leaves out work that changes no bit. Tests check that both modes agree in every bit,
 //! clock and fault.
 
@@ -26,16 +26,15 @@ use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 
 /// Pixel array of 208 bit planes, an Enable plane and serial adders, like the hardware.
 ///
-/// Clocks are counted while planes move. So the count is an independent test of [`crate::isa::timing`]. The array is
-/// the reference model unless [`Self::skipping`] was called.
+/// Clocks are counted while planes move. The count is therefore an independent test of [`crate::isa::timing`]. The
+/// array is the reference model unless [`Self::skipping`] was called.
 #[derive(Clone, Debug)]
 pub struct BitSerial {
     layout: Layout,
     vectors: PresentVectors,
     controller: Controller,
     tiles: Vec<Tile>,
-    /// Bit planes of each block of the backing store; `None` if nothing was stored in the block. The planes are ordered
-    /// by tile.
+    /// Bit planes of each block of the backing store, ordered by tile. `None` if the block was not stored yet.
     backing: Vec<Option<Vec<TilePlane>>>,
     clock: u64,
     faults: u64,
@@ -51,7 +50,8 @@ impl BitSerial {
         Self::with_vectors(layout, Vectors::best())
     }
 
-    /// Creates an array of zeros that uses the given vector unit, or the portable one if the processor lacks that unit.
+    /// Creates an array of zeros that uses the given vector unit, or the portable unit if the processor lacks the given
+    /// unit.
     #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
@@ -70,7 +70,8 @@ impl BitSerial {
     /// Turns on the skipping mode, which leaves out work that changes no bit.
     ///
     /// Disabled pixels move no planes. If the signs at the corners of a tile determine the sign in the whole tile, the
-    /// adders do not run. Clocks, faults and all bits stay the same. The default mode takes ten times as long.
+    /// adders do not run. Clocks, faults and all bits stay the same. The default mode takes ten times as long as the
+    /// skipping mode.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }
@@ -120,7 +121,7 @@ impl BitSerial {
     }
 
     fn enable_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
-        // A one-bit operand names one plane of pixel memory.
+        // A one-bit operand refers to one plane of pixel memory.
         match *instruction {
             ArrayInstruction::EnableAll { .. } => self.each_tile(|tile| tile.enable = FULL),
             ArrayInstruction::EnableNone => self.each_tile(|tile| tile.enable = EMPTY),
@@ -153,8 +154,7 @@ impl BitSerial {
             tile.clock = 0;
             tile.field_instruction(&self.controller, instruction)?;
         }
-        // All tiles work in step, so the clocks of one tile are the clocks of all tiles. A skipped tile counts no
-        // clocks.
+        // All tiles work in step, so one tile gives the number of clocks of all tiles. A skipped tile counts no clocks.
         self.clock += if self.skipping { instruction.bit_clocks().into() } else { self.tiles[0].clock };
         Ok(())
     }

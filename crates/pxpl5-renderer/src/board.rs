@@ -1,4 +1,5 @@
-//! The renderer board: input FIFO and controller on one side, the output port to the frame buffers on the other.
+//! The renderer board. On one side are the input FIFO and the controller, and on the other side is the output port to
+//! the frame buffers.
 
 use crate::command::CommandKind;
 use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
@@ -36,9 +37,10 @@ pub enum RendererEvent {
 /// An output of a renderer board.
 #[derive(Debug)]
 pub enum RendererOutput {
-    /// Notice of the time at which the last word of the announced message enters the FIFO.
+    /// Notice to the sender: the time at which the last word of the announced message enters the FIFO.
     Accept {
-        /// Time at which the last word is in the FIFO. Each word takes one word time, plus its wait for room.
+        /// Time at which the last word is in the FIFO. Each word takes one word time, plus the wait for room in the
+        /// FIFO.
         last_word_at: Time,
     },
     /// A message for the ring.
@@ -75,21 +77,21 @@ pub struct Renderer {
     cycle: Span,
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
-    /// True if two optimizations are on: regions without primitives are cached, and commands that touch no pixel are
-    /// left out.
+    /// True if two optimizations are on. The first caches regions without primitives, and the second leaves out
+    /// commands that touch no pixel.
     caches_empty_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
-    /// Copy whose region is on its way to a frame buffer; `None` if there is none.
+    /// Copy whose region is being sent to a frame buffer. `None` if no region is being sent.
     copying: Option<CopyOrder>,
-    /// Copies through the backing store whose regions are still in pixel memory. The transfer of the first region to
-    /// the backing store can be in progress.
+    /// Copies through the backing store whose regions are still in pixel memory. The transfer of the first of these
+    /// regions to the backing store can be in progress.
     unstored: VecDeque<PendingCopy>,
     storing: bool,
-    /// Copies whose regions are in the backing store. Each waits for an earlier transfer, or for the command that
+    /// Copies whose regions are in the backing store. Each copy waits for an earlier transfer, or for the command that
     /// releases it.
     stored: VecDeque<PendingCopy>,
-    /// Command lists received so far. They are kept only while the FIFO is watched.
+    /// Command lists received so far. The lists are kept only while the FIFO is watched.
     sent: Option<SentLists>,
     /// Regions whose copy commands have started since the last call of `drain_drawn`.
     drawn: Vec<DrawnRegion>,
@@ -101,19 +103,19 @@ pub struct Renderer {
 pub struct DrawnRegion {
     /// Display, buffer and place for which the region is drawn.
     pub target: CopyTarget,
-    /// Number of words that carry the region's pixels to the frame buffer.
+    /// Number of words that transfer the region's pixels to the frame buffer.
     pub words: u32,
-    /// Time at which the controller ended its work on the previous region.
+    /// Time at which the controller finished its work on the previous region.
     pub begun_at: Time,
     /// Time at which the last command before the copy command ended. The controller then waited for the copy command.
     pub finished_at: Time,
-    /// Start time of the copy command. It is later than `finished_at` if the copy command arrived later.
+    /// Start time of the copy command. This time is later than `finished_at` if the copy command arrived later.
     pub copy_at: Time,
     /// Execution time of the commands since `begun_at`. For the rest of the time, the controller waited for commands.
     pub executed: Span,
 }
 
-/// Command lists sent to a region context since it was last cleared.
+/// Command lists sent to a region context since the last clear of this context.
 #[derive(Clone, Debug, Default)]
 struct ContextLog {
     cleared: bool,
@@ -122,7 +124,7 @@ struct ContextLog {
 }
 
 impl ContextLog {
-    /// Drops all lists. Pixel jobs of copied regions keep their own reference to the lists.
+    /// Removes all lists. Pixel jobs of copied regions keep their own reference to the lists.
     fn clear(&mut self) {
         self.cleared = true;
         match Arc::get_mut(&mut self.lists) {
@@ -138,7 +140,7 @@ impl ContextLog {
 struct PendingCopy {
     order: CopyOrder,
     image: Arc<dyn PixelSource>,
-    /// True if the region can leave the backing store as soon as it is complete there.
+    /// True if the region can leave the backing store as soon as the store holds the complete region.
     is_released: bool,
 }
 
@@ -184,7 +186,7 @@ impl Renderer {
         self.note(&message, context.now());
         match message.body {
             Body::Commands(list) => self.take(list),
-            // Words that are no known command still take room in the FIFO. The controller discards them.
+            // Words that are not a known command also occupy the FIFO. The controller discards them.
             Body::Pixels(_) | Body::Words(_) => {
                 self.stats.illegal_commands += 1;
                 self.fifo.take(CommandBatch { words_each: message.words, count: 1, span_each: Some(Span::ZERO) });
@@ -212,12 +214,12 @@ impl Renderer {
         if let Some(start) = progress.blocks {
             context.schedule(start, Phase::Work, RendererEvent::CopyBegins);
         }
-        // A clear hides everything that was sent before.
     }
 
     fn take(&mut self, list: CommandList) {
         let log = &mut self.logs[usize::from(list.context) % MAX_CONTEXTS];
         if words_before_clear(&list.runs).is_some() {
+            // A clear hides all earlier drawing in the context.
             log.clear();
         }
         if let Some(content) = list.content.filter(|_| changes_pixels(&list.runs)) {
@@ -254,19 +256,19 @@ impl Renderer {
             return Arc::new(NoPixels { words: width * height * order.content.words() });
         }
         Arc::new(PixelJob {
-            // The pixels are computed later, from the lists of this moment.
             pool: Arc::clone(&self.pool),
+            // The pixels are computed later, from the lists that have arrived until now.
             lists,
             cleared,
             saves: self.caches_empty_regions,
             target: order.target,
-            // Copy commands execute in the order in which their lists arrived.
             content: order.content,
             done: OnceLock::new(),
         })
     }
 
     fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
+        // Copy commands execute in the order in which their lists arrived.
         let Some(copy) = self.copies.pop_front() else {
             // A copy command without an order addresses no frame buffer, so it ends at once.
             self.stats.illegal_commands += 1;
@@ -303,14 +305,14 @@ impl Renderer {
         self.transfer_next(context);
     }
 
-    /// Moves a finished region's colours to the backing store when the store has room. If depths are copied too, they
-    /// move as a second block.
+    /// Moves a finished region's colours to the backing store when the store has room. If the copy includes depths, the
+    /// depths move as a second block.
     ///
     /// The controller continues when the move is complete.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
         let Some(blocks) = self.unstored.front().map(|copy| u64::from(copy.order.content.words())) else { return };
-        // Only one move at a time, and only into free blocks.
-        // A region whose transfer is in progress still occupies its blocks.
+        // Only one region moves at a time, and only into free blocks. A region that is being sent still occupies its
+        // blocks.
         let held: u64 = self
             .stored
             .iter()
@@ -354,12 +356,12 @@ impl Renderer {
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
         let all = width * height * order.content.words();
         let parts = all.div_ceil(MAX_MESSAGE_WORDS);
-        // Reserve the frame buffer's port for all parts. Only the last part asks for a report of its delivery.
+        // Reserve the frame buffer's port for all parts. Only the last part requests a report of its delivery.
         for part in 0..parts {
             let words = MAX_MESSAGE_WORDS.min(all - part * MAX_MESSAGE_WORDS);
             let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(image), part, parts });
             let message = Message { source: self.node, destination: order.target.frame_buffer, words, body };
-            // Acknowledge the copy before the next transfer, if the order asks for it.
+            // Acknowledge the copy before the next transfer, if the order requests an acknowledgement.
             let last = part + 1 == parts;
             let output = RendererOutput::Send { message, ticket: last, hold: !last };
             context.output(context.now() + self.cycle, output);
@@ -411,8 +413,8 @@ impl Renderer {
         self.drawn.drain(..)
     }
 
-    /// Returns pixel memory as it is after all received command lists. In each region context, lists before the last
-    /// clear have no effect.
+    /// Returns pixel memory in its state after all received command lists. In each region context, lists before the
+    /// last clear have no effect.
     ///
     /// Returns `None` if no context has received lists that change pixels, for example when pixels are off.
     #[must_use]
@@ -430,7 +432,8 @@ impl Renderer {
         Some(array)
     }
 
-    /// Turns off two optimizations. From now on, no region is cached, and commands that touch no pixel are drawn too.
+    /// Turns off two optimizations. From this call on, no region is cached, and commands that touch no pixel are
+    /// executed as well.
     pub const fn draw_every_region(&mut self) {
         self.caches_empty_regions = false;
     }
@@ -468,10 +471,10 @@ impl Renderer {
         self.sent.as_ref()?.executed(started, self.pool.layout())
     }
 
-    /// Returns the changes of the number of words in the FIFO since the last call. They are not sorted by time.
+    /// Returns the changes of the number of words in the FIFO since the last call. The changes are not sorted by time.
     ///
-    /// A positive change is a command that has arrived completely; a negative change is a command that starts. A time
-    /// can lie in the future. It is then a prediction from the input known so far.
+    /// A positive change is a command that has arrived completely. A negative change is a command that starts. A time
+    /// in the future is a prediction from the input that has arrived so far.
     pub fn take_fifo_changes(&mut self) -> Vec<(Time, i64)> {
         self.fifo.take_changes()
     }

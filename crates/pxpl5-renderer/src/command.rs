@@ -6,10 +6,11 @@
 //!
 //! # Formats
 //!
-//! - Edge: a pixel is inside where the expression is `>= 0`. For pixels exactly on the edge, the sender adjusts `c` by
-//!   the tie rule.
+//! - Edge: a pixel is inside if the expression is `>= 0` at this pixel. The sender adjusts `c` so that pixels exactly
+//!   on the edge follow the tie rule.
 //! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is
-//!   **strictly less** than the stored one. A layout with a narrower Z stores and compares the upper bits of the depth.
+//!   **strictly less** than the stored depth. A layout with a narrower Z stores and compares the upper bits of the
+//!   depth.
 //! - Colour component: `(e >> COLOUR_FRACTION_BITS) & 255`. Values outside 0 to 255 wrap, so senders keep triangles
 //!   inside this range. Spheres are limited to 0 .. 255.
 //! - Normal component: `(e >> NORMAL_FRACTION_BITS)` in 12 bits, two's complement, with wrap-around.
@@ -49,25 +50,25 @@ use pxpl5_wire::Word;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum CommandKind {
-    /// Selects the context and the region of the commands that follow: see [`SelectRegion`].
+    /// Selects the context and the region of the following commands (see [`SelectRegion`]).
     SelectRegion = 1,
-    /// Clears colour and Z: see [`Clear`].
+    /// Clears colour and Z (see [`Clear`]).
     Clear = 2,
-    /// Draws a triangle with interpolated colour: see [`TriangleCommand`].
+    /// Draws a triangle with interpolated colour (see [`TriangleCommand`]).
     Triangle = 3,
-    /// Draws a triangle with normals: see [`PhongTriangleCommand`].
+    /// Draws a triangle with normals (see [`PhongTriangleCommand`]).
     PhongTriangle = 4,
-    /// Draws a sphere with interpolated colour: see [`SphereCommand`].
+    /// Draws a sphere with interpolated colour (see [`SphereCommand`]).
     Sphere = 5,
-    /// Draws a sphere with normals: see [`PhongSphereCommand`].
+    /// Draws a sphere with normals (see [`PhongSphereCommand`]).
     PhongSphere = 6,
-    /// Shades all pixels at the end of the frame: see [`Shade`].
+    /// Shades all pixels at the end of the frame (see [`Shade`]).
     Shade = 7,
-    /// Copies the region to a frame buffer: see [`CopyRegion`].
+    /// Copies the region to a frame buffer (see [`CopyRegion`]).
     CopyRegion = 8,
-    /// Stores 32 bits of every pixel in the backing store: see [`StoreBacking`].
+    /// Stores 32 bits of every pixel in the backing store (see [`StoreBacking`]).
     StoreBacking = 9,
-    /// Loads 32 bits of every pixel from the backing store: see [`LoadBacking`].
+    /// Loads 32 bits of every pixel from the backing store (see [`LoadBacking`]).
     LoadBacking = 10,
     /// Waits until the backing store is idle.
     WaitBacking = 11,
@@ -120,7 +121,7 @@ impl CommandKind {
         }
     }
 
-    /// Returns the number of clocks for which the command's program keeps the array busy.
+    /// Returns the number of clocks during which the command's program keeps the array busy.
     ///
     /// # Errors
     /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
@@ -128,18 +129,9 @@ impl CommandKind {
         let program = Command::blank(self).program(layout)?;
         Ok(program.iter().map(ArrayInstruction::clocks).sum())
     }
-
-    /// Returns the number of clocks for which the backing store is busy after the command, in parallel with the array.
-    #[must_use]
-    pub const fn backing_clocks(self) -> u32 {
-        match self {
-            Self::StoreBacking | Self::LoadBacking => crate::isa::timing::BACKING_CLOCKS,
-            _ => 0,
-        }
-    }
 }
 
-/// The error for a command that needs a field which the layout lacks.
+/// An error for a command that needs a field. The layout lacks this field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
@@ -153,7 +145,7 @@ pub struct Unsupported {
 /// A command with its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// Selects the context and the region of the commands that follow.
+    /// Selects the context and the region of the following commands.
     SelectRegion(SelectRegion),
     /// Clears colour and Z.
     Clear(Clear),
@@ -237,8 +229,8 @@ impl Command {
     /// Decodes the command that begins at word `position`. Returns the command and its length in words.
     ///
     /// # Errors
-    /// Returns [`DecodeError`] if the words encode no instructions, or if they are not the program of a command in this
-    /// layout.
+    /// Returns [`DecodeError`] if the words do not encode instructions, or if the instructions are not the program of a
+    /// command in this layout.
     pub fn decode(words: &[Word], position: usize, layout: &Layout) -> Result<(Self, usize), DecodeError> {
         let (first, _) = ArrayInstruction::decode(words, position)?;
         // The label of the first instruction gives the kind, and the kind gives the number of words.
@@ -248,7 +240,7 @@ impl Command {
         let program = decode_range(&words[..end], position)?;
         let command = Self::from_program(kind, &program, layout)
             .ok_or_else(|| not_the_command(words, position, kind.opcode()))?;
-        // Equal operands do not prove that the rest of the program is equal, so compare the whole program.
+        // The operands do not determine the other words in the list, so compare the whole program.
         match command.program(layout) {
             Ok(expected) if expected == program => Ok((command, length)),
             _ => Err(not_the_command(words, position, kind.opcode())),
@@ -273,7 +265,7 @@ impl Command {
     }
 
     /// Extracts the operands from the program of a command. Other parts of the program can still differ, so the caller
-    /// must compare all of it.
+    /// must compare the whole program.
     fn from_program(kind: CommandKind, program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
         Some(match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::read(program, layout)?),

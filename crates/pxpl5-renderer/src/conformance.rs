@@ -1,8 +1,8 @@
-//! Conformance suite for pixel arrays: after every list, an array must equal another array in every bit.
+//! Conformance suite for pixel arrays. After every list, two arrays must be equal in every bit.
 //!
 //! [`crate::BitSerial`] is the reference model. A test of another array calls [`instructions`] and [`commands`] once.
-//! It also calls [`random_round`] with the round numbers 0, 1, 2 and so on. The round number alone is enough to repeat
-//! a failing round.
+//! The test also calls [`random_round`] with the round numbers 0, 1, 2 and so on. A failing round can be repeated with
+//! its round number alone.
 
 mod random;
 
@@ -24,10 +24,10 @@ pub struct Mismatch {
     pub difference: String,
 }
 
-/// Executes a list on both arrays. Then compares their results, Enable, and all 208 bits of all pixels.
+/// Executes a list on both arrays, then compares the results of the arrays, Enable, and all 208 bits of all pixels.
 ///
 /// # Errors
-/// The first [`Mismatch`].
+/// Returns the first [`Mismatch`].
 pub fn agree(
     definition: &mut impl PixelArray,
     subject: &mut impl PixelArray,
@@ -98,7 +98,7 @@ fn noise(random: &mut Random) -> Plane {
 /// Tests every instruction with extreme operands, on arrays of random bits.
 ///
 /// # Errors
-/// The first [`Mismatch`].
+/// Returns the first [`Mismatch`].
 pub fn instructions(definition: &mut impl PixelArray, subject: &mut impl PixelArray) -> Result<(), Mismatch> {
     let mut random = Random::new(1);
     scramble(&mut random, definition, subject);
@@ -115,7 +115,7 @@ pub fn instructions(definition: &mut impl PixelArray, subject: &mut impl PixelAr
 /// Tests random lists of the layout's commands, on arrays of random bits, in six rounds.
 ///
 /// # Errors
-/// The first [`Mismatch`].
+/// Returns the first [`Mismatch`].
 pub fn commands(
     layout: &Layout,
     definition: &mut impl PixelArray,
@@ -127,11 +127,11 @@ pub fn commands(
     Ok(())
 }
 
-/// Runs one round of random tests: fills the arrays with random bits, then executes lists of commands, single
+/// Runs one round of random tests. The round fills the arrays with random bits, then executes lists of commands, single
 /// instructions and invalid words.
 ///
 /// # Errors
-/// The first [`Mismatch`]. Its text contains the round number.
+/// Returns the first [`Mismatch`], with a text that contains the round number.
 pub fn random_round(
     layout: &Layout,
     number: u64,
@@ -157,7 +157,7 @@ fn corner_instructions() -> Vec<ArrayInstruction> {
         ArrayInstruction::Select { context_base: 52, left: u16::MAX, top: 384 },
         ArrayInstruction::Wait,
     ];
-    // Instructions with expressions, fields or constants have generators of their own.
+    // Instructions with expressions, fields or constants have separate generators.
     out.extend(corner_expressions());
     out.extend(corner_fields());
     out.extend(corner_constants());
@@ -174,7 +174,7 @@ const EXTREMES: [i32; 6] = [0, 1, -1, i32::MAX, i32::MIN, 0x5555_5555];
 
 fn corner_expressions() -> Vec<ArrayInstruction> {
     let mut out = Vec::new();
-    // Combine each extreme value with two others, so that every coefficient takes every value.
+    // Combine each extreme value with two other values, so that every coefficient has every value.
     for (i, a) in EXTREMES.into_iter().enumerate() {
         let b = EXTREMES[(i + 1) % 6];
         let c = EXTREMES[(i + 3) % 6];
@@ -294,7 +294,8 @@ mod tests {
                 legal.insert(words[0] >> 24);
             }
         }
-        // Every list of the suite begins with "enable all". The test next to this suite compares outputs in `Executed`.
+        // Every list of the suite begins with "enable all". A test outside this suite compares the outputs in
+        // `Executed`.
         let expected: BTreeSet<u32> = [0x02..=0x07, 0x10..=0x14, 0x20..=0x24, 0x30..=0x3c, 0x40..=0x43]
             .into_iter()
             .chain([0x48..=0x4b, 0x50..=0x51, 0x60..=0x62])

@@ -13,9 +13,10 @@ pub(crate) fn changes_pixels(runs: &[CommandRun]) -> bool {
     runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))
 }
 
-/// Returns the number of words before the clear, if a command list begins by clearing its context.
+/// Returns the number of words before the clear command, if a command list begins with the clearing of its context.
+/// Returns `None` for other lists.
 ///
-/// When such a list has started, all earlier drawing in the context is erased. For other lists, returns `None`.
+/// When such a list has started, all earlier drawing in the context is erased.
 pub(crate) fn words_before_clear(runs: &[CommandRun]) -> Option<u64> {
     let mut words = 0;
     for run in runs {

@@ -54,8 +54,8 @@ impl Controller {
         Ok((instruction, used))
     }
 
-    /// Stores the coefficients of an expression, or takes those of the last expression of this kind. Returns the
-    /// expression with the array's upper left pixel as origin.
+    /// Stores the coefficients of an expression. An expression without coefficients uses the coefficients of the last
+    /// expression of its kind. Returns the expression with the array's upper left pixel as origin.
     pub(crate) fn latch(&mut self, expression: &Expression) -> LocalExpression {
         match expression {
             Expression::Linear(linear) => self.linear = *linear,
@@ -80,14 +80,13 @@ impl Controller {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }
 
-    /// Stores the last linear coefficients of a command that was executed as a whole. A later instruction can reuse
-    /// them.
+    /// Stores the last linear coefficients of a command that was executed as a whole, for reuse by a later instruction.
     pub(crate) fn hold(&mut self, linear: Linear) {
         self.linear = linear;
     }
 
-    /// Stores the last quadratic coefficients of a command that was executed as a whole. A later instruction can reuse
-    /// them.
+    /// Stores the last quadratic coefficients of a command that was executed as a whole, for reuse by a later
+    /// instruction.
     pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
         self.quadratic = quadratic;
     }
@@ -105,7 +104,7 @@ impl Controller {
         }
     }
 
-    /// Returns the bits of pixel memory that an operand means in the selected context.
+    /// Returns the bits of pixel memory to which an operand refers in the selected context.
     ///
     /// # Errors
     /// Returns [`FaultKind::FieldOutOfRange`] if the field ends beyond pixel memory.

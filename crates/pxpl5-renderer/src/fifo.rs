@@ -1,16 +1,16 @@
 //! The input FIFO and the controller that empties it. Times of commands are computed by formulas, without an event for
-//! each.
+//! each command.
 //!
-//! Rules (assumed where the papers are silent):
+//! Rules (the rules that the papers do not state are assumed):
 //!
 //! - A word enters the channel once the FIFO has room for this word. Each word takes one word time on the channel.
-//! - A command starts when all its words have arrived and the command before it has ended.
+//! - A command starts when all its words have arrived and the previous command has ended.
 //! - The words of a command leave the FIFO when the command starts.
 //! - A *blocking* command (copy of a region) ends when [`InputFifo::resume`] is called. No later command starts before
 //!   its end.
 //!
-//! A SIMD array takes the same time for any data. So all start and end times follow from the arrival times, and a
-//! command needs no event.
+//! A SIMD array takes the same time for any data. All start and end times therefore follow from the arrival times, and
+//! a command needs no event.
 
 use pxpl5_sim::{Span, Time};
 use std::collections::VecDeque;
@@ -20,14 +20,14 @@ use std::collections::VecDeque;
 pub(crate) struct CommandBatch {
     pub(crate) words_each: u32,
     pub(crate) count: u32,
-    /// Execution time of one command; `None` if it is a blocking command.
+    /// Execution time of one command. `None` for blocking commands.
     pub(crate) span_each: Option<Span>,
 }
 
-/// Future times that become known when words arrive or when a copy ends.
+/// Future times that are computed when words arrive or when a copy ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
-    /// Time at which the last word of the arriving message enters the FIFO; `None` while this time is unknown.
+    /// Time at which the last word of the arriving message enters the FIFO. `None` while this time is unknown.
     pub(crate) accepted: Option<Time>,
     /// Time at which a blocking command starts.
     pub(crate) blocks: Option<Time>,
@@ -55,8 +55,8 @@ struct Departure {
 }
 
 impl Departure {
-    /// Returns the index of the command whose start frees the room for `word`. If `word` lies beyond the room of all
-    /// these commands, returns the last index.
+    /// Returns the index of the command whose start makes room for the word with index `word`. If no start of these
+    /// commands makes room for this word, the function returns the last index.
     ///
     /// `word` must be at least `made_room_for`.
     const fn last_for(&self, word: u64) -> u64 {
@@ -78,7 +78,7 @@ impl Departure {
     }
 }
 
-/// Start times of past commands, kept as long as the arrival of a later word can depend on them.
+/// Start times of past commands. A start time is kept as long as the arrival of a later word can depend on it.
 #[derive(Debug, Default)]
 struct StartTimes(VecDeque<Departure>);
 
@@ -86,9 +86,9 @@ impl StartTimes {
     /// Returns the time at which the words with indices `first` to `last` have all entered. The result is at least
     /// `soonest`.
     ///
-    /// Each word waits until the FIFO has room for it. Then this word and each word after it take one word time on the
-    /// channel. `first` must not decrease from call to call. Among commands that start at equal intervals, only the
-    /// last one that frees room matters. The reason: an interval is at least as long as the transfer of the words.
+    /// Each word waits until the FIFO has room for it, and then takes one word time on the channel. `first` must not
+    /// decrease from call to call. For commands that start at equal intervals, only the last command that makes room
+    /// matters. The reason is that an interval is at least as long as the transfer of a command's words.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -103,7 +103,7 @@ impl StartTimes {
         complete
     }
 
-    /// Drops the commands whose freed room is needed only by words before `first`.
+    /// Removes the commands that made room only for words before `first`.
     #[inline]
     fn discard_before(&mut self, first: u64) {
         while self.0.get(1).is_some_and(|next| next.made_room_for <= first) {
@@ -128,7 +128,7 @@ pub(crate) struct InputFifo {
     left: StartTimes,
     words_left: u64,
     waiting: VecDeque<HeldCommand>,
-    /// Time from which the controller is free; `None` while a blocking command runs.
+    /// Time from which the controller is free. `None` while a blocking command runs.
     free_at: Option<Time>,
     busy: Span,
     /// Total time for which blocking commands have occupied the controller.
@@ -140,25 +140,25 @@ pub(crate) struct InputFifo {
     watched: Option<Watched>,
 }
 
-/// Limit between two kinds of commands at the start of a list. If the controller has waited, a command up to this
-/// length can be the selection of the region to copy. A longer command draws the region. A selection takes 6 clocks of
-/// 40 MHz, which are 150 ns.
+/// Longest execution time of a command that counts as the selection of the region to copy. A longer command draws the
+/// region. The limit matters if the controller waited before the command. A selection takes 6 clocks of 40 MHz, which
+/// are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
 /// Times of the last blocking command and of the commands before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Block {
-    /// Time from which the controller was free for the commands before this one. `finished_at` is the end time of the
-    /// last of these commands. If the controller waited for the selection of the region to copy, this selection does
-    /// not count.
+    /// Time at which the previous blocking command ended. From this time on, the controller could execute the commands
+    /// before this command. The next field, `finished_at`, is the end time of the last of these commands. The selection
+    /// of the region to copy does not count if the controller waited for it.
     pub(crate) begun_at: Time,
     pub(crate) finished_at: Time,
     /// Start time of the blocking command.
     pub(crate) start: Time,
-    /// Execution time of the commands between the previous blocking command and this one.
+    /// Execution time of the commands between the previous blocking command and this command.
     pub(crate) executed: Span,
-    /// Execution time of all commands before this one. `resumed_at` is the time at which the previous blocking command
-    /// ended.
+    /// Execution time of all commands before this command. The next field, `resumed_at`, is the time at which the
+    /// previous blocking command ended.
     busy: Span,
     resumed_at: Time,
 }
@@ -173,10 +173,10 @@ struct Watched {
     left: Course,
 }
 
-/// A sum that only grows, as a function of time. It is recorded from the last call of `discard_before` on.
+/// A sum that only increases, as a function of time. The record begins at the last call of `discard_before`.
 #[derive(Debug, Default)]
 struct Course {
-    /// Times at which the sum grows, in ascending order, with the new sum.
+    /// Times at which the sum increases, in ascending order, each with the new sum.
     steps: VecDeque<(Time, u64)>,
     /// The sum before the first entry of `steps`.
     before: u64,
@@ -259,8 +259,7 @@ impl InputFifo {
     }
 
     /// Returns the total execution time until `now`, without blocking commands. `now` must not be before the last
-    /// event. The result assumes that the received commands that have not ended by `now` run without a gap from `now`
-    /// on.
+    /// event. The result assumes that all received but unfinished commands run without a gap from `now` on.
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
         Span(self.busy.0.saturating_sub(ahead))
@@ -288,7 +287,7 @@ impl InputFifo {
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
     }
 
-    /// Drops the parts of the record that concern times before `now`.
+    /// Removes the parts of the record for times before `now`.
     pub(crate) fn discard_before(&mut self, now: Time) {
         if let Some(Watched { entered, left, .. }) = &mut self.watched {
             entered.discard_before(now);
@@ -296,12 +295,12 @@ impl InputFifo {
         }
     }
 
-    /// Returns the changes of the FIFO's content since the last call. They are not sorted by time.
+    /// Returns the changes of the FIFO's content since the last call. The changes are not sorted by time.
     pub(crate) fn take_changes(&mut self) -> Vec<(Time, i64)> {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
 
-    /// Returns true while a command runs that does not block, as far as the received commands tell.
+    /// Returns true while a non-blocking command runs, according to the commands received so far.
     pub(crate) fn is_executing(&self, now: Time) -> bool {
         self.free_at.is_some_and(|free_at| free_at > now)
     }
@@ -348,18 +347,19 @@ impl InputFifo {
         progress
     }
 
-    /// Computes all commands of a batch at once. The results equal those of [`InputFifo::arrival`] and
+    /// Computes all commands of a batch at once. The results equal the results of [`InputFifo::arrival`] and
     /// [`InputFifo::start`], called for each command.
     ///
     /// The FIFO must not be watched. Each command must fit in the FIFO, must not block, and must take at least as long
-    /// as the transfer of its words. Then each command after the first starts at the end of the previous command. Its
-    /// last word has arrived by then: its first word found room, at the latest, when the previous command started.
+    /// as the transfer of its words. Each command after the first then starts at the end of the previous command. At
+    /// this time its last word has arrived, because its first word found room at the latest at the start of the
+    /// previous command.
     fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,
             "only behind a block does anything wait"
         );
-        // The first command may still wait for its words. Each other command starts when the previous one ends.
+        // The first command can still wait for its words. Each other command starts when the previous one ends.
         let words = u64::from(work.words_each);
         let count = u64::from(work.count);
         let first = self.words_in;
@@ -414,8 +414,8 @@ impl InputFifo {
         None
     }
 
-    /// Starts a command that has arrived completely, or queues it while a blocking command runs. Returns the start time
-    /// if the command blocks.
+    /// Starts a command that has arrived completely. While a blocking command runs, the function puts the command into
+    /// the queue. Returns the start time if the command blocks.
     fn start_or_wait(&mut self, command: HeldCommand) -> Option<Time> {
         match self.free_at {
             Some(free_at) => self.start(command, free_at),
@@ -430,8 +430,8 @@ impl InputFifo {
     /// blocks.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
-        // The words of a copy command arrive after those of its selection. This wait is not a wait for the commands of
-        // the region.
+        // The words of a copy command arrive after the words of the selection. This wait is not a wait for the commands
+        // of the region.
         if command.span.is_some() {
             self.note_wait(free_at, start);
         }
@@ -447,7 +447,7 @@ impl InputFifo {
             Some(span) => self.busy += span,
             None => {
                 let before = self.last_block;
-                // If the copy command came late, at most the selection of its region ran since the wait.
+                // If the copy command arrived late, at most the selection of its region ran after the wait.
                 let (idle_from, idle_to) = self.last_wait;
                 let is_late = idle_from >= before.resumed_at && free_at.0.saturating_sub(idle_to.0) <= SELECTION.0;
                 let finished_at = if is_late { idle_from.min(free_at) } else { free_at };
@@ -472,7 +472,7 @@ mod tests {
 
     const WORD: Span = Span(50_000);
 
-    /// Reference model of the rules, which handles one word at a time.
+    /// A reference model of the rules, which handles one word at a time.
     struct ReferenceFifo {
         depth: usize,
         held: VecDeque<Time>,
@@ -486,7 +486,7 @@ mod tests {
             let mut starts = Vec::new();
             for (words, ns) in commands {
                 for _ in 0..*words {
-                    // A word enters when the word that is one FIFO depth ahead of it has left.
+                    // Word n enters the FIFO when word n - depth has left the FIFO.
                     let room =
                         if self.held.len() < self.depth { Time::ZERO } else { self.held[self.held.len() - self.depth] };
                     self.last_word_at = self.last_word_at.max(room) + WORD;
@@ -559,7 +559,7 @@ mod tests {
         // The copy's words left when it started, so three triangles (90 words) enter.
         let second = message(&mut fifo, Time(500_000), [CommandBatch { count: 3, ..triangle }]);
         assert_eq!(second.accepted, Some(Time(500_000 + 90 * 50_000)));
-        // Twenty words of the next triangle have no room before the copy ends.
+        // For twenty words of the next triangle, there is no room before the copy ends.
         assert_eq!(message(&mut fifo, Time(5_000_000), [triangle]).accepted, None);
         let resumed = fifo.resume(Time(80_000_000));
         assert_eq!(resumed.accepted, Some(Time(80_000_000 + 20 * 50_000)));
@@ -572,8 +572,8 @@ mod tests {
         let clump = CommandBatch { words_each: 30, count: 5, span_each: Some(Span::from_ns(6_675)) };
         message(&mut fifo, Time::ZERO, [copy]);
         assert_eq!(message(&mut fifo, Time(500_000), [clump]).accepted, None);
-        // The FIFO has room for 100 of the 150 words. When the copy ends, the first triangle makes room for 30 more. The
-        // second triangle makes room for the last 20 words 6.675 us later.
+        // The FIFO has room for 100 of the 150 words. When the copy ends, the first triangle makes room for 30 more
+        // words. The second triangle makes room for the last 20 words, 6.675 us later.
         let resumed = fifo.resume(Time(80_000_000));
         assert_eq!(resumed.accepted, Some(Time(80_000_000 + 6_675_000 + 20 * 50_000)));
         // The controller is free after the fifth triangle.
@@ -593,9 +593,11 @@ mod tests {
 
     #[test]
     fn a_thirty_triangle_clump_stalls_its_sender_by_what_the_fifo_cannot_hold() {
-        // 30 commands of 29 words, 6.675 us each. The first starts when its 29 words are in (1.45 us). Word k >= 448
-        // waits for the command that holds word k - 448, so the last word (869) waits for the start of command
-        // floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us; it is word 15 of those that wait for it (421 - 406).
+        // 30 commands have 29 words and take 6.675 us each. The first command starts when its 29 words have entered
+        // (1.45 us). Word k >= 448 waits for the start of the command with word k - 448. The last word (869) therefore
+        // waits for the start of command floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us. This start makes room
+        // for 29 words. The last word is the 16th of these words (421 - 406 + 1), so it enters 16 word times after this
+        // start.
         let mut fifo = InputFifo::new(448, WORD);
         let clump = CommandBatch { words_each: 29, count: 30, span_each: Some(Span::from_ns(6_675)) };
         let accepted = message(&mut fifo, Time::ZERO, [clump]).accepted;

@@ -3,14 +3,14 @@
 //! No list of the machine's instructions is public. F89, TR94 and LK publish only the principles. Bit-serial
 //! instructions arrive in ring messages. An Enable register masks pixels. A tree evaluates linear and quadratic
 //! expressions for all pixels at once. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
-//! background. Mnemonics, encodings and operand rules below are **assumed**. They are the smallest set that runs the
-//! published program of a triangle and the shading at the end of a frame.
+//! background. Mnemonics, encodings and operand rules below are **assumed**. These instructions are the smallest set
+//! that can execute the published program of a triangle and the shading at the end of a frame.
 //!
 //! # Words
 //!
-//! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. An operand names a *field* of pixel
-//! memory in 16 bits. Bit 15: the field is signed. Bit 14: the address is relative to the context's base. Bits 13..8:
-//! width - 1. Bits 7..0: address of the least significant bit. Unused bits must be zero.
+//! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. An operand encodes a *field* of pixel
+//! memory in 16 bits. Bit 15 is set if the field is signed. Bit 14 is set if the address is relative to the context's
+//! base. Bits 13..8 are width - 1. Bits 7..0 are the address of the least significant bit. Unused bits must be zero.
 //!
 //! | opcode | instruction | words | bit clocks | effect |
 //! |---|---|---|---|---|
@@ -41,21 +41,22 @@
 //! | 62 | wait | 1 | 2 | until the backing store is idle |
 //! | 70 | output | 9 | 2, then in the background | the region's colour field goes to a frame buffer |
 //!
-//! *n* is 3 words for a linear expression and 12 for a quadratic (six coefficients of 64 bits, low word first). If bit
-//! 7 of the modifier (*again*) is set, *n* is 0, and the evaluator reuses its last coefficients of this kind. *s* is in
-//! bits 5..0 of the modifier. Every instruction takes [`timing::SET_UP_CLOCKS`] before its bit clocks.
+//! *n* is 3 words for a linear expression and 12 words for a quadratic expression (six coefficients of 64 bits, low
+//! word first). If bit 7 of the modifier (*again*) is set, *n* is 0, and the evaluator reuses its last coefficients of
+//! this kind. *s* is in bits 5..0 of the modifier. Every instruction takes [`timing::SET_UP_CLOCKS`] clocks before its
+//! bit clocks.
 //!
 //! # Rules
 //!
 //! - Enable masks writes to pixel memory and sources of the backing store, unless the table says *every*.
 //! - Results are taken modulo 2^w. An operand narrower than the result is sign-extended if its *signed* bit is set,
 //!   otherwise zero-extended. A comparison, minimum or maximum needs operands of equal signedness.
-//! - Linear expressions are evaluated modulo 2^32, quadratic ones modulo 2^48; both are two's complement.
+//! - Linear expressions are evaluated modulo 2^32, and quadratic expressions modulo 2^48. Both are in two's complement.
 //! - Expressions hold absolute screen coordinates. The controller applies the region's origin.
 //! - An operand may overlap the destination only if both start at the same bit. Multiply, divide, square root and load
 //!   minus allow no overlap.
-//! - Divide: f := min(a / b, 2^w - 1), all ones for b = 0; a := a - f b. Operands are unsigned and w <= wa.
-//! - An illegal word or operand is a fault: the instruction and the rest of its list have no effect.
+//! - Divide: f := min(a / b, 2^w - 1), or all ones for b = 0. Then a := a - f b. Operands are unsigned and w <= wa.
+//! - An illegal word or operand is a fault. The instruction and the rest of its list then have no effect.
 
 mod decode;
 mod encode;
@@ -87,9 +88,9 @@ pub enum Expression {
     Linear(Linear),
     /// A quadratic expression with its coefficients.
     Quadratic(Quadratic),
-    /// Repetition of the most recent linear expression, whose coefficients the evaluator has kept.
+    /// Repetition of the most recent linear expression. The evaluator has kept its coefficients.
     LinearAgain,
-    /// Repetition of the most recent quadratic expression, whose coefficients the evaluator has kept.
+    /// Repetition of the most recent quadratic expression. The evaluator has kept its coefficients.
     QuadraticAgain,
 }
 
@@ -129,7 +130,7 @@ pub enum ExpressionUse {
         /// Number of low bits of the expression that are left out.
         shift: u8,
     },
-    /// Disables pixels unless the bits of the expression from bit `shift` on are less than the field. Both are
+    /// Disables pixels unless the bits of the expression from bit `shift` on are less than the field. Both numbers are
     /// unsigned.
     DisableNotLess {
         /// Field with which the bits are compared.
@@ -137,7 +138,8 @@ pub enum ExpressionUse {
         /// Number of low bits of the expression that are left out.
         shift: u8,
     },
-    /// Stores the bits from bit `shift` on of the difference: expression minus `subtrahend << left_shift`.
+    /// Computes the expression minus `subtrahend << left_shift`, and stores the bits of this difference from bit
+    /// `shift` on.
     LoadMinus {
         /// Field that receives the bits.
         field: Operand,
@@ -206,7 +208,7 @@ pub enum ArrayInstruction {
     EnableAnd(Operand),
     /// Selects the context and the region for the following instructions.
     Select {
-        /// First bit of the context in pixel memory. It is added to the addresses of relative operands.
+        /// First bit of the context in pixel memory. This number is added to the addresses of relative operands.
         context_base: u8,
         /// Screen x of the array's left column.
         left: u16,
@@ -215,7 +217,7 @@ pub enum ArrayInstruction {
     },
     /// Evaluates an expression in all pixels.
     Evaluate {
-        /// Expression to evaluate, with new coefficients or with those of an earlier expression.
+        /// Expression to evaluate, with new coefficients or with the coefficients of an earlier expression.
         expression: Expression,
         /// Operation that each pixel performs with the bits.
         usage: ExpressionUse,
@@ -295,7 +297,7 @@ pub enum ArrayInstruction {
         destination: Operand,
         /// Field to multiply, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
-        /// Factor in two's complement, of which the low `factor_bits` bits are used.
+        /// Factor in two's complement. Only its low `factor_bits` bits are used.
         factor: i32,
         /// Number of bits of the factor, including its sign.
         factor_bits: u8,

@@ -1,4 +1,4 @@
-//! Pixels of one region, computed only when they are read.
+//! Pixels of one region. The pixels are computed only when they are read.
 
 use crate::{Command, Lanes, Layout, OutputRegion, PixelArray};
 use pxpl5_wire::format::Z_BITS;
@@ -23,7 +23,7 @@ struct ArrayAndWords {
     words: Vec<Word>,
 }
 
-/// Cache key of a region without primitives: everything that its pixels depend on.
+/// Cache key of a region without primitives. The key has all data that affect the pixels.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct EmptyRegion {
     /// Words of all commands of the region except copy commands.
@@ -42,7 +42,7 @@ impl fmt::Debug for ArrayPool {
 }
 
 impl ArrayPool {
-    /// Creates a pool. Its arrays have this layout of pixel memory.
+    /// Creates a pool. The arrays of the pool have this layout of pixel memory.
     #[must_use]
     pub fn new(layout: Layout) -> Arc<Self> {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
@@ -60,7 +60,8 @@ impl ArrayPool {
         result
     }
 
-    /// Returns the pixels of a region without primitives. They come from the cache if the same region was drawn before.
+    /// Returns the pixels of a region without primitives. The pixels come from the cache if the same region was drawn
+    /// before.
     fn empty_region(&self, region: EmptyRegion, draw: impl FnOnce() -> Arc<[Word]>) -> Arc<[Word]> {
         if let Some(pixels) = self.kept_empty_regions().get(&region) {
             return Arc::clone(pixels);
@@ -79,15 +80,16 @@ impl ArrayPool {
     }
 }
 
-/// A pending computation of a region's pixels, with all command lists sent to a region context since it was cleared.
+/// A pending computation of a region's pixels, with all command lists sent to a region context since the last clear of
+/// this context.
 #[derive(Debug)]
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
     pub(crate) lists: Arc<Vec<CommandContent>>,
-    /// True if the first list overwrites the array's whole content.
+    /// True if the first list overwrites the whole content of the array.
     pub(crate) cleared: bool,
-    /// True if two optimizations are on: commands that touch no pixel are left out, and regions without primitives are
-    /// cached.
+    /// True if two optimizations are on. The first leaves out commands that touch no pixel, and the second caches
+    /// regions without primitives.
     pub(crate) saves: bool,
     /// Frame buffer and region that receive the pixels.
     pub(crate) target: CopyTarget,
@@ -114,7 +116,7 @@ impl PixelJob {
 
     /// Returns the cache key of a region whose commands are `words`. None of these commands draws a primitive.
     ///
-    /// Returns `None` if some words are no command, or if depths are copied too.
+    /// Returns `None` if some words are not a command, or if depths are copied too.
     fn as_empty_region(&self, words: &[Word]) -> Option<EmptyRegion> {
         let mut kept = Vec::new();
         let mut at = 0;
@@ -137,7 +139,7 @@ impl PixelJob {
 
     /// Executes `words` and then the remaining lists, and returns the region's pixels.
     fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, CommandContent>) -> Arc<[Word]> {
-        // If the context was not cleared, the region is black where nothing is drawn.
+        // If the context was not cleared, pixels without drawing are black.
         if !self.cleared {
             array.reset();
         }
@@ -168,10 +170,10 @@ impl PixelJob {
         outputs.into_iter().rfind(|output| output.target == self.target)
     }
 
-    /// Returns the depths of the region's pixels in 24 bits; 0 is the near plane.
+    /// Returns the depths of the region's pixels in 24 bits. A depth of 0 is the near plane.
     ///
-    /// A layout with a narrower Z does not store the low bits of the depth. They are set to 1 at the far plane and to 0
-    /// elsewhere.
+    /// A layout with a narrower Z does not store the low bits of the depth. These bits are set to 1 at the far plane
+    /// and to 0 at other pixels.
     fn depths(&self, array: &Lanes) -> Vec<Word> {
         let [width, height] = self.size();
         let missing = Z_BITS - u32::from(self.pool.layout.plan().z.width);
@@ -190,7 +192,7 @@ impl PixelSource for PixelJob {
 /// The farthest depth in 24 bits.
 const DEPTH_FARTHEST: Word = (1 << Z_BITS) - 1;
 
-/// Pixels of a copied region while pixel computation is off. All are zero.
+/// Pixels of a copied region while the computation of pixels is off. All these pixels are zero.
 #[derive(Debug)]
 pub(crate) struct NoPixels {
     pub(crate) words: u32,

@@ -31,8 +31,8 @@ use template::Templates;
 
 /// Pixel array that keeps one word for each field of each pixel.
 ///
-/// The array recognizes whole commands of its layout, and touches only the pixels that a command can change. It
-/// executes any other instruction on all pixels, one field after the other.
+/// The array recognizes whole commands of its layout, and touches only the pixels that a command can change. The array
+/// executes all other instructions on all pixels, one field after the other.
 #[derive(Clone, Debug)]
 pub struct Lanes {
     layout: Layout,
@@ -40,7 +40,7 @@ pub struct Lanes {
     templates: Templates,
     controller: Controller,
     columns: PixelColumns,
-    /// Columns of the most recently used context; `None` if no context has been used.
+    /// Columns of the most recently used context. `None` if no context was used.
     selected: Option<ContextColumns>,
     enable: Enable,
     backing: Vec<Option<Box<[u64]>>>,
@@ -49,13 +49,15 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// Creates an array of zeros. Its fast path executes the commands of `layout`.
+    /// Creates an array in which all bits are zero. The array recognizes the commands of `layout` and executes them
+    /// fast.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
     }
 
-    /// Creates an array of zeros that uses the given vector unit, or the portable one if the processor lacks that unit.
+    /// Creates an array of zeros that uses the given vector unit, or the portable unit if the processor lacks the given
+    /// unit.
     #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
@@ -119,7 +121,7 @@ struct Drawing<'a> {
     array: &'a mut Lanes,
     /// Collected words that have not been executed yet.
     words: &'a mut Vec<Word>,
-    /// Regions copied so far. After a fault, this field holds the fault, and no further command is drawn.
+    /// Regions copied so far. After a fault, this field holds the fault, and no more commands are drawn.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,
 }
 
@@ -249,7 +251,7 @@ mod tests {
         assert_eq!(executed.clocks, u64::from(clocks));
     }
 
-    /// Eight random triangles, with commands before and after them.
+    /// Eight random triangles, with commands before and after the triangles.
     #[derive(Debug)]
     struct SomeTriangles {
         layout: Layout,
@@ -260,7 +262,7 @@ mod tests {
 
     impl SomeTriangles {
         fn random(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
-            // Lines through the region, and values that overflow now and then.
+            // The edges are lines through the region, and expressions that sometimes overflow.
             let edge = |random: &mut Random| LinearLanes {
                 a: [(); LANES].map(|()| random.signed(9)),
                 b: [(); LANES].map(|()| random.signed(9)),
@@ -281,17 +283,17 @@ mod tests {
             }
         }
 
-        /// Creates triangles that are a few columns wide and at least as many rows high. They can cross the region's
-        /// borders.
+        /// Creates triangles that are a few columns wide and at least as many rows high. The triangles can cross the
+        /// region's borders.
         fn slim(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
             let mut all = Self::random(layout, random, with_normals);
             for i in 0..LANES {
-                // Positions are in 1/16 pixel. The shape is at least as high as wide.
+                // Positions are in 1/16 pixel. The height of the shape is at least its width.
                 let place = [128, 64].map(|origin| 16 * (origin + (random.signed(9) & 127)));
                 let tall = [6, 6, 10, 13][random.below(4) as usize];
                 let mut corners = [(); 3].map(|()| [place[0] + random.signed(6), place[1] + random.signed(tall)]);
                 let [[ax, ay], [bx, by], [cx, cy]] = corners;
-                // Edges are positive inside only for one order of the corners.
+                // Edges are positive inside the triangle only for one order of the corners.
                 if (bx - ax) * (cy - ay) < (cx - ax) * (by - ay) {
                     corners.swap(1, 2);
                 }
@@ -343,8 +345,8 @@ mod tests {
         }
     }
 
-    /// Draws each triangle twice, from command words and from a batch, on all vector units. Compares the two results and
-    /// returns the number of covered pixels.
+    /// Draws each triangle twice, from command words and from a batch, on all vector units. Compares the two results
+    /// and returns the number of covered pixels.
     fn covered_alike(rounds: u32, some: fn(Layout, &mut Random, bool) -> SomeTriangles) -> usize {
         let mut random = Random::new(20);
         let mut covered = 0;

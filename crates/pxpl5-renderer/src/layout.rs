@@ -5,11 +5,11 @@ use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
-/// A division of pixel memory into fields, not checked yet.
+/// A division of pixel memory into fields, before any check.
 ///
 /// Addresses of a context's fields are relative to the context's first bit, which is bit `i * context_bits` for context
-/// `i`. The address of the scratch is absolute, and all contexts share this field. Sharing is safe, since no command
-/// leaves data in the scratch.
+/// `i`. The address of the scratch is absolute, and all contexts share this field. Sharing is safe, because no command
+/// needs data that an earlier command has left in the scratch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContextPlan {
     /// Name of the layout in error messages.
@@ -33,11 +33,11 @@ pub struct ContextPlan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout(ContextPlan);
 
-/// Reason why a plan is not a valid layout.
+/// The reason why a plan is not a valid layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LayoutError {
-    /// Fields overlap or extend beyond pixel memory. The error text draws their bit ranges.
+    /// Fields overlap or extend beyond pixel memory. The error text has a drawing of the bit ranges.
     #[error("layout {name} does not fit {} bits:\n{drawing}", MEMORY_BITS)]
     DoesNotFit {
         /// Name of the rejected layout, from [`ContextPlan::name`].
@@ -80,7 +80,7 @@ const SLATS: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(176, 32)),
 };
 
-/// Layout of Slats with equal parts: four regions with 24 bits of colour, 24 of Z and 4 unused bits each, and no
+/// Layout of Slats with equal parts: four regions with 24 bits of colour, 24 of Z and 4 unused bits each, without
 /// scratch.
 const SLATS_QUARTERS: ContextPlan = ContextPlan {
     name: "Slats in quarters",
@@ -105,15 +105,15 @@ impl Layout {
     /// scratch.
     ///
     /// TR94 publishes four contexts in 208 bits. Four equal parts of 52 bits would leave no room for the scratch of a
-    /// sphere (30 bits). A context needs the scratch only while a command runs, so all contexts can share it. To make
-    /// room, Z has 4 bits less (assumed).
+    /// sphere (30 bits). A context needs the scratch only while a command runs, so all contexts can share one scratch.
+    /// To make room for the scratch, Z has 4 bits less (assumed).
     #[must_use]
     pub const fn slats() -> Self {
         Self(SLATS)
     }
 
-    /// Returns the layout of Slats with four equal parts of 52 bits: 24 of colour, 24 of Z and 4 unused bits. It
-    /// supports triangles, but no spheres.
+    /// Returns the layout of Slats with four equal parts of 52 bits: 24 of colour, 24 of Z and 4 unused bits. The
+    /// layout supports triangles, but no spheres.
     #[must_use]
     pub const fn slats_quarters() -> Self {
         Self(SLATS_QUARTERS)
@@ -122,8 +122,8 @@ impl Layout {
     /// Creates a layout from a plan.
     ///
     /// # Errors
-    /// Returns [`LayoutError::DoesNotFit`] if fields overlap or extend beyond pixel memory; its text draws the bit
-    /// ranges. [`LayoutError::Width`] if a field has a wrong width.
+    /// Returns [`LayoutError::DoesNotFit`] if fields overlap or extend beyond pixel memory. The text of this error has
+    /// a drawing of the bit ranges. Returns [`LayoutError::Width`] if a field has a wrong width.
     pub fn new(plan: ContextPlan) -> Result<Self, LayoutError> {
         check_widths(&plan)?;
         let ranges = ranges(&plan);
@@ -158,7 +158,7 @@ impl Layout {
         (Z_FRACTION_BITS + Z_BITS) as u8 - self.0.z.width
     }
 
-    /// Returns the field of component 0 (x), 1 (y) or 2 (z) of the normal; `None` if the layout has no normals.
+    /// Returns the field of component 0 (x), 1 (y) or 2 (z) of the normal. Returns `None` if the layout has no normals.
     #[must_use]
     pub fn normal(&self, index: u8) -> Option<Operand> {
         let all = self.0.normal?;
@@ -251,7 +251,8 @@ fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     out
 }
 
-/// Returns the error text of a range that overlaps an earlier range or extends beyond pixel memory; otherwise `None`.
+/// Returns the error text of a range that overlaps an earlier range or extends beyond pixel memory. Returns `None` for
+/// other ranges.
 fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
     if range.end() > MEMORY_BITS {
         return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));

@@ -9,26 +9,26 @@
 //!           backing store, 128 blocks of 32 bits <----------+----> colour of a region --> port --> frame buffer
 //! ```
 //!
-//! # Behaviour, in the order of the signal
+//! # Behaviour, in the order of processing
 //!
 //! 1. Messages bring commands. The array is SIMD, so simulated time depends only on the kinds of the commands
 //!    ([`RendererTiming`], [`Renderer`]).
 //! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]). [`isa`] defines the
 //!    instructions, their words, clocks and effects. A [`Layout`] places the fields in pixel memory.
-//! 3. A triangle enables all pixels. Three edge expressions then disable the pixels at which an edge expression is
-//!    negative. Z disables the pixels that are not nearer, and is stored in the others. Then follow colours (Gouraud)
-//!    or normals (Phong). The silhouette of a sphere is a quadratic, whose square root gives depth, normal and light.
-//!    [`Shade`] turns normals into colour once, at the end of the frame.
+//! 3. A triangle enables all pixels. Then the array disables the pixels at which one of three edge expressions is
+//!    negative. The depth test disables the pixels that are not nearer, and stores Z in the other enabled pixels.
+//!    Colours (Gouraud) or normals (Phong) follow. The silhouette of a sphere is a quadratic expression, whose square
+//!    root gives depth, normal and light. [`Shade`] computes colours from normals once, at the end of the frame.
 //! 4. Pixels are computed separately from time. The reference model [`BitSerial`] moves bit planes like the hardware,
-//!    and defines every bit. [`BitSerial::skipping`] leaves out work that changes nothing. [`Lanes`] works on values,
-//!    only at the pixels that a command can change. The suite in [`conformance`] tests that all three agree in the 208
-//!    bits of all pixels, Enable, clocks and faults.
+//!    and defines every bit. [`BitSerial::skipping`] leaves out work that changes nothing. [`Lanes`] computes with
+//!    whole values, and only at the pixels that a command can change. The suite in [`conformance`] tests that all three
+//!    arrays agree in the 208 bits of all pixels, Enable, clocks and faults.
 //!
 //! # Numbers
 //!
-//! A triangle takes 258 clocks with interpolated colour and 292 with normals. Published are 150,000 a second (TR94),
-//! which is 267 clocks. Bits of the wire's formats take 220 and 250 of these clocks. [`isa::timing`] derives the
-//! numbers, and [`command`] lists the other commands.
+//! A triangle takes 258 clocks with interpolated colour and 292 with normals. The published rate is 150,000 triangles
+//! per second (TR94), which is 267 clocks per triangle. The bits of the number formats take 220 and 250 of the 258 and
+//! 292 clocks. [`isa::timing`] derives the numbers, and [`command`] lists the other commands.
 //!
 //! # Faults
 //!
@@ -36,12 +36,12 @@
 //!
 //! # Not modelled
 //!
-//! - The real instruction set, which is lost. The model's instruction set is the smallest one that runs the published
-//!   programs, and is **assumed**.
+//! - The real instruction set, which is lost. The model's instruction set is **assumed**. It is the smallest set that
+//!   can run the published programs.
 //! - The split of the array into 64 chips. The filling of the evaluator's pipeline, except for a constant number of
 //!   clocks for each instruction.
 //! - The state of a block of the backing store during its transfer. The array moves the whole block at the start of the
-//!   transfer. Only the busy time of the backing store follows later.
+//!   transfer. Only the busy time of the backing store continues after that.
 //! - Antialiasing, texture, transparency.
 //!
 //! Sources: F89 (array, evaluator, memory, backing store), TR94 (recipe, rates, regions, Slats' four contexts), LK

@@ -9,13 +9,13 @@ use std::collections::VecDeque;
 /// A snapshot of a renderer board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RendererSnapshot {
-    /// Number of words in the input FIFO, counting complete commands only. `None` if the FIFO is not watched.
+    /// Number of words in the input FIFO. Only words of complete commands count. `None` if the FIFO is not watched.
     pub fifo_words: Option<u32>,
     /// Capacity of the FIFO in words.
     pub fifo_depth_words: u32,
     /// True while the controller executes a copy command.
     pub stands_at_copy: bool,
-    /// The copy whose region is on its way to a frame buffer, if there is one.
+    /// The copy whose region is being sent to a frame buffer. `None` if no region is being sent.
     pub copying: Option<CopyOrder>,
     /// True while the controller executes commands other than copies.
     pub executing: bool,
@@ -24,20 +24,20 @@ pub struct RendererSnapshot {
     pub drawing: Option<RegionPlace>,
     /// Number of regions that are in the backing store or wait to be moved into it.
     pub stored_regions: usize,
-    /// Time spent executing commands since the start of the run, without copies. A received command counts at once,
-    /// even before it is executed.
+    /// Time spent executing commands since the start of the run, without copies. A received command counts immediately,
+    /// even before its execution.
     pub busy: Span,
 }
 
 impl RendererSnapshot {
-    /// Returns true while the controller executes commands other than copies, or has them in its FIFO.
+    /// Returns true while the controller executes commands other than copies, or has such commands in its FIFO.
     #[must_use]
     pub fn works(&self) -> bool {
         self.executing || self.fifo_words.is_some_and(|words| words > 0)
     }
 }
 
-/// Received command lists whose effects are visible in pixel memory now or later.
+/// Received command lists whose effects are visible in pixel memory, or will be visible later.
 #[derive(Debug, Default)]
 pub(crate) struct SentLists(VecDeque<SentList>);
 
@@ -65,7 +65,7 @@ impl SentLists {
             self.forget(started);
             self.0.push_back(SentList { context, first_word, clear, copy: None, content });
         }
-        // A copy from pixel memory ends the region of its context, in this list or in earlier ones.
+        // A copy from pixel memory ends the region of its context, in this list or in earlier lists.
         let Some(before) = words_before_copy(&list.runs) else { return };
         let from_pixels = list.copies.iter().filter(|order| order.way != CopyPath::FromBacking);
         let copied: Vec<usize> = from_pixels.map(|order| usize::from(order.context) % MAX_CONTEXTS).collect();
@@ -81,14 +81,14 @@ impl SentLists {
         if is_copied { None } else { last.content.place() }
     }
 
-    /// Drops the lists whose pixels have been erased by a clear that has started.
+    /// Removes the lists whose pixels are erased because a later clear has started.
     fn forget(&mut self, started: u64) {
         let cleared: [u64; MAX_CONTEXTS] = std::array::from_fn(|context| self.cleared_at(context, started));
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }
 
-    /// Returns the index of the first word of the last list in a context whose clear has started. Returns 0 if there is
-    /// none.
+    /// Returns the index of the first word of a list: the last list of a context whose clear has started. Returns 0 if
+    /// no clear has started.
     fn cleared_at(&self, context: usize, started: u64) -> u64 {
         let of_context = self.0.iter().filter(|list| list.context == context);
         of_context
@@ -98,8 +98,8 @@ impl SentLists {
             .unwrap_or(0)
     }
 
-    /// Returns the pixel array after the commands in the first `started` words. Returns `None` if none of them changed
-    /// a pixel.
+    /// Returns the pixel array after the commands in the first `started` words. Returns `None` if these commands
+    /// changed no pixel.
     pub(crate) fn executed(&self, started: u64, layout: &Layout) -> Option<Lanes> {
         let mut lists = self.0.iter().filter(|list| list.first_word < started).peekable();
         lists.peek()?;

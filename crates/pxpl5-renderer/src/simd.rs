@@ -4,7 +4,7 @@
 //! the processor has a vector unit, then calls functions that are compiled for this unit. WebAssembly has one vector
 //! unit for a whole module, chosen at compile time. The bench groups `lanes/Portable` and `lanes/Avx2` of `cargo bench
 //! -p pxpl5-renderer` measure the gain.
-#![allow(unsafe_code)] // The compiler cannot know what the processor has.
+#![allow(unsafe_code)] // The compiler cannot check the features of the processor.
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod wasm;
@@ -38,16 +38,16 @@ pub enum Vectors {
 }
 
 impl Vectors {
-    /// All units, from the worst to the best. The discriminant of a unit is its index.
+    /// All units, from the slowest to the fastest. The discriminant of a unit is its index.
     const ALL: [Self; 4] = [Self::Portable, Self::Simd128, Self::Avx2, Self::Avx512];
 
-    /// Returns all units that this processor has, from the worst to the best.
+    /// Returns all units that this processor has, from the slowest to the fastest.
     #[must_use]
     pub fn available() -> Vec<Self> {
         Self::ALL.into_iter().filter(|vectors| vectors.present()).collect()
     }
 
-    /// Returns the best unit that this processor has and that [`Vectors::at_most`] allows.
+    /// Returns the fastest unit that this processor has and that [`Vectors::at_most`] allows.
     #[must_use]
     pub fn best() -> Self {
         let most = MOST.load(Ordering::Relaxed) as usize;
@@ -84,7 +84,7 @@ impl Vectors {
     }
 }
 
-/// A vector unit that the processor is known to have.
+/// A vector unit that exists in this processor, according to a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PresentVectors(Vectors);
 
@@ -101,7 +101,7 @@ impl PresentVectors {
             // SAFETY: a `PresentVectors` exists only if the processor reports these features.
             #[cfg(target_arch = "x86_64")]
             Vectors::Avx512 => unsafe { avx512(kernel) },
-            // SAFETY: as for AVX-512.
+            // SAFETY: a `PresentVectors` exists only if the processor reports this feature.
             #[cfg(target_arch = "x86_64")]
             Vectors::Avx2 => unsafe { avx2(kernel) },
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -111,8 +111,8 @@ impl PresentVectors {
     }
 }
 
-/// A loop to vectorize. Its `run` must be `#[inline(always)]`. Otherwise the compiler does not use the unit's
-/// instructions in it.
+/// A loop to vectorize. Its `run` must be `#[inline(always)]`. Otherwise, the compiler does not use the unit's
+/// instructions in `run`.
 pub(crate) trait VectorKernel {
     type Output;
     fn run<V: SimdVector>(self) -> Self::Output;
@@ -132,7 +132,7 @@ fn avx512<K: VectorKernel>(kernel: K) -> K::Output {
 
 /// A vector of 32-bit integers. Kernels use it because compilers do not vectorize short loops.
 pub(crate) trait SimdVector: Copy {
-    /// Number of integers in a vector. It divides 128.
+    /// Number of integers in a vector. The number is a divisor of 128.
     const LANES: usize;
     /// One truth value for each lane.
     type Mask: Copy;
@@ -171,8 +171,8 @@ pub(crate) trait SimdVector: Copy {
     fn any_of(a: Self::Mask, b: Self::Mask) -> bool;
     /// Overwrites the words of `to` in the lanes where the mask is true. `old` must be the current content of `to`.
     fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
-    /// Overwrites the pixels that [`SimdVector::load_fours`] reads, where the mask is true. `old` must be their current
-    /// content.
+    /// Overwrites the pixels that [`SimdVector::load_fours`] reads, where the mask is true. `old` must be the current
+    /// content of these pixels.
     fn store_fours(self, mask: Self::Mask, old: Self, to: &mut [u32]);
     /// Stores one byte for each lane: 255 where the mask is true, else 0.
     fn store_mask(mask: Self::Mask, to: &mut [u8]);
@@ -293,7 +293,7 @@ impl SimdVector for PortableVector {
 
     #[inline(always)]
     fn shift_right(self, by: u32) -> Self {
-        // The processor's scalar shift takes the count modulo 32; the shift of a vector unit does not.
+        // The processor's scalar shift uses the count modulo 32. The shift of a vector unit uses the whole count.
         if by < 32 { self.map(|v| (v as u32 >> by) as i32) } else { Self::splat(0) }
     }
 
@@ -360,7 +360,7 @@ mod tests {
     #[test]
     fn every_unit_shifts_by_every_count_and_leaves_zeros_from_32_on() {
         let values: [u32; 16] = std::array::from_fn(|k| 0x9E37_79B9_u32.wrapping_mul(k as u32 * 2 + 1) | 0x8000_0001);
-        // All values of a byte, and larger counts whose lowest bits are small.
+        // The counts are all values of a byte, and larger counts whose lowest bits are small.
         for by in (0..=255).chain([256, 1 << 16, 1 << 31, (1 << 31) + 1, u32::MAX]) {
             let right = |value: u32| (u64::from(value) << 32).checked_shr(by).map_or(0, |wide| (wide >> 32) as u32);
             let left = |value: u32| u64::from(value).checked_shl(by).unwrap_or(0) as u32;
@@ -404,7 +404,7 @@ mod tests {
             let [a, b, c] = [V::load(&self.a), V::load(&self.b), V::load(&self.c)];
             let words: [u64; 8] =
                 std::array::from_fn(|k| u64::from(self.b[2 * k + 1]) << 32 | u64::from(self.b[2 * k]));
-            // Pixel memory may end after the last group of four.
+            // The pixels can end after the last group of four.
             let fours = ROW * (V::LANES / FOUR - 1) + FOUR;
             let [passes, nowhere] = [a.passes(b, c), V::splat(-1).passes(b, c)];
             let mut stored = self.b;

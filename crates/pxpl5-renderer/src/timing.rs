@@ -1,7 +1,7 @@
 //! All numbers of the renderer board: times, rates and sizes.
 //!
-//! The clocks of a command are those of its program in the layout of Rendering Control ([`CommandKind::clocks`]). A
-//! test checks that they are equal. The table lists them separately, so that experiments can change them.
+//! The clocks of a command are the clocks of its program in the layout of Rendering Control ([`CommandKind::clocks`]).
+//! A test checks this equality. The table has the clocks as separate numbers, so that experiments can change them.
 
 use crate::command::CommandKind;
 use pxpl5_sim::{Clock, Cycles, Span};
@@ -26,7 +26,7 @@ pxpl5_sim::parameters::parameter_table! {
         /// Execution time of the command that shades a region at the end of the frame.
         shade_clocks: 3_790, "clocks", Derived, 3_790..=8_000 in 0..=MAX, "its program with one light takes 95 us";
         /// Time to move one 32-bit block of all pixels to or from the backing store.
-        backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us";
+        backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us, about 64 chips x 4 bits a clock";
         /// Size of the backing store of each pixel, in bits.
         backing_bits: 4_096, "bits", Published, 4_096..=4_096 in 0..=MAX, "F89: video memory beside each pixel's 208 bits";
         /// Number of bits of each pixel's backing store that a finished region occupies until it is copied.
@@ -52,8 +52,8 @@ impl RendererTiming {
         }
     }
 
-    /// Returns the execution time of one command. Returns `None` for the copy of a region. Its end depends on the frame
-    /// buffer, which must receive the region.
+    /// Returns the execution time of one command. Returns `None` for the copy of a region, because the end of a copy
+    /// depends on the frame buffer that receives the region.
     #[must_use]
     pub fn span(&self, kind: CommandKind) -> Option<Span> {
         let clocks = match kind {

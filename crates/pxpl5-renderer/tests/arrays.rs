@@ -1,4 +1,4 @@
-//! Tests of outputs, drawing, and state kept between commands, on arrays of noise.
+//! Tests of outputs, drawing, and state that is kept between commands. The arrays start with random bits.
 
 use pxpl5_renderer::conformance::{Random, scramble};
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse, MEMORY_BITS, Operand};
@@ -16,8 +16,8 @@ fn layouts() -> [Layout; 3] {
     [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()]
 }
 
-/// Returns a target in a picture of 100 x 75 pixels with regions of 30 x 20. Regions at the right are 10 wide, regions
-/// at the bottom 15 high.
+/// Returns a target in a picture of 100 x 75 pixels with regions of 30 x 20. Regions at the right border are 10 pixels
+/// wide, and regions at the bottom are 15 pixels high.
 fn target(region: u16) -> CopyTarget {
     CopyTarget {
         frame_buffer: NodeId(9),
@@ -29,7 +29,7 @@ fn target(region: u16) -> CopyTarget {
     }
 }
 
-/// Returns bits `first ..` of the left top pixels, row by row.
+/// Returns `bits` bits of the upper left pixels, from bit `first` on, row by row.
 fn expected(planes: &[Plane], first: usize, bits: usize, [width, height]: [usize; 2]) -> Vec<Word> {
     let pixel = |x: usize, y: usize| {
         let bit = |i: usize| planes[first + i][2 * y + x / 64] >> (x % 64) & 1;
@@ -141,8 +141,8 @@ fn command(kind: usize, i: i32) -> (Command, Linear, Quadratic) {
     }
 }
 
-/// Executes three commands of a kind, which an array may draw together, then stores the latched expression in 32 bits
-/// of every pixel.
+/// Executes three commands of a kind, which an array can draw together. Then stores the last expression in 32 bits of
+/// every pixel.
 fn holds_the_last_coefficients(mut array: impl PixelArray, layout: &Layout, kind: usize) -> bool {
     let mut words = Vec::new();
     let [.., (_, linear, quadratic)] = [1, 2, 3].map(|i| {

@@ -1,5 +1,5 @@
-//! Tests of a single renderer board: start times of commands and the way of regions to the ring, by the rules of the
-//! FIFO and the table of times.
+//! Tests of a single renderer board: start times of commands, and messages of regions to the ring. The expected times
+//! follow from the rules of the FIFO and the timing table.
 
 mod support;
 
@@ -132,7 +132,8 @@ fn a_region_in_the_backing_store_leaves_beside_the_commands_that_follow() {
 #[test]
 fn where_the_backing_store_is_full_the_next_region_waits_until_one_has_left() {
     use CopyContent::{Colour, ColourAndDepth};
-    // A region takes one place, or two with depths. One of the places may be in transfer.
+    // A region occupies one block of the backing store, or two blocks with depths. A region that is being sent can
+    // still occupy a block.
     for (places, content, waits) in
         [(1, Colour, true), (2, Colour, false), (3, ColourAndDepth, true), (4, ColourAndDepth, false)]
     {
@@ -176,7 +177,7 @@ fn a_copy_command_without_an_order_ends_at_once() {
     assert!(bench.sent().is_empty());
 }
 
-/// Sends two triangles in one message, or in two messages, of which the second is announced before the first has
+/// Sends two triangles in one message, or in two messages. The second message is announced before the first has
 /// arrived.
 #[test]
 fn a_watched_fifo_counts_words_from_their_last_word_to_the_start_of_their_command() {
@@ -188,8 +189,8 @@ fn a_watched_fifo_counts_words_from_their_last_word_to_the_start_of_their_comman
             bench.announce(BEGIN + Span(message.into()), list(&[triangles], &[]));
         }
         bench.run();
-        // The second triangle is complete after 60 words. It starts when the first one, which started after 30 words,
-        // has ended.
+        // The second triangle is complete after 60 words. It starts at the end of the first triangle, which started
+        // after 30 words.
         let [first, second, started] = [WORD * 30, WORD * 60, WORD * 30 + TRIANGLE].map(|span| BEGIN + span);
         let words = |at: Time| bench.device.look(at).fifo_words;
         assert_eq!([BEGIN, first, Time(second.0 - 1)].map(words), [Some(0); 3]);

@@ -1,4 +1,5 @@
-//! Tests of the content of a renderer board's regions: the lists sent to their context until they are copied or read.
+//! Tests of the content of a renderer board's regions. The content follows from the lists that are sent to the region's
+//! context before the copy or the read.
 
 mod support;
 
@@ -70,7 +71,8 @@ fn depths_that_are_copied_too_follow_the_colours_and_lie_at_the_far_plane_where_
     assert!(image[10_000..].iter().all(|depth| *depth == FARTHEST));
 }
 
-/// Slats' 20 bits of depth are the upper bits of 24, which are the upper bits of 32 in the depth expression.
+/// The 20 bits of depth in the layout of Slats are the upper bits of a depth of 24 bits. The 24 bits are the upper bits
+/// of the depth expression's 32 bits.
 #[test]
 fn depths_of_what_was_drawn_are_the_upper_bits_of_24() {
     let inside = Linear::constant(1);
@@ -83,7 +85,7 @@ fn depths_of_what_was_drawn_are_the_upper_bits_of_24() {
     assert!(images(&bench)[0][10_000..].iter().all(|depth| *depth == 0x12_3450));
 }
 
-/// Drawing after a copy in the same list must not appear in the copy, nor pixels that are copied to another target.
+/// A copy must not contain drawing after the copy in the same list, or pixels that are copied to another target.
 #[test]
 fn what_comes_behind_a_copy_is_not_in_it() {
     for saves in [true, false] {
@@ -131,8 +133,8 @@ fn pixel_memory_holds_what_was_sent_since_the_last_clear_and_no_list_that_draws_
     }
 }
 
-/// Commands count from their start on: a select has two words, a clear five. The earlier picture is visible until the
-/// clear starts, the second time after five selects of six clocks.
+/// A command has its effect from its start on. A select has two words, and a clear has five words. The earlier picture
+/// is visible until the clear starts. The second clear starts after five selects of six clocks.
 #[test]
 fn a_snapshot_of_the_array_shows_all_commands_that_have_started() {
     let mut bench = Bench::new();
@@ -157,7 +159,7 @@ fn a_snapshot_of_the_array_shows_all_commands_that_have_started() {
     assert_eq!(seen(&bench, third + WORD * 5), Some(0x70_80_90));
 }
 
-/// Arrays are reused for any region.
+/// Arrays are reused for other regions, so an array can hold old content.
 #[test]
 fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
     let mut bench = Bench::new();
@@ -172,7 +174,7 @@ fn a_region_that_was_never_cleared_is_black_whatever_its_array_held() {
     assert!(images[0].iter().all(|pixel| *pixel == 0x10_20_30) && images[1].iter().all(|pixel| *pixel == 0));
 }
 
-/// There are eight contexts, so context 9 is the same as context 1.
+/// The board has eight contexts, so context 9 is the same as context 1.
 #[test]
 fn what_is_sent_to_another_context_changes_nothing_that_is_copied() {
     for (sent, copied) in [(1, 1), (1, 9), (9, 1)] {

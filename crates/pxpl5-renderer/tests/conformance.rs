@@ -12,7 +12,7 @@ use pxpl5_wire::{
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Number of rounds for each layout if the variable is not set.
+/// Number of rounds for each layout if the environment variable is not set.
 const ROUNDS: u64 = 20;
 
 /// Number of lists for each vector unit.
@@ -133,8 +133,8 @@ fn plane(random: &mut Random, bits: u32) -> Linear {
     Linear { a: random.signed(bits - 8), b: random.signed(bits - 8), c: random.signed(bits) }
 }
 
-/// Returns a sphere of radius up to 40 pixels in or near the array, and the same sphere in other colours. No depth of
-/// the second one is nearer.
+/// Returns a sphere of radius up to 40 pixels in or near the array, and the same sphere in other colours. The depths of
+/// the second sphere are never nearer.
 fn sphere_twice(random: &mut Random, layout: &Layout) -> [Command; 2] {
     let [x, y] = [(); 2].map(|()| i64::from(below(random, 168) - 20));
     let r = i64::from(1 + below(random, 40));
@@ -203,7 +203,7 @@ fn enable_is_read_behind_a_command() {
     }
 }
 
-/// Shades noise, whose depths are almost never at the far plane, with some triangles on it.
+/// Shades random bits with some triangles. Random depths are almost never at the far plane.
 #[test]
 fn shading_agrees_on_every_vector_unit() {
     let layout = Layout::rendering_control_phong();
@@ -316,7 +316,7 @@ fn constants_of_a_command_agree_whatever_they_are() {
         let mut b = Lanes::new(&layout);
         let mut words = Vec::new();
         Command::Clear(Clear { colour: 0x12_3456 }).encode(&layout, &mut words).unwrap();
-        // The depth that a clear always sets to the far plane, with one bit flipped.
+        // This word is the depth, which a clear always sets to the far plane. One bit is flipped.
         words[4] ^= 1 << 13;
         check(conformance::agree(&mut a, &mut b, &words, &"a clear to a nearer depth"));
     }
@@ -344,7 +344,7 @@ fn both_arrays_send_the_same_pixels_of_a_context_to_a_frame_buffer() {
     let outputs = b.execute(&words).unwrap().outputs;
     assert_eq!((outputs.len(), outputs[0].target), (1, target));
     assert_eq!(outputs[0].pixels, a.read_colour(128, 120));
-    // The expected colour of pixel (70, 3) from its 24 planes.
+    // Compute the expected colour of pixel (70, 3) from its 24 planes.
     let planes = (0..24).map(|i| (a.plane(88 + i)[2 * 3 + 1] >> 6 & 1) << i);
     assert_eq!(u64::from(outputs[0].pixels[3 * 128 + 70]), planes.sum::<u64>());
 }
@@ -404,7 +404,8 @@ fn every_part_of_the_suite_finds_a_wrong_array() {
     assert_eq!(found.after, "\"round 7, step 0\"");
 }
 
-/// Eight bit planes are drawn. One has no bit set, one all bits, one a quarter, one three quarters, and four half of them.
+/// Each plane is one of eight kinds. In one kind no bit is set, in one kind all bits, in one kind a quarter, and in one
+/// kind three quarters. In four kinds, half of the bits are set.
 #[test]
 fn noise_is_the_same_in_both_arrays_and_has_long_runs_too() {
     let layout = Layout::slats();
@@ -415,13 +416,14 @@ fn noise_is_the_same_in_both_arrays_and_has_long_runs_too() {
         check(conformance::agree(&mut a, &mut b, &[], &"noise"));
         for bit in 0..208 {
             let ones: u32 = a.plane(bit).iter().map(|word| word.count_ones()).sum();
-            // Counts in quarters of the pixels, with a tolerance of less than a fiftieth.
+            // The number of set bits is a multiple of a quarter of the pixels, with a tolerance of less than a
+            // fiftieth.
             let kind = (0..5).find(|quarters| ones.abs_diff(quarters * 4096) < 320).expect("one of these");
             counts[kind as usize] += 1;
             assert!(kind > 0 && kind < 4 || ones == kind * 4096, "{ones}");
         }
     }
-    // About 130 planes of each kind, but 520 with half of the bits.
+    // There are about 130 planes of each kind, and 520 planes with half of the bits.
     for (kind, count) in counts.into_iter().enumerate() {
         let expected = if kind == 2 { 420..620 } else { 80..190 };
         assert!(expected.contains(&count), "{counts:?}");

@@ -1,6 +1,6 @@
-//! Tests of each instruction's effect on a pixel, by an independent model of the table in `isa`.
+//! Tests of each instruction's effect on a pixel, with an independent model of the table in `isa`.
 //!
-//! The model uses whole numbers and single pixels, unlike all arrays. The arrays are compared with it on random
+//! Unlike all arrays, the model uses whole numbers and single pixels. The arrays are compared with it on random
 //! instructions of each opcode.
 
 use pxpl5_renderer::conformance::{Random, scramble};
@@ -209,8 +209,9 @@ fn first(controller: &Controller, field: Operand) -> usize {
 
 /// Returns true if an instruction must be rejected because of the positions of its fields.
 ///
-/// All fields must be in pixel memory. An operand must begin at the same bit as the destination or have no common bit
-/// with it. Only the latter is valid for products, quotients, roots and differences from an expression.
+/// All fields must be in pixel memory. An operand must begin at the same bit as the destination, or have no common bit
+/// with the destination. For products, quotients, roots and differences from an expression, only operands without
+/// common bits are valid.
 fn is_refused(controller: &Controller, instruction: &ArrayInstruction) -> bool {
     use ArrayInstruction as I;
     let bits = |field: Operand| first(controller, field)..first(controller, field) + usize::from(field.width);
@@ -284,8 +285,8 @@ fn opcodes() -> impl Iterator<Item = Word> {
 /// Returns a valid random instruction of this opcode.
 fn any_of(opcode: Word, random: &mut Random) -> ArrayInstruction {
     loop {
-        // Half of the fields have at most eight bits, so that numbers are sometimes equal. There are only two blocks
-        // for the same reason.
+        // Half of the fields have at most eight bits, so that numbers are sometimes equal. For the same reason, only
+        // two blocks are used.
         let fields = [Word::MAX, 0xC7FF_C7FF][random.below(2) as usize];
         let modifiers = if opcode >> 4 == 6 { 0x01 } else { [0, 0x1F, 0x3F, 0xFF][random.below(4) as usize] };
         let operand = if random.below(8) == 0 { 0 } else { fields & 0xFFFF };
@@ -307,7 +308,7 @@ fn pixels(array: &impl PixelArray) -> Vec<([bool; 208], bool)> {
     PLACES.iter().map(|place| (std::array::from_fn(|bit| at(&planes[bit], *place)), at(&enable, *place))).collect()
 }
 
-/// An array and the model that it is compared with.
+/// An array and the model with which it is compared.
 struct Followed<A> {
     array: A,
     controller: Controller,
@@ -317,7 +318,7 @@ struct Followed<A> {
 }
 
 impl<A: PixelArray> Followed<A> {
-    /// Creates an array and a model with the same noise.
+    /// Creates an array and a model with the same random bits.
     fn new(mut array: A, random: &mut Random) -> Self {
         scramble(random, &mut array, &mut BitSerial::new(&Layout::slats()));
         let pixel = |((memory, enable), place)| Pixel { place, memory, enable, backing: HashMap::new() };
@@ -325,7 +326,7 @@ impl<A: PixelArray> Followed<A> {
         Self { array, controller: Controller::default(), model, executed: 0, faults: 0 }
     }
 
-    /// Runs an instruction on both. An instruction with invalid fields must have no effect.
+    /// Runs an instruction on the array and on the model. An instruction with invalid fields must have no effect.
     fn run(&mut self, instruction: &ArrayInstruction) {
         let mut words = Vec::new();
         instruction.encode(&mut words);
@@ -404,7 +405,8 @@ fn values_do_what_the_table_says() {
     }
 }
 
-/// Tests signs at 0 and at values that barely fit in the array, where signs are known at the corners of blocks.
+/// Tests signs at 0 and at values that barely fit in the array. For such expressions, the corners of blocks determine
+/// the signs.
 fn follow_signs(array: impl PixelArray) {
     let mut followed = Followed::new(array, &mut Random::new(30));
     let mut expressions = vec![Expression::Linear(Linear::default()), Expression::Quadratic(Quadratic::default())];

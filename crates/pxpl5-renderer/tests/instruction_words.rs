@@ -1,6 +1,6 @@
 //! Tests of instruction words, encoded by hand from the table in `isa`, and of their clocks.
 
-use pxpl5_renderer::isa::timing::{BACKING_CLOCKS, SET_UP_CLOCKS, divide_clocks, multiply_clocks, square_root_clocks};
+use pxpl5_renderer::isa::timing::{SET_UP_CLOCKS, divide_clocks, multiply_clocks, square_root_clocks};
 use pxpl5_renderer::isa::{ArithmeticOp, ArrayInstruction, DecodeErrorKind, Expression, ExpressionUse, Operand, Test};
 use pxpl5_wire::{
     CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId, Word,
@@ -10,8 +10,8 @@ const A: Operand = Operand::absolute(3, 8);
 const B: Operand = Operand::context(64, 16);
 const SIGNED: Operand = Operand::context(17, 12).signed();
 
-/// Encoding of field `A`: 8 bits at 3. Field `B` has 16 relative bits at 64, field `SIGNED` 12 signed relative bits at
-/// 17.
+/// Encoding of field `A`, which has 8 bits at address 3. Field `B` has 16 bits at the relative address 64. Field
+/// `SIGNED` has 12 signed bits at the relative address 17.
 const A_BITS: Word = 7 << 8 | 3;
 const B_BITS: Word = 1 << 14 | 15 << 8 | 64;
 const SIGNED_BITS: Word = 1 << 15 | 1 << 14 | 11 << 8 | 17;
@@ -41,7 +41,7 @@ fn instructions() -> Vec<(ArrayInstruction, Vec<Word>, u32)> {
     let linear = Expression::Linear(LINEAR);
     let linear_words: [Word; 3] = [-2_i32 as Word, 3, 1 << 30];
     let all = Word::MAX;
-    // Low words first. The high word of -5 x 2^33 is 2^32 - 10; its low word is 0.
+    // Low words come first. The high word of -5 x 2^33 is 2^32 - 10, and its low word is 0.
     let quadratic_words = [all, all, 2, 0, 0, 3 << 8, 4, 0, 0, 0xFFFF_FFF6, 6, 0];
     let with = |head: Word, tail: &[Word]| [&[head], tail].concat();
     let load_minus = ExpressionUse::LoadMinus { field: A, shift: 5, subtrahend: SIGNED, left_shift: 33 };
@@ -91,15 +91,15 @@ fn instructions() -> Vec<(ArrayInstruction, Vec<Word>, u32)> {
         (
             I::MultiplyConstant { destination: B, source: A, factor: -3, factor_bits: 5 },
             vec![0x5104_0000 | B_BITS, A_BITS << 16, -3_i32 as Word],
-            // Five additions of eight bits with a carry, and three clocks to fill.
+            // The terms are five additions of eight bits with a carry, and three clocks to fill.
             5 * 9 + 3,
         ),
         (I::StoreBlock { field: Operand::absolute(0, 32), block: 127 }, vec![0x607F_0000 | 31 << 8], 2),
         (I::LoadBlock { field: Operand::absolute(0, 32), block: 1 }, vec![0x6101_0000 | 31 << 8], 2),
         (I::Wait, vec![0x6200_0000], 2),
     ];
-    // Clocks of products and quotients are defined in `isa::timing`. The others take their width, or the larger of two
-    // widths.
+    // Clocks of products and quotients are defined in `isa::timing`. The other operations take as many clocks as their
+    // width, or the larger of two widths.
     use ArithmeticOp::{Add, And, Divide, Maximum, Minimum, Multiply, Or, Subtract, Xor};
     let ops = [
         (Add, 0, 8),
@@ -141,8 +141,6 @@ fn instructions_are_the_words_of_the_table() {
         assert_eq!(instruction.words() as usize, words.len());
         assert_eq!(instruction.bit_clocks(), clocks, "{instruction:?}");
         assert_eq!(instruction.clocks(), SET_UP_CLOCKS + clocks);
-        let moves = matches!(instruction, ArrayInstruction::StoreBlock { .. } | ArrayInstruction::LoadBlock { .. });
-        assert_eq!(instruction.backing_clocks(), if moves { BACKING_CLOCKS } else { 0 });
     }
     assert_eq!(square_root_clocks(0), 0);
 }
@@ -157,8 +155,8 @@ fn a_list_is_read_instruction_by_instruction() {
     assert_eq!((error.position, error.kind), (1, DecodeErrorKind::UnknownOpcode));
 }
 
-/// Tests that a truncated instruction reports the words that it needs. A linear evaluation does so before its
-/// coefficients are read.
+/// Tests that the error of a truncated instruction has the number of words that the instruction needs. For a linear
+/// evaluation, this error occurs before the coefficients are read.
 #[test]
 fn a_part_of_an_instruction_is_told_from_a_whole_one() {
     for (instruction, words, _) in instructions() {
@@ -200,7 +198,7 @@ fn what_breaks_a_rule_of_the_table_is_refused_by_it() {
         (vec![0x3201_0000 | A_BITS, B_BITS << 16], K::ReservedBits),
         (vec![0x3300_0000 | A_BITS, A_BITS << 16], K::Width { field: A, expected: 16 }),
         (vec![0x3300_0000 | A_BITS, (B_BITS | 1 << 15) << 16], K::Signedness),
-        // A quotient of 16 bits from 8 bits, and a quotient with a signed operand in either place.
+        // These words encode a quotient of 16 bits from 8 bits, and quotients with a signed operand in each place.
         (vec![0x3700_0000 | B_BITS, A_BITS << 16 | A_BITS], K::Width { field: B, expected: 8 }),
         (vec![0x3700_0000 | A_BITS, SIGNED_BITS << 16 | A_BITS], K::Signedness),
         (vec![0x3700_0000 | A_BITS, A_BITS << 16 | SIGNED_BITS], K::Signedness),
@@ -232,6 +230,6 @@ fn what_breaks_a_rule_of_the_table_is_refused_by_it() {
     for (words, kind) in cases {
         assert_eq!(ArrayInstruction::decode(&words, 0).map_err(|error| error.kind), Err(kind), "{words:x?}");
     }
-    // A quotient may be as wide as the dividend.
+    // The width of a quotient can equal the width of the dividend.
     ArrayInstruction::decode(&[0x3700_0000 | B_BITS, B_BITS << 16 | A_BITS], 0).expect("as wide");
 }

@@ -9,7 +9,7 @@ fn layouts() -> [Layout; 3] {
     [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()]
 }
 
-/// Returns words that are often instructions: opcodes are chosen evenly, and modifiers are small.
+/// Returns words that are often instructions. All opcodes have the same probability, and modifiers are small.
 fn likely_word() -> impl Strategy<Value = u32> {
     let instruction =
         (0u32..64, 0u32..32, any::<u16>()).prop_map(|(op, modifier, low)| op << 24 | modifier << 16 | u32::from(low));

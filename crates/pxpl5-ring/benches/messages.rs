@@ -22,7 +22,7 @@ fn request(number: u64, n_nodes: u16, words: &Arc<[u32]>) -> Request {
     Request { message, ticket: Some(number), hold: false, order: 0 }
 }
 
-/// Makes a ring of 21 ports with a request at each of them.
+/// Makes a ring of 21 ports with one request at each port.
 fn busy_ring(elastic: bool, words: &Arc<[u32]>) -> (Ring, EventQueue<RingEvent>) {
     let ring = Ring::new(RingTiming::PAPERS, 21, |_| elastic).expect("valid");
     let mut queue = EventQueue::new();
@@ -32,7 +32,7 @@ fn busy_ring(elastic: bool, words: &Arc<[u32]>) -> (Ring, EventQueue<RingEvent>)
     (ring, queue)
 }
 
-/// Sends the next message of a port at every `Sent`, so that the queues keep their lengths.
+/// Sends the next message of a port at every `Sent`, so that the lengths of the queues stay constant.
 fn run(mut ring: Ring, mut queue: EventQueue<RingEvent>, words: &Arc<[u32]>) -> Ring {
     let n_nodes = ring.n_nodes();
     let mut context = Context::default();

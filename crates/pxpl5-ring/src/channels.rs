@@ -19,7 +19,7 @@ pub struct ChannelSnapshot {
     pub words: u32,
     /// Time at which the arbiter granted the channel.
     pub granted: Time,
-    /// Time at which the channel becomes free. `None` means that the receiver, which has a FIFO, has not answered yet.
+    /// Time at which the channel becomes free. `None` means that the receiver has a FIFO and has not answered yet.
     pub ends_at: Option<Time>,
 }
 
@@ -33,8 +33,8 @@ pub(crate) struct MessageInFlight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
-    /// Number of word slots until the message ends. `message` is the message itself until it is passed to the receiver.
-    /// Only [`Ring::move_every_word`](crate::Ring::move_every_word) uses these two fields.
+    /// Number of word slots until the message ends. The next field, `message`, holds the message until the receiver
+    /// gets it. Only [`Ring::move_every_word`](crate::Ring::move_every_word) uses these two fields.
     pub(crate) slots_left: u64,
     pub(crate) message: Option<Box<Message>>,
 }
@@ -43,8 +43,8 @@ pub(crate) struct MessageInFlight {
 #[derive(Clone, Debug)]
 pub(crate) struct RingChannels {
     flights: Vec<Option<MessageInFlight>>,
-    /// Time at which each channel becomes free. The time is `UNKNOWN` for free channels, and before the receiver's
-    /// answer.
+    /// Time at which each channel becomes free. For free channels, and before the receiver's answer, the time is
+    /// `UNKNOWN`.
     ends_at: Vec<Time>,
     /// Known end times of messages with their channels. The earliest end is the last element.
     due: Vec<(Time, usize)>,
@@ -75,13 +75,13 @@ impl RingChannels {
         self.flights.iter().all(Option::is_none)
     }
 
-    /// Puts a message on the free channel with the lowest number and returns this number. At least one channel must be
-    /// free.
+    /// Puts a message on the free channel with the lowest number, and returns the number of the channel. At least one
+    /// channel must be free.
     pub(crate) fn occupy(&mut self, flight: MessageInFlight, ends_at: Option<Time>) -> usize {
         let channel = self.free.trailing_zeros() as usize;
         self.free &= !(1 << channel);
         self.flights[channel] = Some(flight);
-        // A free channel has no end time, so nothing is recorded while the end is unknown.
+        // A free channel has no end time, so an unknown end needs no record.
         if let Some(end) = ends_at {
             self.end_at(channel, end);
         }

@@ -10,12 +10,12 @@
 //!
 //! # Behaviour
 //!
-//! 1. A [`RingEvent::Request`] puts a message into the queue of its source port. A source can send to different
-//!    receivers
-//!    at the same time, on a limited number of channels. Messages leave a queue in order.
-//! 2. The *head*, the first message of a queue, waits for a free channel, its source's port and its destination. The
-//!    arbiter grants all three together. Heads are granted in the order in which they became heads; at one instant the
-//!    lowest source comes first. A head that must wait does not delay heads that come later in this order.
+//! 1. A [`RingEvent::Request`] puts a message into the queue of its source port. Messages leave a queue in order. A
+//!    source can send to different receivers at the same time, on a limited number of channels.
+//! 2. The *head*, the first message of a queue, waits until three things are free: a channel, the source's port and the
+//!    destination. The arbiter grants all three together. Heads are granted in the order in which they became heads. If
+//!    several messages become heads at one instant, the lowest source number comes first. A head that must wait does
+//!    not delay later heads.
 //! 3. A message occupies its channel and both ports for 16 + `words` word times. At the end of this time the next
 //!    message is granted. A board can send and receive at the same time.
 //! 4. A message sent with [`Request::hold`] leaves its destination reserved for the same source. The messages of a
@@ -25,12 +25,11 @@
 //!    receiver gets the message when the last word has arrived ([`RingOutput::Delivered`]).
 //! 6. A receiver with a FIFO that can be full (a renderer) gets an announcement of the message
 //!    ([`RingOutput::Announce`]). The receiver answers with the time at which the last word enters the FIFO
-//!    ([`RingEvent::Accept`]). If this time is later than the earliest possible one, the difference is a *stall*.
+//!    ([`RingEvent::Accept`]). If this time is later than the earliest possible time, the difference is a *stall*.
 //!    During a stall, channel and ports stay occupied.
 //! 7. Messages to receivers with a FIFO use at most [`RingTiming::fifo_channels`] channels. A board with a full FIFO
-//!    may
-//!    have to send messages before it can accept more. The remaining channels keep full FIFOs from blocking these
-//!    messages.
+//!    may have to send messages before it can accept more words. The remaining channels are for such messages, so full
+//!    FIFOs cannot block them.
 //! 8. No message is dropped. An impossible message (0 words, more than 1,024 words, or a port that does not exist) is
 //!    refused, counted and kept for the report: [`Ring::refusals`].
 //!
@@ -42,24 +41,26 @@
 //! |---|---|
 //! | announced | `g + word + h x hop` |
 //! | first word at the destination | `g + overhead x word + h x hop` |
-//! | last word has arrived; the sender is told ([`RingOutput::Sent`]) | `g + (overhead + words) x word + stall + h x hop` |
+//! | last word arrived; sender notified ([`RingOutput::Sent`]) | `g + (overhead + words) x word + stall + h x hop` |
 //! | channel and ports free | `g + (overhead + words) x word + stall` |
 //!
-//! A message needs one event, its grant. It needs a second event if another message waits for its end. All times of a
-//! message are known at its grant or at the receiver's answer. [`Ring::move_every_word`] disables this optimization.
-//! The module [`reference`](mod@reference) is the reference model: it applies the same rules word by word and shares no
-//! code with the ring. A property test compares all three.
+//! A message needs one event, its grant. A second event is needed only if another message waits for the end of the
+//! first. All times of a message are known at its grant or at the receiver's answer. [`Ring::move_every_word`] disables
+//! this optimization. The module [`reference`](mod@reference) is the reference model. The model applies the same rules
+//! word by word and shares no code with the ring. A property test compares the reference model with the ring, with and
+//! without the optimization.
 //!
 //! **Not modelled:**
 //!
 //! - routing, check words and the layout of the hardware's queues (the overhead of each message stands for their cost)
 //! - the travel time of a stall or an acknowledgement back along the ring
-//! - the hop latency between two messages of different sources to one destination: on rings of more than 16 boards the
-//!   second message can begin to arrive before the first has ended
+//! - the hop latency between two messages from different sources to one destination (on rings of more than 16 boards,
+//!   the second message can begin to arrive before the first message has ended)
 //! - multicast and broken hardware
 //!
-//! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. Its order, first come
-//! first served, is derived: any other order needs 12 instead of 11 region times for 20 field regions over two ports.
+//! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. The order of the
+//! arbiter, first come first served, is derived. With any other order, 20 field regions over two ports would need 12
+//! region times instead of 11.
 
 mod channels;
 mod port;

@@ -9,20 +9,20 @@ use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 pub enum RingEvent {
     /// A board passes a message to its ring port. The event belongs to phase `Arrive` of the event queue.
     Request(Request),
-    /// A receiver with a FIFO answers an announcement: it gives the time at which the last word will enter the FIFO.
-    /// The event belongs to phase `Arrive` of the event queue.
+    /// A receiver with a FIFO answers an announcement. The answer is the time at which the last word will enter the
+    /// FIFO. The event belongs to phase `Arrive` of the event queue.
     ///
     /// A time earlier than `first_word_at + words x word` is impossible. Such an answer is counted as a fault, and the
-    /// earliest possible time is used instead. If the answer comes after the sender could have been free, the sender
-    /// becomes free at once.
+    /// earliest possible time is used instead. If the answer arrives after the time at which the message would free its
+    /// sender, the sender becomes free immediately.
     Accept {
         /// Port of the receiver.
         destination: NodeId,
         /// Time at which the last word enters the receiver, including the stall.
         last_word_at: Time,
     },
-    /// Internal event of a ring that [moves every word](crate::Ring::move_every_word): the time slot of a word ends.
-    /// The event belongs to phase `Arrive` of the event queue.
+    /// Internal event: the time slot of one word ends. Only a ring that [moves every
+    /// word](crate::Ring::move_every_word) has such events. The event belongs to phase `Arrive` of the event queue.
     Slot {
         /// Number of the channel, counted from 0.
         channel: usize,
@@ -37,12 +37,12 @@ pub enum RingEvent {
 pub struct Request {
     /// Message to send, with source, destination and length in words.
     pub message: Message,
-    /// Number that comes back in [`RingOutput::Sent`] or [`RingOutput::Refused`]. With `None` the sender gets no
-    /// answer.
+    /// Number that [`RingOutput::Sent`] or [`RingOutput::Refused`] returns to the sender. With `None`, the sender gets
+    /// no answer.
     pub ticket: Option<u64>,
     /// True if the destination stays reserved for this source after the message, because the transfer has more
     /// messages. The first message without `hold` ends the reservation. If no such message follows, the destination
-    /// stays blocked, as [`Ring::waiting`](crate::Ring::waiting) shows.
+    /// stays blocked. [`Ring::waiting`](crate::Ring::waiting) then lists the blocked messages.
     pub hold: bool,
     /// Rank among the messages that reach the same port at the same instant, the lowest rank first. The rank is needed
     /// because events of one instant have no order. Messages of different instants are sorted by time.
@@ -57,13 +57,14 @@ pub enum RingOutput {
     Announce {
         /// Message that will arrive.
         message: Message,
-        /// Time at which the first word begins to arrive. The first word can enter the receiver one `word` later.
+        /// Time at which the first word begins to arrive. The first word can enter the receiver one word time (`word`)
+        /// later.
         first_word_at: Time,
         /// Time that the transfer of one word takes.
         word: Span,
     },
-    /// Delivery of a message to its receiver `message.destination`, which accepts every word immediately. The last word
-    /// has arrived.
+    /// Delivery of a message to its receiver `message.destination`. The receiver accepts every word immediately, and
+    /// the last word has arrived.
     Delivered(Message),
     /// Answer to the sender of a message with a ticket: the receiver has accepted the last word.
     Sent {
@@ -93,10 +94,10 @@ pub enum RingError {
     /// The ring has no ports.
     #[error("a ring needs one port at least, found none")]
     NoNodes,
-    /// A message names a port that the ring does not have.
+    /// The source or the destination of a message is a port that the ring does not have.
     #[error("there is no ring port {}: the ring has {n_nodes}, from 0", .node.0)]
     NoSuchNode {
-        /// Port that the message names.
+        /// Port that does not exist.
         node: NodeId,
         /// Number of ports of the ring. Ports are numbered from 0.
         n_nodes: u16,
@@ -105,26 +106,26 @@ pub enum RingError {
     #[error("message from ring port {} to {}: expected 1 to {max} words, found {words}", .r#source.0, .destination.0, max = MAX_MESSAGE_WORDS)]
     Length {
         /// Port of the sender.
-        r#source: NodeId, // Raw, since `thiserror` takes a plain `source` for another error.
+        r#source: NodeId, // Raw, because `thiserror` takes a plain `source` for another error.
         /// Port of the receiver.
         destination: NodeId,
         /// Length of the message in words, without the overhead.
         words: u32,
     },
-    /// A receiver gave an answer without an announcement, or a second answer to an announcement.
+    /// A receiver answered without an announcement, or answered an announcement for the second time.
     #[error("ring port {} accepted a message that was not announced to it", .destination.0)]
     NothingAnnounced {
         /// Port of the receiver.
         destination: NodeId,
     },
-    /// A receiver claimed to accept the last word at a time before this word could have arrived.
+    /// A receiver answered with a time that is too early: the last word could not have arrived then.
     #[error("ring port {} accepted the last word at {found}, but it cannot enter before {expected}", .destination.0)]
     AcceptedEarly {
         /// Port of the receiver.
         destination: NodeId,
         /// Earliest time at which the last word can have arrived.
         expected: Time,
-        /// Time that the receiver gave in its answer.
+        /// Time in the answer of the receiver.
         found: Time,
     },
     /// A time given to the reference model is not a multiple of the model's tick.

@@ -6,13 +6,14 @@
 //! 1. Messages whose time has come join the queue of their source port.
 //! 2. Every channel at the end of a word slot moves one word: first the slots of the overhead, then the words of the
 //!    message. A word that does not fit into its receiver stays in its slot and is offered again in the next tick.
-//!    When the last word has moved and the receiver has answered, channel and ports become free.
-//! 3. The first messages of the queues are granted while channels are free. They are sorted by the time at which they
-//!    became first, then by source. A message needs a source port with a free send channel, and a free destination that
-//!    is not reserved for another source. Messages to receivers with a FIFO use at most `fifo_channels`.
+//!    Channel and ports become free after the last word has moved and the receiver has answered.
+//! 3. The first messages of the queues are granted while channels are free. These messages are sorted by the time at
+//!    which they became first, then by source. A message needs a source port with a free send channel, and a free
+//!    destination that is not reserved for another source. Messages to receivers with a FIFO use at most
+//!    `fifo_channels` channels.
 //!
-//! Between boards, hops delay the word slots at the receiver against those at the sender. Hops have no other effect.
-//! The model computes no end ahead and skips no event.
+//! Because of the hops between two boards, each word slot at the receiver is later than the slot at the sender. Hops
+//! have no other effect. The model computes no end in advance and skips no event.
 
 use crate::{RingError, RingTiming};
 use pxpl5_sim::parameters::ParameterTable;
@@ -36,7 +37,7 @@ pub struct PlannedMessage {
     pub hold: bool,
 }
 
-/// Channel of a message that was sent, and the times of its transfer.
+/// The channel of a message that was sent, and the times of its transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CarriedMessage {
     /// Number of the channel, counted from 0.
@@ -87,7 +88,7 @@ pub struct SteppedRing<'a, R> {
     n_nodes: u16,
     traffic: &'a [PlannedMessage],
     receivers: R,
-    /// Queue of each source: indices of the waiting messages, and the time since which the first one has been first.
+    /// Queue of each source: the indices of the waiting messages, and the time at which the first message became first.
     queues: Vec<(VecDeque<usize>, Time)>,
     /// Number of messages that each source is sending on channels.
     sending: Vec<u64>,
@@ -113,7 +114,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     ///
     /// # Errors
     ///
-    /// [`RingError::Timing`], [`RingError::NoNodes`] and [`RingError::NoSuchNode`].
+    /// Returns [`RingError::Timing`], [`RingError::NoNodes`] or [`RingError::NoSuchNode`].
     pub fn new(
         timing: RingTiming,
         n_nodes: u16,
@@ -150,7 +151,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     /// # Errors
     ///
     /// Returns [`RingError::OffTick`] if a time of the timing table or of the traffic is not a multiple of `tick`.
-    /// [`RingError::Unfinished`] if a message is not delivered at `until`.
+    /// Returns [`RingError::Unfinished`] if a message is not delivered at `until`.
     pub fn run(mut self, tick: Span, until: Time) -> Result<Vec<CarriedMessage>, RingError> {
         self.check_tick(tick)?;
         let mut now = Time::ZERO;
@@ -199,7 +200,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             if now.since(slots.slot_began) >= self.timing.word() {
                 self.move_word(&mut slots, now);
             }
-            // Channel and ports are free after the last word and the answer.
+            // Channel and ports become free after the last word and the answer.
             if slots.words_left == 0 && slots.answered_at <= now {
                 self.release(slots.message, now);
             } else {
@@ -211,7 +212,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     fn move_word(&mut self, slots: &mut ChannelSlots, now: Time) {
         let destination = self.traffic[slots.message].destination;
         let seen_at = now + slots.latency;
-        // The slots of the overhead pass without asking the receiver.
+        // The slots of the overhead pass without an offer to the receiver.
         if slots.overhead_left > 0 {
             slots.overhead_left -= 1;
             slots.slot_began = now;
@@ -225,7 +226,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn release(&mut self, message: usize, now: Time) {
-        // The next message of a source at its limit becomes the head only now.
+        // If the source was at its limit, its next message becomes the head only now.
         let PlannedMessage { source, destination, hold, .. } = self.traffic[message];
         if self.sending[usize::from(source.0)] == self.timing.source_channels {
             self.queues[usize::from(source.0)].1 = now;

@@ -17,23 +17,22 @@ pub struct Ring {
     sources: Vec<SourcePort>,
     destinations: Vec<DestinationPort>,
     channels: RingChannels,
-    /// Number of messages under way to receivers with a FIFO, at most `fifo_channels`.
+    /// Number of messages that are being sent to receivers with a FIFO, at most `fifo_channels`.
     to_fifos: u64,
     /// First message of each queue whose source has a free send channel. The messages are sorted by the order of
     /// grants.
     heads: Vec<QueueHead>,
     /// Number of messages in `heads` whose receiver has a FIFO.
     heads_to_fifos: u32,
-    /// Number of sources that are sending on as many channels as they can use at the same time.
+    /// Number of sources that send on the greatest possible number of channels, `source_channels`.
     at_limit: usize,
-    /// True if a channel or destination has become free since the last grants, so that a waiting message may be
-    /// granted.
+    /// True if a channel or destination has become free since the last grants. A waiting message may then be granted.
     unblocked: bool,
     /// Times at which an arbitration is scheduled.
     arbitrations: Vec<Time>,
-    /// True if every end of a message causes an event, even if no other message waits for this end.
+    /// True if every end of a message causes an event, even if no other message waits for the end.
     watched: bool,
-    /// True if each word of a message causes an event of its own.
+    /// True if each word of a message causes a separate event.
     word_by_word: bool,
     stats: RingStats,
     /// Time that each port has spent receiving messages, including overhead and stalls.
@@ -63,8 +62,8 @@ struct DestinationPort {
     heads: u32,
 }
 
-/// The first message of a source's queue, which waits for its grant. Messages are granted in the order of `since`, then
-/// of `source`.
+/// The first message of a source's queue, which waits for its grant. Messages are granted in the order of `since`, and
+/// messages with equal `since` in the order of `source`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct QueueHead {
     since: Time,
@@ -78,7 +77,7 @@ impl Ring {
     ///
     /// # Errors
     ///
-    /// [`RingError::Timing`] and [`RingError::NoNodes`].
+    /// Returns [`RingError::Timing`] or [`RingError::NoNodes`].
     pub fn new(timing: RingTiming, n_nodes: u16, elastic: impl Fn(NodeId) -> bool) -> Result<Self, RingError> {
         timing.check()?;
         if n_nodes == 0 {
@@ -111,8 +110,9 @@ impl Ring {
         self.watched = true;
     }
 
-    /// Schedules a separate event for every word of a message. Normally the end of a message is computed at its grant.
-    /// The times of messages stay the same. Receivers with a FIFO still answer for whole messages.
+    /// Schedules a separate event for every word of a message. Without this call, the ring computes the end of a
+    /// message at its grant. The call does not change the times of messages. Receivers with a FIFO still answer for
+    /// whole messages.
     pub const fn move_every_word(&mut self) {
         self.word_by_word = true;
     }
@@ -140,7 +140,7 @@ impl Ring {
     /// Recomputes every counter of the ring. Returns true if the counters are correct.
     fn check_counters(&self) -> bool {
         let to_fifo = |node: NodeId| !self.is_elastic(node);
-        // One pass over the heads: a scan for each port would take most of the time of a test run.
+        // Count in one pass over the heads. A scan for each port would take most of the time of a test run.
         let mut heads_of_ports = vec![0; self.destinations.len()];
         self.heads.iter().for_each(|head| heads_of_ports[usize::from(head.destination.0)] += 1);
         let source_limit = self.timing.source_channels;
@@ -168,7 +168,7 @@ impl Ring {
         self.sources.len() as u16
     }
 
-    /// Returns the statistics of the ring. They cover all messages that had ended at the last grant or
+    /// Returns the statistics of the ring. The statistics cover all messages that had ended at the last grant or
     /// [`Ring::settle`].
     #[must_use]
     pub const fn stats(&self) -> &RingStats {
@@ -201,8 +201,7 @@ impl Ring {
         self.channels.channel_snapshots(now)
     }
 
-    /// Returns true if no message is on a channel or waits for one. The state is that of the last grant or
-    /// [`Ring::settle`].
+    /// Returns true if no message is on a channel or waits for a channel, as of the last grant or [`Ring::settle`].
     #[must_use]
     pub fn is_idle(&self) -> bool {
         self.heads.is_empty() && self.channels.is_idle()
@@ -212,7 +211,7 @@ impl Ring {
     ///
     /// # Errors
     ///
-    /// [`RingError::NoSuchNode`] and [`RingError::Length`].
+    /// Returns [`RingError::NoSuchNode`] or [`RingError::Length`].
     pub fn check(&self, message: &Message) -> Result<(), RingError> {
         for node in [message.source, message.destination] {
             self.check_node(node)?;
@@ -223,8 +222,8 @@ impl Ring {
         Err(RingError::Length { source: message.source, destination: message.destination, words: message.words })
     }
 
-    /// Returns the messages that wait for a grant at the head of their queue, or for an answer of their receiver. The
-    /// messages are sorted by source.
+    /// Returns two kinds of waiting messages: messages at the head of their queue without a grant, and messages without
+    /// an answer of their receiver. The messages are sorted by source.
     #[must_use]
     pub fn waiting(&self) -> Vec<WaitingMessage> {
         let heads = self.heads.iter().filter_map(|head| self.waiting_head(*head));
@@ -253,7 +252,7 @@ impl Ring {
         if !new_first || source.in_flight >= most {
             return;
         }
-        // The message comes before the old head: both reached the port at this instant, in another order.
+        // The new message can come before the old head if both reached the port at this instant.
         if source.queue.len() > 1
             && let Some(place) = self.heads.iter().position(|head| head.source == id)
         {
@@ -263,8 +262,8 @@ impl Ring {
         self.arbitrate_at(now, context);
     }
 
-    /// Schedules an arbitration at time `at`, unless an earlier one is scheduled already. Each arbitration schedules
-    /// the next one.
+    /// Schedules an arbitration at time `at`, unless an earlier arbitration is scheduled already. Each arbitration
+    /// schedules the next arbitration.
     fn arbitrate_at(&mut self, at: Time, context: &mut RingContext) {
         if self.arbitrations.iter().all(|earlier| *earlier > at) {
             self.arbitrations.push(at);
@@ -275,7 +274,7 @@ impl Ring {
     /// Schedules an arbitration at the next relevant end of a message. An end is relevant if a waiting message needs
     /// it, or if [`Ring::watch`] was called.
     fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
-        // A source at its limit or a missing channel makes every end matter.
+        // If a source is at its limit or no channel is free, every end is relevant.
         let any_end = self.watched || self.at_limit > 0;
         let next = if any_end || self.is_channel_missing() {
             self.channels.first_end()
@@ -289,7 +288,8 @@ impl Ring {
         }
     }
 
-    /// Returns the earliest time at which a destination becomes free for which the first message of a queue waits.
+    /// Returns the earliest time at which a destination of a waiting head becomes free. A head is the first message of
+    /// a queue.
     fn first_end_waited_for(&self) -> Option<Time> {
         let waited_for = |flight: &MessageInFlight| self.destinations[usize::from(flight.destination.0)].heads > 0;
         self.channels.ends().find(|(_, flight)| waited_for(flight)).map(|(end, _)| end)
@@ -312,10 +312,11 @@ impl Ring {
     fn add_head(&mut self, since: Time, source: NodeId) {
         let Some(first) = self.sources[usize::from(source.0)].queue.front() else { return };
         let head = QueueHead { since, source, destination: first.request.message.destination };
-        // Heads stay sorted by the time as head, then by source.
+        // Keep the heads sorted by the time at which they became heads, then by source.
         let later = self.heads.iter().rev().take_while(|&&h| h > head).count();
         self.heads.insert(self.heads.len() - later, head);
-        // Count the head at its destination, so that the end of a message there grants it.
+        // Count the head at its destination. The end of a message at this destination then causes a new round of
+        // grants.
         let destination = &mut self.destinations[usize::from(head.destination.0)];
         destination.heads += 1;
         self.heads_to_fifos += u32::from(!destination.elastic);
@@ -340,12 +341,12 @@ impl Ring {
             self.to_fifos -= u64::from(!destination.elastic);
             let source = &mut self.sources[usize::from(flight.source.0)];
             source.in_flight -= 1;
-            // Below its limit the source already has its next message as a head.
+            // The next message of a source below its limit is already a head.
             if source.in_flight + 1 == self.timing.source_channels {
                 self.at_limit -= 1;
                 self.add_head(ended, flight.source);
             }
-            // Account for the message.
+            // Add the message to the statistics.
             let busy = ended.since(flight.granted);
             self.stats.channel_busy[channel] += busy;
             self.receiving[usize::from(flight.destination.0)] += busy;
@@ -357,8 +358,8 @@ impl Ring {
 
     /// Grants channels to all waiting messages that can be sent, in one pass. One pass is enough, because a grant frees
     /// nothing, and the next message of the same source comes later in the order. If nothing became free since the last
-    /// pass, earlier messages still cannot be sent. Only messages that reached the head of their queue at this instant
-    /// are then checked.
+    /// pass, messages that waited then still cannot be sent. In this case, the pass checks only messages that reached
+    /// the head of their queue at this instant.
     fn grant_all(&mut self, now: Time, context: &mut RingContext) {
         let is_for_all = std::mem::take(&mut self.unblocked);
         let mut place =
@@ -387,7 +388,7 @@ impl Ring {
         let port = &mut self.sources[usize::from(source.0)];
         let Some(QueuedRequest { at, request }) = port.queue.pop_front() else { return };
         port.in_flight += 1;
-        // Account for the time in the queue.
+        // Add the time in the queue to the statistics.
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
@@ -416,8 +417,8 @@ impl Ring {
     }
 
     /// Puts a message on a channel and outputs its delivery or its announcement. If the receiver accepts every word
-    /// immediately, the end of the message is known at once. Otherwise the receiver's answer gives the end. A ring with
-    /// an event for every word finds the end by its words.
+    /// immediately, the end of the message is known at once. Otherwise, the end follows from the receiver's answer.
+    /// With an event for every word, the end follows from the last of these events.
     fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) {
         if self.word_by_word {
             let begins = flight.granted;
@@ -484,8 +485,8 @@ impl Ring {
             let error = RingError::NothingAnnounced { destination };
             return self.refusals.record(now, error);
         };
-        // The channel is occupied for a stall too, but never ends before now.
-        // An answer cannot be earlier than the words without a stall.
+        // The earliest possible time for the last word, without a stall. A stall keeps the channel occupied, and the
+        // channel cannot become free before the present.
         let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
         let accepted = last_word_at.max(earliest);
         let end = now.max(Time(accepted.0 - flight.latency.0));
@@ -523,7 +524,8 @@ impl Ring {
     }
 }
 
-/// Outputs the delivery of a message to a receiver that accepts every word immediately. The sender is notified too.
+/// Outputs the delivery of a message to a receiver that accepts every word immediately, and the notification of the
+/// sender.
 fn deliver(message: Message, at: Time, sender: (NodeId, Option<u64>), context: &mut RingContext) {
     context.output(at, RingOutput::Delivered(message));
     notify_sender(sender, at, context);

@@ -10,7 +10,7 @@ use std::fmt;
 pub struct RingStats {
     /// Time for which each channel was occupied, including overhead and stalls.
     pub channel_busy: Vec<Span>,
-    /// Number of messages that have ended, so that their channels have become free.
+    /// Number of messages that have ended and have freed their channels.
     pub messages: u64,
     /// Number of words in the ended messages, without the overhead.
     pub words: u64,
@@ -22,7 +22,7 @@ pub struct RingStats {
     pub stalled: Span,
 }
 
-/// Refused messages and answers: their number, and the reason for the first one.
+/// The number of refused messages and answers, and the reason for the first refusal.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Refusals {
     /// Number of refused messages and answers since the ring was made.
@@ -47,7 +47,8 @@ pub struct WaitingMessage {
     pub destination: NodeId,
     /// Length in words, without the overhead.
     pub words: u32,
-    /// Time at which the message became the first of its queue, or was granted.
+    /// Time at which the message was granted. Before the grant, time at which the message became the first of its
+    /// queue.
     pub since: Time,
     /// Condition that the message waits for.
     pub reason: WaitReason,
@@ -69,8 +70,8 @@ pub enum WaitReason {
 }
 
 impl WaitingMessage {
-    /// Returns the port that must act before the message can continue: the port that occupies or reserves the receiver,
-    /// or else the receiver. Returns `None` if the message waits for the ring.
+    /// Returns the port whose board must act before the message can continue. This port is the port that occupies or
+    /// reserves the receiver, or the receiver itself. Returns `None` if the message waits for the ring.
     #[must_use]
     pub const fn waits_on(&self) -> Option<NodeId> {
         match self.reason {

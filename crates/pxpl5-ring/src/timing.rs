@@ -8,10 +8,13 @@ pxpl5_sim::parameters::parameter_table! {
     pub struct RingTiming {
         /// Time in which a channel moves one word.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
-        /// Overhead of each message, in word times.
+        /// Overhead of each message, as a number of word times.
         overhead_words: 16, "words", Derived, 16..=16 in 0..=1_000_000, "(780 us a region of TR94 - 15,360 words x 50 ns) / 15 messages = 0.8 us";
         /// Latency from one board to the next board on the ring.
         hop_ns: 50, "ns", Assumed, 0..=200 in 0..=1_000_000, "one word time: every board latches a word once";
+        /// Time from an event inside a board to its signal at the ring port, for graphics processors, renderers and the
+        /// host.
+        signal_ns: 25, "ns", Derived, 25..=25 in 1..=1_000_000, "one clock of the boards' 40 MHz (F89)";
         /// Number of channels of the ring. Each channel carries one message at a time.
         channels: 8, "channels", Published, 8..=8 in 1..=64, "TR94";
         /// Greatest number of channels on which one board can send at the same time, to different receivers.
@@ -23,6 +26,12 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 impl RingTiming {
+    /// Returns the time from an event inside a board to its signal at the ring port.
+    #[must_use]
+    pub const fn signal(&self) -> Span {
+        Span::from_ns(self.signal_ns)
+    }
+
     /// Returns the time in which a channel moves one word.
     #[must_use]
     pub const fn word(&self) -> Span {

@@ -1,23 +1,23 @@
-//! Tests why messages to FIFOs may use at most six of eight channels: searches all states of small machines, in any
-//! order of events.
+//! Tests the reason for the limit of six of the eight channels for messages to FIFOs. The test searches all states of
+//! small machines, in any order of events.
 //!
-//! The invariant: messages to full FIFOs hold at most `fifo_channels` < `channels` channels. So there is always a
-//! channel that is free or carries a message to an elastic receiver, which always ends. Hence a board that must send
-//! before it accepts more can send. Hence its FIFO drains, and every message ends. With `fifo_channels` = `channels`
-//! the first step fails: full FIFOs hold all channels, and the messages that their boards must send first wait for one.
+//! The invariant: messages to full FIFOs hold at most `fifo_channels` < `channels` channels. At least one channel is
+//! therefore free, or carries a message to an elastic receiver. Such a message always ends. A board that must send
+//! before it accepts more words can therefore send. Then its FIFO drains, and every message ends. With `fifo_channels`
+//! = `channels` the first step fails. Full FIFOs hold all channels, and the messages that their boards must send first
+//! wait for a channel.
 //!
-//! The search has no time: every possible next event is tried, in every order. It therefore holds for all times and
-//! rules of arbitration.
-//! Its model shares no code with the ring.
+//! The search has no time: it tries every possible next event, in every order. Its result therefore holds for all times
+//! and rules of arbitration. The search model shares no code with the ring.
 
 use std::collections::HashSet;
 
-/// A machine: processors that send to renderers, which send each command's pixels to one frame buffer.
+/// A machine whose processors send to renderers. The renderers send each command's pixels to one frame buffer.
 #[derive(Clone, Copy, Debug)]
 struct Machine {
     channels: usize,
     fifo_channels: usize,
-    /// Number of channels that one board can send on at a time.
+    /// Number of channels on which one board can send at the same time.
     source_channels: usize,
     processors: usize,
     renderers: usize,
@@ -30,15 +30,16 @@ struct Machine {
 /// The positions of all messages, without time.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct State {
-    /// For each processor: unsent messages to each renderer. The processor may send them in any order.
+    /// Numbers of unsent messages, by processor and renderer. A processor can send its messages in any order.
     unsent: Vec<Vec<u8>>,
-    /// Messages on channels: from a processor to a renderer.
+    /// Messages on channels to renderers: processor and renderer of each message.
     to_fifos: Vec<(usize, usize)>,
-    /// The renderer whose message is on a channel to the frame buffer, which takes one at a time.
+    /// Renderer whose message is on a channel to the frame buffer. The frame buffer takes one message at a time.
     to_frame_buffer: Option<usize>,
-    /// Commands in each FIFO.
+    /// Number of commands in each FIFO.
     held: Vec<u8>,
-    /// Renderers with a message to send. They take no command from their FIFO before it has ended.
+    /// True for each renderer with a message to send. Such a renderer takes no command from its FIFO before the message
+    /// has ended.
     must_send: Vec<bool>,
 }
 
@@ -69,7 +70,7 @@ impl Machine {
                 all.push(next);
             }
         }
-        // A message to an elastic receiver always ends; its renderer may continue.
+        // A message to an elastic receiver always ends. Then its renderer can continue.
         if let Some(renderer) = state.to_frame_buffer {
             let mut next = state.clone();
             next.to_frame_buffer = None;
@@ -86,7 +87,7 @@ impl Machine {
         all
     }
 
-    /// Returns the states after a channel was granted.
+    /// Returns the states that can follow by one grant of a channel.
     fn grants(&self, state: &State) -> Vec<State> {
         let mut all = Vec::new();
         if !self.has_free_channel(state) {
@@ -114,7 +115,7 @@ impl Machine {
         all
     }
 
-    /// Returns true if everything was sent and drawn.
+    /// Returns true if all messages were sent and all commands drawn.
     fn is_done(&self, state: &State) -> bool {
         *state == State { unsent: vec![vec![0; self.renderers]; self.processors], ..self.start() }
     }
@@ -136,7 +137,7 @@ impl Machine {
     }
 }
 
-/// Returns all machines of up to three channels and renderers, and up to two processors where the search stays small.
+/// Returns all machines of up to three channels, three renderers and two processors whose search stays small.
 fn machines() -> impl Iterator<Item = Machine> {
     let boards = [(1, 1), (1, 2), (1, 3), (2, 1), (2, 2)];
     let channels = (1..=3).flat_map(|channels| (1..=channels).map(move |fifo| (channels, fifo)));
@@ -148,7 +149,8 @@ fn machines() -> impl Iterator<Item = Machine> {
             source_channels,
             processors,
             renderers,
-            // One message on the channel, one in the FIFO, one whose pixels wait: fewer would leave something empty.
+            // One message on the channel, one in the FIFO, and one whose pixels wait. With fewer messages, one of these
+            // places would stay empty.
             messages: if processors == 1 { 3 } else { 2 },
             fifo: 1,
         })
@@ -169,8 +171,8 @@ fn while_fifos_leave_a_channel_no_order_of_events_ends_in_a_deadlock() {
     assert!(searched > 20 && states > 10_000, "{searched} machines, {states} states");
 }
 
-/// Without the limit a machine can deadlock once full FIFOs can hold all channels: it needs as many renderers as
-/// channels, and enough senders.
+/// Without the limit, a machine can deadlock if full FIFOs can hold all channels. For this, the machine needs at least
+/// as many renderers as channels, and enough senders.
 #[test]
 fn without_a_channel_left_full_fifos_hold_all_of_them() {
     for machine in machines().filter(|machine| machine.fifo_channels == machine.channels) {

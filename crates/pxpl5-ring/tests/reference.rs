@@ -17,7 +17,8 @@ struct RingCase {
     traffic: Vec<PlannedMessage>,
 }
 
-/// Returns random transfers. Each has up to four messages to one destination, all but the last with `hold`.
+/// Returns random transfers. Each transfer has up to four messages to one destination. All messages except the last
+/// have `hold`.
 fn transfers(n_nodes: u16, tick: Span) -> impl Strategy<Value = Vec<PlannedMessage>> {
     let words = prop_oneof![8 => 1u32..40, 2 => 40u32..200, 1 => Just(1_024u32)];
     let transfer = (0u64..600, 0..n_nodes, 0..n_nodes, words, 1usize..5);
@@ -51,6 +52,7 @@ fn cases() -> impl Strategy<Value = RingCase> {
                 let tick = Span::from_ns(10);
                 let timing = RingTiming {
                     word_ns: 10 * word_ticks,
+                    signal_ns: 10,
                     overhead_words,
                     hop_ns: 10 * hop_ticks * u64::from(hop_ticks * u64::from(n_nodes) <= 16 * word_ticks),
                     channels,
@@ -75,8 +77,8 @@ fn step(case: &RingCase) -> Vec<CarriedMessage> {
     ring.run(case.tick, Time(1_000_000_000_000)).expect("everything is delivered")
 }
 
-/// Returns the time of the answer to the sender: at the last word, but at least one word time after the receiver's
-/// answer.
+/// Returns the time of the answer to the sender. The answer comes with the last word, but at least one word time after
+/// the receiver's answer.
 fn told_at(case: &RingCase, message: usize, message_carried: &CarriedMessage) -> Time {
     let t = case.traffic[message];
     match case.receivers[usize::from(t.destination.0)] {
@@ -147,7 +149,8 @@ fn elastic(traffic: &[PlannedMessage], tick: Span, until_ns: u64) -> Result<Vec<
     ring.run(tick, Time::ZERO + Span::from_ns(until_ns))
 }
 
-/// Seven messages to elastic receivers at once, on a ring whose other receivers may use six channels.
+/// Sends seven messages to elastic receivers at once. The ring also has receivers with a FIFO, whose messages may use
+/// only six channels.
 #[test]
 fn word_by_word_elastic_receivers_take_each_word_as_it_comes_on_any_channel() {
     let traffic: Vec<_> = (0..7).map(|i| planned(3_000, 2 * i, 2 * i + 1, 100)).collect();
@@ -182,7 +185,7 @@ fn word_by_word_every_time_must_be_a_multiple_of_the_tick() {
     assert!(elastic(&traffic, Span::from_ns(10), 100_000).is_ok());
 }
 
-/// 20 boards send to their neighbours at once and fill eight channels, which random traffic seldom does for long.
+/// 20 boards send to their neighbours at once and occupy all eight channels. Random traffic seldom does this for long.
 #[test]
 fn both_agree_when_twenty_messages_want_eight_channels_at_once() {
     let tick = Span::from_ns(50);
@@ -192,7 +195,7 @@ fn both_agree_when_twenty_messages_want_eight_channels_at_once() {
     let (ring, times) = run_fast(case.timing, &case.receivers, &case.traffic, None);
     let carried = step(&case);
     assert!(carried.iter().zip(0u64..).all(|(message_carried, i)| times.accepted[&i] == message_carried.last_word_at));
-    // 60 messages of 52 us on 8 channels: seven rounds full, four messages in the eighth.
+    // 60 messages of 52 us on 8 channels take seven full rounds, and an eighth round with four messages.
     let last = times.accepted.values().max().expect("some");
     assert_eq!(*last, Time::ZERO + tick * 3 + Span::from_us(8 * 52));
     assert_eq!(ring.stats().channel_busy[7], Span::from_us(7 * 52));

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use support::{ELASTIC, Receiver, message, request, run_fast};
 
 const TIMING: RingTiming = RingTiming::PAPERS;
-/// Ports that send one message at a time, which makes some rules easier to test.
+/// A timing table in which each port sends one message at a time. Some rules are easier to test with this table.
 const ONE_AT_A_TIME: RingTiming = RingTiming { source_channels: 1, ..TIMING };
 /// Occupancy of a message of maximum size: (16 + 1,024) x 50 ns.
 const FULL: Span = Span::from_us(52);
@@ -59,8 +59,8 @@ fn a_region_of_fifteen_messages_takes_the_published_780_us() {
     assert_eq!(gaps, [FULL; 14]);
 }
 
-/// TR94: five renderers copy 20 field regions, each left and right in turn, to two frame buffers. At both ends one
-/// frame buffer idles for one region time.
+/// TR94: five renderers copy 20 field regions to two frame buffers. Each renderer alternates between left and right. At
+/// the start and at the end, one frame buffer idles for one region time.
 #[test]
 fn twenty_regions_to_two_frame_buffers_take_eleven_region_times() {
     let mut messages = Vec::new();
@@ -100,7 +100,7 @@ fn full_fifos_leave_channels_for_what_their_boards_must_send() {
     messages.push(traffic(us(1), 10, 11, 1_024));
     let (_, times) = run_fast(TIMING, &receivers, &messages, Some(3));
     assert_eq!(times.accepted[&8], us(1 + 52) + HOP);
-    // Six wait for their receivers, the other two for a channel.
+    // Six messages wait for their receivers, and the other two for a channel.
     let late = times.accepted.values().filter(|time| **time > us(800)).count();
     assert_eq!(late, 2);
 }
@@ -129,7 +129,8 @@ fn of_two_that_wait_the_one_that_came_first_goes_first_and_at_one_instant_the_lo
     assert_eq!(together[1..], [us(156) + HOP, us(104) + HOP * 2]);
 }
 
-/// Port 0 requested port 3 before port 1 did, but first had to send another message, which had to wait.
+/// Port 0 requests port 3 earlier than port 1 does. However, port 0 must first send another message, and this message
+/// has to wait.
 #[test]
 fn a_message_queues_for_its_destination_from_when_it_is_first_at_its_source() {
     let times = accepted(&[
@@ -178,7 +179,7 @@ fn a_held_destination_waits_for_its_source_and_a_released_one_goes_to_the_first_
     assert_eq!(times, [us(52) + HOP * 2, us(152) + HOP * 2, us(204) + HOP]);
 }
 
-/// Returns the time of an output that answers a sender.
+/// Returns the time of an output that answers a sender, or `None` for other outputs.
 fn sent_at(output: &(Time, RingOutput)) -> Option<Time> {
     match output {
         (time, RingOutput::Sent { .. }) => Some(*time),
@@ -212,8 +213,8 @@ fn a_receiver_with_a_fifo_is_told_before_the_first_word_and_its_answer_ends_the_
     assert_eq!(ring.stats().stalled, stall);
 }
 
-/// A snapshot shows a message on its channel from the grant to the end of its last word's slot. The end is known after
-/// the receiver's answer.
+/// A snapshot shows a message on its channel from the grant to the end of its last word's slot. Before the receiver's
+/// answer, the snapshot has no end.
 #[test]
 fn a_snapshot_shows_a_message_on_its_channel_until_the_message_ends() {
     let mut bench = bench();
@@ -235,7 +236,7 @@ fn a_snapshot_shows_a_message_on_its_channel_until_the_message_ends() {
     let mut seen = Vec::new();
     bench.run(|event, context| {
         ring.handle(event, context);
-        // The first event after the answer.
+        // This is the first event after the answer.
         if seen.is_empty() {
             seen = [us(2), Time(end.0 - 1), end, us(900)]
                 .map(|at| ring.channel_snapshots(at).collect::<Vec<_>>())
@@ -379,7 +380,7 @@ fn a_message_to_a_fifo_waits_for_a_channel_until_another_to_a_fifo_has_ended() {
         bench.feed(us(0), Phase::Arrive, RingEvent::Request(request(number, source, destination, 100)));
     }
     bench.run(|event, context| ring.handle(event, context));
-    // The end of the third, which is elastic, gives no room to the second.
+    // The third message has an elastic receiver. Its end therefore frees no channel for the second message.
     assert_eq!(ring.stats().messages, 1);
     assert_eq!(reasons(&ring), [(0, WaitReason::Acceptance), (1, WaitReason::Channel)]);
 

@@ -46,7 +46,7 @@ impl Experiment {
         if let Some(seed) = self.shuffle {
             machine.shuffle_ties(seed);
         }
-        self.given_up.iter().for_each(|saving| machine.disable(*saving));
+        self.disabled.iter().for_each(|optimization| machine.disable(*optimization));
         if self.pixels == Pixels::All {
             machine.compute_all_pixels(self.host.pixel_worker());
         }
@@ -86,7 +86,7 @@ impl Experiment {
         let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };
         let until = machine.record().tick(self.end());
         check_recording(&head, until)?;
-        let head = Arc::new(HeadViews::new(head, scene, (hmd, eyes), until, preparation.rehearsal));
+        let head = Arc::new(HeadViews::new(head, scene, (hmd, eyes), until, preparation.seen_times));
         let (views, wanted, reports) = HeadViews::functions(&head);
         let setup = Setup { views, wanted, reports, poses: HeadViews::poses(&head), ..setup };
         if !self.on_demand {

@@ -15,19 +15,20 @@ use crate::result_window::ResultWindow;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// Smallest number of pictures in a window from which an update rate can be computed.
+/// Smallest number of pictures in a result window from which an update rate can be computed.
 pub(crate) const LEAST_UPDATES: u64 = 2;
 
-/// Numbers of pictures that were due in a window of a run, by result. Each picture has one of four results.
+/// Numbers of pictures that were due in the result window of a run, counted by result. Each picture has one of four
+/// results: shown, late, incomplete or missed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DuePictures {
-    /// First period of the window.
+    /// First display period of the result window.
     pub first_period: PeriodNumber,
-    /// Last period of the window, inclusive.
+    /// Last display period of the result window, inclusive.
     pub last_period: PeriodNumber,
-    /// Number of periods from one due picture to the next.
+    /// Number of display periods from one due picture to the next.
     pub periods_a_picture: u64,
-    /// Number of pictures due: the periods of the window divided by `periods_a_picture`.
+    /// Number of pictures due: the periods of the result window divided by `periods_a_picture`.
     pub due: u64,
     /// Number of due pictures that were complete and in time.
     pub shown: u64,
@@ -37,7 +38,7 @@ pub struct DuePictures {
     pub incomplete: u64,
     /// Number of due pictures that were never begun, or left out.
     pub missed: u64,
-    /// Number of periods of the window in which any picture was shown in time, due or not.
+    /// Number of periods of the result window in which any picture was shown in time, due or not.
     ///
     /// The number exceeds `shown` if the pipeline shows more pictures than are due.
     pub pictures: u64,
@@ -50,8 +51,8 @@ impl DuePictures {
     /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
     /// that was not over when the run ended.
     ///
-    /// A picture also counts as shown if it comes before its due period, but after the due period of the picture
-    /// before.
+    /// A picture also counts as shown if it comes before its due period, but after the due period of the preceding
+    /// picture.
     #[must_use]
     pub fn count(
         pictures: impl Iterator<Item = (PeriodNumber, PictureResult)>,
@@ -64,7 +65,7 @@ impl DuePictures {
         Some(Self::of_ends(&ends, periods_a_picture, &window))
     }
 
-    /// Counts the pictures that were due in a window.
+    /// Counts the pictures that were due in a result window.
     pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Self {
         let every = periods_a_picture.max(1);
         let ResultWindow { first_period, last_period, .. } = *window;
@@ -78,7 +79,7 @@ impl DuePictures {
         Self { first_period, last_period, periods_a_picture: every, due, shown, late, incomplete, missed, pictures }
     }
 
-    /// Returns the number of due pictures that were not shown: late, incomplete and missed ones.
+    /// Returns the number of due pictures that were not shown: late, incomplete and missed pictures.
     #[must_use]
     pub const fn not_shown(&self) -> u64 {
         self.due - self.shown

@@ -31,7 +31,7 @@ pub enum ExperimentError {
     TooShort {
         /// Number of simulated fields.
         fields: u64,
-        /// Number of pictures that were shown. All of them belong to the warm-up and are not evaluated.
+        /// Number of pictures that were shown. All these pictures belong to the warm-up and are not evaluated.
         pictures: usize,
         /// Approximate number of fields until a picture after the warm-up is shown. `None` if no picture was shown.
         ///

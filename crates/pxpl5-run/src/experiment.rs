@@ -1,16 +1,16 @@
 //! An experiment: a machine, a pipeline, a scene and a head motion.
 
+use crate::dry_run::DryRun;
 use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::head_views::HeadViews;
 use crate::host::{BareHost, Host};
 use crate::keep::Keep;
 use crate::level::Level;
+use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::raster::Raster;
-use crate::rehearsal::DryRun;
-use crate::sums::{FinalResults, ObserverFactory};
 use pxpl5_machine::{MachineConfig, Optimization, Parameter, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_wire::PeriodNumber;
@@ -31,7 +31,7 @@ pub enum Pixels {
 }
 
 impl Pixels {
-    /// All choices with their names in experiment files.
+    /// All choices of the pixels to compute, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("off", Self::Off), ("lazy", Self::Lazy), ("all", Self::All)];
 }
 
@@ -77,7 +77,7 @@ pub struct Experiment {
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
     pub(crate) keep: Keep,
-    pub(crate) given_up: BTreeSet<Optimization>,
+    pub(crate) disabled: BTreeSet<Optimization>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
@@ -85,7 +85,7 @@ pub struct Experiment {
     pub(crate) hmd: HmdConfig,
     pub(crate) estimates: Option<Estimates>,
     pub(crate) sums: Option<ObserverFactory>,
-    pub(crate) rehearsed: Option<Arc<DryRun>>,
+    pub(crate) dry_run: Option<Arc<DryRun>>,
 }
 
 /// Functions by which a pipeline's closed form estimates results of an experiment, before or after a run.
@@ -93,11 +93,12 @@ pub struct Experiment {
 pub struct Estimates {
     /// Function that estimates the number of fields until the first picture after the warm-up is shown.
     ///
-    /// The function returns `None` if no such picture will be shown, or if the model cannot tell.
+    /// The function returns `None` if no such picture will be shown, or if the formulas give no estimate.
     pub fields_needed: fn(&Experiment) -> Option<u64>,
-    /// Function that estimates how many of the scene's first primitives the pipeline can show in time.
+    /// Function that estimates the number of primitives to which the scene must be decimated so that the pipeline shows
+    /// all pictures in time.
     ///
-    /// The function returns `None` if the model cannot tell.
+    /// The function returns `None` if the formulas give no estimate.
     pub triangles_in_time: fn(&Experiment) -> Option<u64>,
 }
 
@@ -123,7 +124,7 @@ impl Experiment {
             shuffle: None,
             traffic: false,
             keep: Keep::Everything,
-            given_up: BTreeSet::new(),
+            disabled: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
             on_demand: false,
@@ -131,7 +132,7 @@ impl Experiment {
             hmd: HmdConfig::unc(),
             estimates: None,
             sums: None,
-            rehearsed: None,
+            dry_run: None,
         }
     }
 
@@ -164,15 +165,16 @@ impl Experiment {
         self
     }
 
-    /// Handles simultaneous events in a pseudo-random order derived from a seed. A correct model gives the same results
-    /// in every order.
+    /// Makes the run handle simultaneous events in a pseudo-random order derived from a seed. A correct model gives the
+    /// same results in every order.
     #[must_use]
     pub const fn shuffle_ties(mut self, seed: u64) -> Self {
         self.shuffle = Some(seed);
         self
     }
 
-    /// Records messages, busy channels and FIFO contents. The recording changes no simulated time.
+    /// Makes the run record messages, busy channels of the ring and FIFO contents. The recording changes no simulated
+    /// time.
     #[must_use]
     pub const fn record_traffic(mut self, record: bool) -> Self {
         self.traffic = record;
@@ -189,8 +191,8 @@ impl Experiment {
 
     /// Disables an optimization of the simulator. No simulated time and no pixel changes, but the run takes longer.
     #[must_use]
-    pub fn without(mut self, saving: Optimization) -> Self {
-        self.given_up.insert(saving);
+    pub fn without(mut self, optimization: Optimization) -> Self {
+        self.disabled.insert(optimization);
         self
     }
 
@@ -211,7 +213,7 @@ impl Experiment {
         self
     }
 
-    /// Makes the host begin a frame only when its tracker reports a pose, so that frames do not queue in the pipeline.
+    /// Makes the host begin a frame only when the tracker reports a pose, so that frames do not queue in the pipeline.
     ///
     /// A latency measurement from outside the machine works in the same way. The setting has no effect without a head,
     /// or if the pipeline's host does not begin frames.
@@ -226,7 +228,7 @@ impl Experiment {
     /// The message about a run that is too short can then recommend a number of fields. The message about a scene that
     /// is too large can recommend a number of triangles.
     ///
-    /// Hidden, because the estimates change error messages only. Plans of experiment files set them.
+    /// This method is hidden, because the estimates change error messages only. Plans of experiment files set them.
     #[doc(hidden)]
     #[must_use]
     pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {
@@ -236,8 +238,8 @@ impl Experiment {
 
     /// Sets the streaming observer of a run with [`Keep::Statistics`].
     ///
-    /// A report about a head needs records that such a run discards, so an observer must process these records during
-    /// the run. A run with [`Keep::Everything`] needs no observer.
+    /// A report about a head needs old records, which such a run discards. An observer must therefore process these
+    /// records during the run. A run with [`Keep::Everything`] needs no observer.
     #[must_use]
     pub const fn observed_by(mut self, sums: Option<ObserverFactory>) -> Self {
         self.sums = sums;
@@ -245,7 +247,7 @@ impl Experiment {
     }
 
     /// Returns all records of a run of this experiment that remain in memory, without pictures.
-    pub(crate) fn settled<'a>(
+    pub(crate) fn final_results<'a>(
         &'a self,
         record: &'a Record,
         head: Option<&'a Arc<HeadViews>>,
@@ -268,7 +270,8 @@ impl Experiment {
         }
     }
 
-    /// Returns an estimate of how many of the scene's first primitives can be shown in time.
+    /// Returns an estimate of the number of primitives to which the scene must be decimated so that all pictures are
+    /// shown in time.
     ///
     /// The estimate comes from the pipeline's closed form. Returns `None` without a closed form.
     #[must_use]
@@ -291,8 +294,8 @@ impl Experiment {
         &self.hmd
     }
 
-    /// Sets the period of the first display at which the result window begins. The window begins later if the warm-up
-    /// takes longer.
+    /// Sets the period of the first display at which the result window (the periods that are evaluated) begins. The
+    /// window begins later if the warm-up takes longer.
     ///
     /// With this setting, different pipelines are evaluated over the same periods, to within one interval between due
     /// pictures.
@@ -398,7 +401,7 @@ impl Experiment {
         &self.scene
     }
 
-    /// Returns the machine as it was configured, before the pipeline adapted it.
+    /// Returns the configuration of the machine as the caller set it, before the pipeline adapted the configuration.
     #[must_use]
     pub const fn config(&self) -> &MachineConfig {
         &self.config

@@ -1,5 +1,5 @@
 //! Hashes of contents: 128-bit FNV-1a (Fowler, Noll, Vo), the same on every host. The hash detects accidental changes,
-//! not malicious ones.
+//! but not malicious changes.
 
 use glam::Vec3;
 use pxpl5_scene::{Frame, HeadPath, Hinge, Lighting, Scene, Sphere, Structure, Vertex};
@@ -33,8 +33,7 @@ impl Fingerprint {
     /// Returns a hash of a scene: everything that can be seen or that takes time, which is primitives, structures,
     /// light and motion.
     ///
-    /// The hash does not cover the scene's name. It does not cover the seed of the motion either, because an experiment
-    /// sets the seed.
+    /// The hash covers neither the scene's name nor the seed of the motion, because an experiment sets the seed.
     ///
     /// The hash covers the numbers one after the other, with the least significant byte first. A list is its length (64
     /// bits) and its entries. An enum value is a byte, counted from 0 in the order of declaration.

@@ -1,4 +1,4 @@
-//! A head, a tracker and a predictor. From them, a pipeline gets its views.
+//! A head, a tracker and a predictor, which together give a pipeline its views.
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
@@ -13,7 +13,7 @@ use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Traini
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, SettingError};
 
-/// A head motion that several readers share.
+/// A head motion that several parts of a run share.
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 
 /// Error for a head that cannot be simulated.
@@ -39,8 +39,8 @@ const TUNING: &str = "for its interval and motion, version 1";
 /// Meaning of the positions and orientations of a head motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HeadPlace {
-    /// The motion counts from the start of the scene's own motion: the first pose of the motion is placed there, and the
-    /// others relative to the first.
+    /// The first pose of the motion is placed at the start of the scene's own motion. All other poses keep their
+    /// position and orientation relative to the first pose.
     #[default]
     Scene,
     /// The motion has the coordinates of the scene's world, in metres. No pose is moved.
@@ -48,7 +48,7 @@ pub enum HeadPlace {
 }
 
 impl HeadPlace {
-    /// All meanings with their names in experiment files.
+    /// All meanings of a head motion's poses, with their names in experiment files.
     pub const ALL: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
 }
 
@@ -61,7 +61,7 @@ pub struct Head {
     pub(crate) tracker: TrackerModel,
     predictor: PredictorConfig,
     numbers: Numbers,
-    judge_at_m: Option<f64>,
+    evaluate_at_m: Option<f64>,
     pub(crate) seed: u64,
     raster: Raster,
     aim: Aim,
@@ -76,7 +76,7 @@ impl fmt::Debug for Head {
             .field("tracker", self.tracker.config())
             .field("predictor", &self.predictor)
             .field("numbers", &self.numbers)
-            .field("judge_at_m", &self.judge_at_m)
+            .field("evaluate_at_m", &self.evaluate_at_m)
             .field("seed", &self.seed)
             .field("raster", &self.raster)
             .field("aim", &self.aim)
@@ -85,14 +85,15 @@ impl fmt::Debug for Head {
     }
 }
 
-/// Distances, in metres, at which pixel errors can be evaluated.
+/// Smallest and largest distance, in metres, at which pixel errors can be evaluated.
 const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
-    /// Creates a head with a motion, a tracker and a predictor. The predictor knows the noise of the tracker.
+    /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the same noise that the tracker
+    /// model adds.
     ///
-    /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), whatever its first pose is.
-    /// [`Head::placed`] with [`HeadPlace::World`] takes its poses as coordinates of the scene.
+    /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), whatever its first pose is. After
+    /// [`Head::placed`] with [`HeadPlace::World`], the poses are coordinates of the scene instead.
     ///
     /// A dry run tunes the predictor's parameters for the motion and for the interval over which the pipeline predicts.
     /// See [`tune`](tracking::predict::tune).
@@ -129,7 +130,7 @@ impl Head {
             tracker,
             predictor,
             numbers: Numbers::Given,
-            judge_at_m: None,
+            evaluate_at_m: None,
             seed,
             raster: Raster::Plain,
             aim: Aim::Middle,
@@ -145,7 +146,7 @@ impl Head {
         Self { motion, ..self }
     }
 
-    /// Makes a run tune the parameters of the predictor. The search begins at the current parameters.
+    /// Makes a run tune the parameters of the predictor. The tuning search begins at the current parameters.
     #[must_use]
     pub const fn tuned(mut self) -> Self {
         self.numbers = Numbers::ToBeTuned;
@@ -172,14 +173,14 @@ impl Head {
             let what = "distance at which errors are evaluated, m";
             return Err(HeadError::OutOfRange { what, found: metres, low, high });
         }
-        Ok(Self { judge_at_m: Some(metres), ..self })
+        Ok(Self { evaluate_at_m: Some(metres), ..self })
     }
 
     /// Returns the distance at which pixel errors are evaluated, in metres. `None` means the distance of the scene's
     /// content.
     #[must_use]
-    pub const fn judge_at_m(&self) -> Option<f64> {
-        self.judge_at_m
+    pub const fn evaluate_at_m(&self) -> Option<f64> {
+        self.evaluate_at_m
     }
 
     /// Sets the meaning of the motion's poses: relative to the start of the scene's own motion, or in the world of the
@@ -237,12 +238,13 @@ impl Head {
         Box::new(reports.map(Coming::of).take_while(move |coming| coming.arrives < until))
     }
 
-    /// Returns the contents of all reports.
+    /// Returns the contents of all tracker reports, in order of arrival.
     pub(crate) fn contents(&self) -> Contents {
         self.reports_of(Arc::clone(&self.motion))
     }
 
-    /// Returns the tracker's reports about a motion, or the reports that replace them, in order of arrival.
+    /// Returns the tracker's reports about a motion, in order of arrival. If the caller has replaced the reports,
+    /// returns the given reports instead.
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
@@ -286,8 +288,8 @@ impl Head {
             hash.setting("place", self.place.to_string());
         }
         // Settings that affect evaluation and display, then the given reports.
-        if let Some(metres) = self.judge_at_m {
-            hash.setting("judge_at_m", metres);
+        if let Some(metres) = self.evaluate_at_m {
+            hash.setting("evaluate_at_m", metres);
         }
         hash.setting("seed", self.seed);
         hash.setting("raster", self.raster);

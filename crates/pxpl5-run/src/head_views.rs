@@ -1,7 +1,7 @@
-//! Records of the poses that a pipeline requested, and of the tracker reports that each pose used.
+//! Records of the poses that a pipeline requested, and of the tracker reports from which each pose was computed.
 
+use crate::dry_run::SeenTimes;
 use crate::head::{Head, HeadPlace};
-use crate::rehearsal::SeenTimes;
 use crate::report_schedule::{Arrivals, Coming, Contents, ReportSchedule};
 use crate::scene_views::view;
 use crate::views::{Poses, ReportTimes, Views, ViewsWanted};
@@ -100,7 +100,7 @@ pub struct HeadViews {
     /// End of the run. Reports that arrive later are ignored.
     until: Time,
     schedule: Mutex<ReportSchedule>,
-    rehearsal: Option<SeenTimes>,
+    seen_times: Option<SeenTimes>,
     /// Pose of the viewer in the scene at time zero.
     base: Pose,
     start: Pose,
@@ -121,7 +121,7 @@ impl HeadViews {
         scene: &Arc<Scene>,
         (hmd, eyes): (Hmd, usize),
         until: Time,
-        rehearsal: Option<SeenTimes>,
+        seen_times: Option<SeenTimes>,
     ) -> Self {
         let start = head.motion.pose(0);
         let begin = match head.place() {
@@ -131,7 +131,7 @@ impl HeadViews {
         let base = Pose { orientation: begin.orientation.normalize(), ..begin };
         let schedule = Mutex::new(ReportSchedule::new(head.arrivals(until)));
         let state = Mutex::new((Follower::of_head(&head, until), Vec::new()));
-        Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, rehearsal, base, start, state }
+        Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, seen_times, base, start, state }
     }
 
     /// Returns the three functions by which a pipeline requests views and report times.
@@ -195,7 +195,7 @@ impl HeadViews {
     }
 
     fn newest(&self, number: ViewNumber, time: Time) -> FrameView {
-        let shown_at = self.rehearsal.as_ref().map_or(time, |rehearsal| rehearsal.aimed_at(number, time));
+        let shown_at = self.seen_times.as_ref().map_or(time, |seen_times| seen_times.aimed_at(number, time));
         self.view(number, time, shown_at)
     }
 
@@ -220,8 +220,8 @@ impl HeadViews {
         Some(self.schedule().after(after)?.arrives)
     }
 
-    /// Converts a pose from the tracker's coordinates to scene coordinates. The start of the tracked motion maps to the
-    /// start of the scene's own motion, or to itself ([`HeadPlace`]).
+    /// Converts a pose from the tracker's coordinates to scene coordinates. For [`HeadPlace::Scene`], the start of the
+    /// tracked motion maps to the start of the scene's own motion. For [`HeadPlace::World`], the pose stays unchanged.
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.start.position);
@@ -252,7 +252,7 @@ impl HeadViews {
     #[must_use]
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();
-        self.head.judge_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
+        self.head.evaluate_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
     /// Returns the records of all requested poses that remain in memory ([`Keep`](crate::Keep)), sorted by view number.

@@ -29,12 +29,12 @@ impl fmt::Display for KeyValue {
     }
 }
 
-/// Values that a key allows.
+/// The values that a key (setting of a pipeline) allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyValues {
     /// The key allows true and false.
     Flag,
-    /// The key allows whole numbers from the first to the second, inclusive.
+    /// The key allows whole numbers from the first number to the second number, inclusive.
     Whole(u64, u64),
     /// The key allows one of these names.
     Names(&'static [&'static str]),

@@ -5,12 +5,12 @@ use crate::due::{DuePictures, LEAST_UPDATES};
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
+use crate::observers::FinalResults;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::{ResultWindow, WINDOW_DEFINITION};
 use crate::statistics::Statistics;
 use crate::summary::Summary;
-use crate::sums::FinalResults;
 use crate::tally::{Tally, of_picture};
 use crate::window::{Closed, Window, field_ms};
 use pxpl5_machine::{Observation, ObservedEvent, Record, StageSpan};
@@ -62,15 +62,15 @@ impl Outcome {
 
     /// Returns all final results of the run and the records in memory, for evaluation after the run.
     #[must_use]
-    pub fn settled(&self) -> FinalResults<'_> {
-        let all = self.experiment.settled(&self.record, self.head.as_ref(), &self.notes);
+    pub fn final_results(&self) -> FinalResults<'_> {
+        let all = self.experiment.final_results(&self.record, self.head.as_ref(), &self.notes);
         FinalResults { pictures: self.pictures(), window: self.closed.window, ..all }
     }
 
     /// Returns the result of the streaming observer ([`Experiment::observed_by`]), if the result has the type `T`.
     #[must_use]
-    pub fn said<T: 'static>(&self) -> Option<&T> {
-        self.closed.said.as_deref()?.downcast_ref()
+    pub fn observed<T: 'static>(&self) -> Option<&T> {
+        self.closed.observed.as_deref()?.downcast_ref()
     }
 
     /// Returns true if old records of the run were discarded ([`Keep`](crate::Keep)). Results without a streaming
@@ -95,14 +95,14 @@ impl Outcome {
     /// Returns all pictures that were begun and evaluated, complete or not.
     ///
     /// [`Tally::pictures`] counts these pictures. A run that keeps only statistics ([`Keep`](crate::Keep)) returns only
-    /// the last of them.
+    /// the last pictures.
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.closed.pictures
     }
 
-    /// Returns the window over which latencies, pictures due, errors and rates are computed. Returns `None` if the run
-    /// ended before the window began.
+    /// Returns the result window: the display periods over which latencies, pictures due, errors and rates are
+    /// computed. Returns `None` if the run ended before the result window began.
     #[must_use]
     pub const fn window(&self) -> Option<ResultWindow> {
         self.closed.window
@@ -132,8 +132,8 @@ impl Outcome {
         self.closed.tally.shown
     }
 
-    /// Returns the number of due pictures by result. Returns `None` if the pipeline has no due pictures, or if the run
-    /// ended before the first.
+    /// Returns the number of due pictures, counted by result (shown, late, incomplete or missed). Returns `None` if the
+    /// pipeline has no due pictures, or if the run ended before the first due picture.
     #[must_use]
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
@@ -149,7 +149,7 @@ impl Outcome {
     /// Returns the number of complete new pictures per second, over the result window.
     ///
     /// At most one picture per display period counts, because a viewer cannot see more. Returns `None` if fewer than
-    /// two pictures were shown, or if all of them belong to the warm-up.
+    /// two pictures were shown, or if all shown pictures belong to the warm-up.
     #[must_use]
     pub fn updates_hz(&self) -> Option<f64> {
         let complete = self.closed.tally.complete;
@@ -179,7 +179,7 @@ impl Outcome {
         self.closed.tally.shown_in_a_row >= needed as u64
     }
 
-    /// Returns the state of the machine's boards at the end, and all observations.
+    /// Returns the state of the machine's boards at the end of the run, and all observations of the run.
     #[must_use]
     pub const fn record(&self) -> &Record {
         &self.record
@@ -218,7 +218,7 @@ impl Outcome {
         self.record.observed_events().into_iter()
     }
 
-    /// Returns all stages of all pictures. The times of COPY are measured at the displays.
+    /// Returns the time spans of all stages of all pictures. The times of COPY are measured at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
@@ -283,7 +283,7 @@ impl Outcome {
     pub fn summary(&self) -> Summary {
         let tally = self.tally();
         let [first_copy_ms, last_copy_ms] = tally.copy_ms.each_ref().map(|samples| samples.statistics().mean);
-        // A pipeline without a second copy spends no time on it. Without any copy, the time is unknown.
+        // A pipeline without a second copy spends no time on a second copy. Without any copy, the time is unknown.
         let last_copy_ms = if last_copy_ms.is_nan() && !first_copy_ms.is_nan() { 0.0 } else { last_copy_ms };
         Summary {
             latencies_ms: tally.latency_ms.clone(),

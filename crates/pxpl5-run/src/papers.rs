@@ -9,8 +9,8 @@ const USUAL: [&str; 7] =
     ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
 
 impl Registry {
-    /// Returns a registry with the pipelines and displays of the papers. The crate pxpl5-analytic adds the analytic
-    /// models.
+    /// Returns a registry with the pipelines and displays of the papers. The crate pxpl5-analytic adds the closed
+    /// forms.
     #[must_use]
     pub fn of_papers() -> Self {
         Self::with(pipelines::entries(), displays::entries())
@@ -18,8 +18,8 @@ impl Registry {
 
     /// Returns true if a pipeline represents its family in a comparison of only a few rows.
     ///
-    /// A family that has none of the papers' usual pipelines, such as one of another crate, is represented by its first
-    /// compared pipeline.
+    /// A family without any of the papers' usual pipelines, such as a family of another crate, is represented by its
+    /// first compared pipeline.
     #[must_use]
     pub fn is_usual(&self, pipeline: &PipelineEntry) -> bool {
         let mut family = self.pipelines().iter().filter(|other| other.compared && other.family == pipeline.family);

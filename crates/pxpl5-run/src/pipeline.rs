@@ -46,20 +46,21 @@ pub struct Setup {
     pub list: Arc<DisplayList>,
     /// Function that returns the newest view: its transforms, and the edits of moving structures.
     pub views: Views,
-    /// Function that returns a view for a given display time, for firmware that knows when the view will be seen.
+    /// Function that returns a view for a given display time, for firmware that computes the display time of a view.
     pub wanted: ViewsWanted,
     /// Function that returns the pose of the head alone, for displays that follow its rotation.
     pub poses: Poses,
     /// For each structure of the scene, true if the structure moves by itself or with the head.
     pub moving: Arc<[bool]>,
-    /// Cells in which each structure lies. Empty unless the pipeline cut the scene into cells ([`Pipeline::cut`]).
+    /// Cells (squares of the floor) in which each structure lies. Empty unless the pipeline cut the scene into cells
+    /// ([`Pipeline::cut`]).
     pub cells: Arc<[Vec<Cell>]>,
-    /// Record of the updates that a pipeline with cube faces has requested.
+    /// Record of the updates of display memories that a pipeline with cube faces has requested.
     pub notes: RequestedUpdates,
     /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
     /// middle and the first pixel.
     ///
-    /// Only firmware that knows the display time uses this setting.
+    /// Only firmware that computes the display times of its views uses this setting.
     pub aim: Aim,
     /// Function that returns the arrival time of the next tracker report at the host.
     pub reports: ReportTimes,
@@ -86,7 +87,8 @@ pub struct PictureTimes {
     pub copied_at: Option<Time>,
     /// Time of the retrace at which the display begins to show the picture.
     ///
-    /// Without a swap, this is the time at which the beam reaches the part of the picture that defines its times.
+    /// Without a swap, this is the time at which the beam reaches a certain part of the picture, which the pipeline
+    /// selects.
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
     pub end: PictureResult,
@@ -100,7 +102,8 @@ impl PictureTimes {
     }
 }
 
-/// A program for a whole machine: how it draws. [`PictureRules`] states what its pictures are.
+/// A program for a whole machine, which defines how the machine draws. [`PictureRules`] defines the times and contents
+/// of the pictures.
 pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns the name of the pipeline on the command line.
     fn name(&self) -> &'static str;
@@ -134,14 +137,14 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         config
     }
 
-    /// Returns true if the pipeline draws faces of a cube around the head. The display must accept cube faces
+    /// Returns true if the pipeline draws faces of a cube around the viewer's head. The display must accept cube faces
     /// ([`DisplayConfig::shows_cube_faces`](pxpl5_wire::display::DisplayConfig::shows_cube_faces)).
     fn draws_faces(&self) -> bool {
         false
     }
 
-    /// Returns the scene in segments that are drawn at different times. Returns `None` if the host loads the scene
-    /// unchanged.
+    /// Returns the scene in segments (parts of objects) that are drawn at different times. Returns `None` if the host
+    /// loads the scene unchanged.
     ///
     /// # Errors
     ///
@@ -165,7 +168,7 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns [`ConfigError`] if the pipeline cannot run on the machine.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
 
-    /// Returns true if the firmware itself knows when a view will be seen.
+    /// Returns true if the firmware itself computes the time at which a view will be seen.
     fn knows_when_seen(&self) -> bool {
         false
     }
@@ -186,7 +189,7 @@ pub trait PictureRules {
     /// Returns the number of display periods before `end` in which the display showed old cube faces in a new head
     /// direction.
     ///
-    /// Each such period counts as a picture, although the pipeline drew nothing for it.
+    /// Each such period counts as a picture, although the pipeline drew nothing for this period.
     fn turned_periods(&self, _record: &Record, _end: Time) -> u64 {
         0
     }
@@ -225,8 +228,8 @@ pub trait PictureRules {
         1.0
     }
 
-    /// Returns the index of the copy to which an arrival belongs: 0, or 1 for the second copy. Each copy is timed
-    /// separately.
+    /// Returns the index of the copy (stage COPY) to which the arrival of a region belongs: 0, or 1 for the second
+    /// copy. Each copy is timed separately.
     fn copy_part(&self, _arrival: &Arrival) -> u8 {
         0
     }

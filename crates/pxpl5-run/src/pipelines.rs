@@ -70,7 +70,7 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Confi
     Ok(display)
 }
 
-/// Methods of shading with their names. The first one is the default.
+/// Methods of shading with their names. The first method is the default.
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
 /// Setting of pipelines that support both methods of shading.

@@ -1,26 +1,26 @@
 //! Preparation of a run: the dry run that finds the times at which views are seen, and the tuning of the predictor.
 
+use crate::dry_run::{DryRun, SeenTimes};
+use crate::dry_run_observer::DryRunObserver;
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
 use crate::head::Head;
 use crate::keep::Keep;
+use crate::observers::{ObserverFactory, StreamingObserver};
 use crate::outcome::Outcome;
-use crate::rehearsal::{DryRun, SeenTimes};
-use crate::rehearsal_sum::DryRunObserver;
-use crate::sums::{ObserverFactory, StreamingObserver};
 use std::sync::Arc;
 
-/// Number of fields of a dry run for firmware that knows when its views are seen.
+/// Number of fields of a dry run for firmware that computes the display times of its views.
 ///
-/// This number suffices for the statistics of the prediction interval. If no picture is complete after so many fields,
-/// the dry run takes all fields.
+/// This number suffices for the statistics of the prediction interval. If no picture is complete after this number of
+/// fields, the dry run takes all fields.
 const INTERVAL_FIELDS: u64 = 60;
 
-/// Results of the preparation.
+/// Results of the preparation of a run.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Preparation {
-    /// Time at which each view is seen. `None` without prediction, or if the firmware knows these times itself.
-    pub(crate) rehearsal: Option<SeenTimes>,
+    /// Time at which each view is seen. `None` without prediction, or if the firmware computes these times itself.
+    pub(crate) seen_times: Option<SeenTimes>,
     /// Head with a tuned predictor. `None` if the predictor needs no tuning.
     pub(crate) head: Option<Arc<Head>>,
 }
@@ -34,35 +34,35 @@ impl Experiment {
     /// # Errors
     ///
     /// Fails in the same cases as [`Experiment::run`].
-    pub fn rehearsed(self) -> Result<Self, ExperimentError> {
+    pub fn after_dry_run(self) -> Result<Self, ExperimentError> {
         let Some(head) = self.predicting_head() else { return Ok(self) };
-        let rehearsed = Some(self.rehearse(head)?);
-        Ok(Self { rehearsed, ..self })
+        let dry_run = Some(self.make_dry_run(head)?);
+        Ok(Self { dry_run, ..self })
     }
 
-    /// Returns the result that [`Experiment::rehearsed`] has stored.
+    /// Returns the result that [`Experiment::after_dry_run`] has stored.
     #[must_use]
-    pub const fn rehearsal(&self) -> Option<&Arc<DryRun>> {
-        self.rehearsed.as_ref()
+    pub const fn dry_run(&self) -> Option<&Arc<DryRun>> {
+        self.dry_run.as_ref()
     }
 
-    /// Stores the result of [`Experiment::rehearsed`] from an experiment that differs only in the predictor.
+    /// Stores the result of [`Experiment::after_dry_run`] from an experiment that differs only in the predictor.
     ///
-    /// Hidden, because a wrong dry run would give wrong results. Comparisons of predictors use this function, so that
-    /// they make one dry run for all predictors.
+    /// This method is hidden, because a wrong dry run would give wrong results. Comparisons of predictors use this
+    /// function, so that they make one dry run for all predictors.
     #[doc(hidden)]
     #[must_use]
-    pub fn with_dry_run(self, rehearsed: Option<Arc<DryRun>>) -> Self {
-        Self { rehearsed, ..self }
+    pub fn with_dry_run(self, dry_run: Option<Arc<DryRun>>) -> Self {
+        Self { dry_run, ..self }
     }
 
     /// Performs a dry run if the predictor needs its result, and tunes the predictor if required.
     pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
         let Some(head) = self.predicting_head() else { return Ok(Preparation::default()) };
-        let known = self.rehearsed.clone().map_or_else(|| self.rehearse(head), Ok)?;
+        let known = self.dry_run.clone().map_or_else(|| self.make_dry_run(head), Ok)?;
         let tuned = head.is_to_be_tuned().then(|| known.tuned(head)).flatten();
-        let rehearsal = (!self.pipeline.knows_when_seen()).then(|| known.rehearsal.clone());
-        Ok(Preparation { rehearsal, head: tuned.map(Arc::new) })
+        let seen_times = (!self.pipeline.knows_when_seen()).then(|| known.seen_times.clone());
+        Ok(Preparation { seen_times, head: tuned.map(Arc::new) })
     }
 
     /// Returns the head if its pose is predicted and the predictor needs the result of a dry run.
@@ -71,13 +71,13 @@ impl Experiment {
         self.head.as_ref().filter(|head| head.predicts()).filter(needs)
     }
 
-    fn rehearse(&self, head: &Head) -> Result<Arc<DryRun>, ExperimentError> {
-        let rehearsed = if self.pipeline.knows_when_seen() {
+    fn make_dry_run(&self, head: &Head) -> Result<Arc<DryRun>, ExperimentError> {
+        let dry_run = if self.pipeline.knows_when_seen() {
             self.short_dry_run(head)?
         } else {
             self.without_prediction(head, self.fields)?
         };
-        Ok(Arc::new(rehearsed))
+        Ok(Arc::new(dry_run))
     }
 
     /// Runs the experiment without prediction. A streaming observer keeps two or three bytes per view, for any length
@@ -92,12 +92,12 @@ impl Experiment {
             Err(ExperimentError::TooShort { partial, .. }) => *partial,
             run => run?,
         };
-        Ok(outcome.said().cloned().unwrap_or_else(|| rehearsed(&outcome)))
+        Ok(outcome.observed().cloned().unwrap_or_else(|| dry_run_of(&outcome)))
     }
 
     fn short_dry_run(&self, head: &Head) -> Result<DryRun, ExperimentError> {
         match self.without_prediction(head, self.fields.min(INTERVAL_FIELDS)) {
-            Ok(rehearsed) if rehearsed.interval_ps.is_some() => Ok(rehearsed),
+            Ok(dry_run) if dry_run.interval_ps.is_some() => Ok(dry_run),
             Ok(_) => self.without_prediction(head, self.fields),
             Err(error) => Err(error),
         }
@@ -105,8 +105,8 @@ impl Experiment {
 }
 
 /// Computes the result of a dry run that has kept all records.
-fn rehearsed(outcome: &Outcome) -> DryRun {
+fn dry_run_of(outcome: &Outcome) -> DryRun {
     let mut sum = DryRunObserver::default();
-    sum.take(&outcome.settled());
-    sum.rehearsed()
+    sum.take(&outcome.final_results());
+    sum.into_dry_run()
 }

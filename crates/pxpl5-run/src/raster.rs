@@ -20,7 +20,7 @@ pub enum Raster {
 }
 
 impl Raster {
-    /// All corrections without parameters, with their names on the command line.
+    /// All corrections of a display that have no parameters, with their names on the command line.
     pub const ALL: [(&str, Self); 2] = [("plain", Self::Plain), ("vdrt", Self::Vdrt)];
 
     /// Returns the device that moves pictures. VDRT also counts as a device. Returns `None` without a correction.

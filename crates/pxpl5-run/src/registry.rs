@@ -37,10 +37,10 @@ pub enum TestScene {
 }
 
 impl TestScene {
-    /// All kinds of triangles, starting with the largest.
+    /// All kinds of triangles in test scenes, starting with the largest triangles.
     pub const ALL: [Self; 2] = [Self::FullScreen, Self::Typical];
 
-    /// Returns the name on the command line and in tables.
+    /// Returns the name of the kind of triangles on the command line and in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -59,7 +59,7 @@ pub struct LimitCriterion {
     pub goal: Goal,
     /// Kind of triangles in the test scene.
     pub scene: TestScene,
-    /// Number of fields to simulate for each size of the scene. It is large enough to reach a steady state.
+    /// Number of fields to simulate for each size of the scene. The number is large enough to reach a steady state.
     pub fields: u64,
 }
 
@@ -75,11 +75,11 @@ pub struct ClosedForm {
 /// Description of a pipeline in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct PipelineEntry {
-    /// Name in experiment files and on the command line.
+    /// Name of the entry in experiment files and on the command line.
     pub name: &'static str,
     /// Name of the family. All variants of the pipeline have the same family.
     pub family: &'static str,
-    /// Description in one line, with the publication.
+    /// Description of the pipeline in one line, with the publication.
     pub about: &'static str,
     /// Preset of a machine on which the papers ran the pipeline, or on which the pipeline could have run.
     pub preset: &'static str,
@@ -101,7 +101,7 @@ pub struct PipelineEntry {
 /// Description of a display in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplayEntry {
-    /// Name in experiment files and on the command line.
+    /// Name of the entry in experiment files and on the command line.
     pub name: &'static str,
     /// Function that returns the display's configuration with the values from the papers.
     pub config: fn() -> Box<dyn DisplayConfig>,
@@ -116,8 +116,8 @@ impl fmt::Display for PipelineEntry {
 impl FromStr for PipelineEntry {
     type Err = NameError;
 
-    /// Returns the entry of a built-in pipeline, without an analytic model. [`Registry::pipeline`] also finds other
-    /// pipelines.
+    /// Returns the registry entry of a built-in pipeline, without its closed form. [`Registry::pipeline`] also finds
+    /// other pipelines.
     fn from_str(name: &str) -> Result<Self, NameError> {
         Registry::of_papers().pipeline(name).copied()
     }
@@ -132,13 +132,13 @@ impl fmt::Display for DisplayEntry {
 impl FromStr for DisplayEntry {
     type Err = NameError;
 
-    /// Returns the entry of a built-in display. [`Registry::display`] also finds other displays.
+    /// Returns the registry entry of a built-in display. [`Registry::display`] also finds other displays.
     fn from_str(name: &str) -> Result<Self, NameError> {
         Registry::of_papers().display(name).copied()
     }
 }
 
-/// All known pipelines and displays.
+/// All registered pipelines and displays.
 #[derive(Clone, Debug)]
 pub struct Registry {
     pipelines: Vec<PipelineEntry>,

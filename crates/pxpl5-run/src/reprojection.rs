@@ -12,8 +12,8 @@ use std::str::FromStr;
 pub enum Warp {
     /// The whole picture is shifted by yaw and pitch. The result is exact only in the middle of the picture.
     Shift,
-    /// The picture is rotated about the eye by a homography, like today's timewarp. The result is exact for rotations
-    /// of the head. Translations remain uncorrected.
+    /// The picture is rotated about the eye by a homography, as in timewarp, the method of current headsets. The result
+    /// is exact for rotations of the head. Translations remain uncorrected.
     Rotation,
     /// Each pixel is moved by its depth. The result is exact for rotations and translations, except where the picture
     /// lacks the content.
@@ -44,7 +44,7 @@ pub struct Reprojection {
 }
 
 impl Warp {
-    /// All methods, with their names in experiment files.
+    /// All methods by which a device moves a picture, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("shift", Self::Shift), ("rotation", Self::Rotation), ("depth", Self::Depth)];
 }
 
@@ -52,14 +52,14 @@ impl Every {
     /// All parts of a scan, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("strip", Self::Strip), ("line", Self::Line)];
 
-    /// Number of lines in a strip: as many as in a region.
+    /// Number of lines in a strip, equal to the number of lines in a region.
     pub const STRIP: u32 = REGION_SIZE;
 
     /// Returns the default latency of a device, in microseconds (assumed).
     ///
     /// The latency is 2,000 for one pose per field, because a graphics processor begins this long before the retrace
-    /// (range 1,000 to 4,000). The latency is 500 for one pose per strip and 100 for one pose per line, because a
-    /// pipeline beside the scan holds a few lines (64 to 1,000).
+    /// (range 1,000 to 4,000). For one pose per strip the latency is 500, and for one pose per line 100 (range 64 to
+    /// 1,000). In both cases the device works during the scan and holds only a few lines.
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {
@@ -82,8 +82,8 @@ impl Reprojection {
 
     /// The raster offset of VDRT (Breglia 1981): a shift whose pose is taken at the retrace, once per field.
     ///
-    /// The rates of yaw and pitch continue the shift during the field. The picture counts as drawn beyond the edge of
-    /// the screen.
+    /// The rates of yaw and pitch continue the shift during the field. The picture is assumed to extend beyond the edge
+    /// of the screen.
     pub const VDRT: Self = Self { by: Warp::Shift, every: Every::Field, latency_us: 0 };
 }
 

@@ -5,14 +5,14 @@ use std::ops::Deref;
 
 /// Largest number of samples of each kind in a run that keeps only statistics. The samples of one kind take 512 KiB.
 ///
-/// Under Slats, one sample belongs to a field. Under any other pipeline, it belongs to a picture.
+/// Under Slats, one sample belongs to a field. Under any other pipeline, one sample belongs to a picture.
 pub const KEPT_SAMPLES: usize = 65_536;
 
 /// A collection of numbers in order of arrival, with a limit.
 ///
 /// Up to the limit, all numbers are kept, and the statistics equal those of [`Statistics::of`] bit for bit. Beyond the
 /// limit, only the first numbers are kept. The statistics are then computed from sums with twice the precision of
-/// `f64`. They differ from the exact statistics at most in the last digits.
+/// `f64`. The results differ from the exact statistics at most in the last digits.
 ///
 /// As a slice, the collection contains the kept numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl Samples {
         }
     }
 
-    /// Returns how many numbers were added, including those that are not kept.
+    /// Returns the number of all added numbers, whether they are kept or not.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.moments.as_ref().map_or(self.kept.len() as u64, |moments| moments.n)

@@ -6,15 +6,15 @@ use pxpl5_wire::ViewNumber;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// Function that returns the view with a number, from the pose that is sampled at a time.
+/// Function that returns a view. The arguments are the view's number and the time at which the pose is sampled.
 pub type Views = Arc<dyn Fn(ViewNumber, Time) -> FrameView + Send + Sync>;
 
 /// Function by which firmware with its own clock requests a view. The arguments are the view's number, the instant up
 /// to which tracker reports have arrived, and the instant for which the view is drawn.
 pub type ViewsWanted = Arc<dyn Fn(ViewNumber, Time, Time) -> FrameView + Send + Sync>;
 
-/// Function that returns the pose that a host knows at one instant, predicted for another instant. From call to call,
-/// the first argument must not decrease.
+/// Function that returns a host's prediction of the pose. The arguments are the instant at which the host predicts and
+/// the instant for which it predicts. From call to call, the first argument must not decrease.
 pub type Poses = Arc<dyn Fn(Time, Time) -> Pose + Send + Sync>;
 
 /// Function that returns the arrival time of the first tracker report after an instant, or `None` if no later report

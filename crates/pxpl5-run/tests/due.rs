@@ -63,7 +63,7 @@ fn one_retrace_of_delay_is_one_picture_missed() {
 fn two_pictures_for_one_that_is_due_are_one_that_is_shown() {
     let due = count(&regular(4, 1, 40, Shown), 2, 40);
     assert_eq!((due.due, due.shown, due.pictures), (16, 16, 32));
-    // The rate is that of the pictures shown: one in each field.
+    // The rate counts the pictures shown: one in each field.
     let hz = due.updates_hz(1001.0 / 60.0).expect("shown");
     assert!((hz - 60_000.0 / 1_001.0).abs() < 1e-9, "{hz}");
 }

@@ -147,7 +147,7 @@ fn twenty_times_the_fields_hold_no_more_and_take_twenty_times_the_work() {
         let [_, _, _, events, _] = work(&experiment, fields);
         let [records_5, waiting_5, looked_at_5, _, poses_5] = work(&experiment, 5 * fields);
         let [records_20, waiting_20, looked_at_20, events_20, poses_20] = work(&experiment, 20 * fields);
-        // A run that ends just before a pass has twice as many records as one that ends just after it.
+        // A run that ends just before a pass has twice as many records as a run that ends just after the pass.
         assert!(poses_20 <= 2 * poses_5, "{name}: {poses_20} poses, {poses_5} in a quarter of the time");
         // The sway of the head changes the visible part of the scene a little. Up to 60 fields may lie between two
         // passes.

@@ -3,16 +3,18 @@
 //! The shapes of the built-in models are geometry rather than parameters, and are defined in the files of
 //! [`crate::builtin`].
 
-/// Radius to which most built-in models are scaled, metres. It is measured from the centre of the model's bounding box.
+/// Radius to which most built-in models are scaled, metres. The radius is measured from the centre of the model's
+/// bounding box.
 ///
 /// Assumed, 0.1 to 1: the size of a ball held at arm's length. Half a walk around this model in a few seconds gives the
 /// published mean speed of a head, 0.37 m/s.
 pub const FIT_RADIUS_M: f64 = 0.25;
 
-/// Radius to which an imported model is scaled, metres. It is measured from the centre of the model's bounding box.
+/// Radius to which an imported model is scaled, metres. The radius is measured from the centre of the model's bounding
+/// box.
 ///
-/// Derived: the head keeps the distance that it has from the built-in models, [`FIT_RADIUS_M`] times
-/// [`FIT_DISTANCE_RADII`] = 0.65 m. Divided by [`WHOLE_DISTANCE_RADII`] this gives the radius.
+/// Derived: the head has the same distance from an imported model as from a built-in model, [`FIT_RADIUS_M`] times
+/// [`FIT_DISTANCE_RADII`] = 0.65 m. The radius is this distance divided by [`WHOLE_DISTANCE_RADII`].
 pub const IMPORT_RADIUS_M: f64 = 0.148;
 
 /// Distance of the eye from the centre of a model that must always be visible as a whole, as a multiple of the model's
@@ -20,8 +22,8 @@ pub const IMPORT_RADIUS_M: f64 = 0.148;
 ///
 /// Derived for [`crate::Sway`] of scale 1. The gaze deviates by at most 8.5 degrees sideways and 6.5 vertically, with a
 /// tilt of at most 7.5 degrees. The greatest vertical deviation is 6.5 cos 7.5 + 8.5 sin 7.5 = 7.6 degrees. Half the
-/// view's height is 23.4 degrees, so 15.8 remain. The head comes as near as 0.9 times its mean distance, where the
-/// model takes asin(1 / (0.9 x 4.4)) = 14.6 degrees. The margin is 1.2 degrees.
+/// view's height is 23.4 degrees, so 15.8 degrees remain for the model. The head comes as near as 0.9 times its mean
+/// distance, where the model's angular radius is asin(1 / (0.9 x 4.4)) = 14.6 degrees. The margin is 1.2 degrees.
 pub const WHOLE_DISTANCE_RADII: f64 = 4.4;
 
 /// Distance of the eye from the centre of a built-in model, as a multiple of the model's radius.
@@ -45,19 +47,21 @@ pub const MAX_FILE_BYTES: u64 = 256 << 20;
 /// Greatest memory that an importer may take for a model, as a multiple of the size of its file. Importers refuse
 /// models that need more.
 ///
-/// Assumed, 6.5 or more. A file that consists of triangles with two bytes per corner needs 6.5 times its size,
+/// Assumed, at least 6.5: a file that consists of triangles with two bytes per corner needs 6.5 times its size,
 /// including the file itself.
 pub const MEMORY_TIMES_FILE: u64 = 7;
 
-/// Number of bytes that an imported model may take in addition to [`MEMORY_TIMES_FILE`] times its file. Small files
-/// cannot exhaust the memory, so they need no strict limit. Assumed, any value.
+/// Number of bytes that an imported model may take in addition to [`MEMORY_TIMES_FILE`] times the size of its file.
+/// Models from small files cannot exhaust the memory, so their limit need not be strict. Assumed: any value is
+/// plausible.
 pub const MEMORY_FLOOR_BYTES: u64 = 4 << 20;
 
-/// Colour of an imported surface if its file has no colour: red, green and blue, 8 bits each. Assumed, any value.
+/// Colour of an imported surface if its file has no colour: red, green and blue, 8 bits each. Assumed: any value is
+/// plausible.
 pub const DEFAULT_COLOUR: [u8; 3] = [200, 196, 188];
 
-/// Largest N of the scenes `full-screen:N`, `typical:N` and `sphere:N`. Assumed, 12 (published in TR94) or more. The
-/// limit only prevents excessive use of memory.
+/// Largest N of the scenes `full-screen:N`, `typical:N` and `sphere:N`. Assumed: the value must be at least the
+/// published 12 (TR94), and only prevents excessive use of memory.
 pub const MAX_TRIANGLES: u32 = 1_000_000;
 
 /// Least N of the scene `sphere:N`. A sphere of 8 triangles is an octahedron.

@@ -1,4 +1,4 @@
-//! Decimation, which reduces the number of primitives and keeps the shape.
+//! Decimation, which reduces the number of primitives of a scene and keeps the scene's shape.
 //!
 //! The algorithm collapses edges, the cheapest first by the quadric error metric (Garland and Heckbert, SIGGRAPH 97).
 //! Each edge collapses onto one of its ends, so every remaining vertex keeps its position, normal and colour. A closed
@@ -20,9 +20,9 @@ use crate::error::SceneError;
 use crate::scene::{Scene, SceneParts, Structure};
 
 impl Scene {
-    /// Returns the same scene with at most `n` primitives. The scene keeps as many of them as its surfaces allow. A
-    /// closed surface has an even number of triangles, so the result can have one primitive less than an odd `n`. The
-    /// ratio of spheres to triangles stays the same.
+    /// Returns a decimated copy of the scene with `n` primitives, or with fewer if the surfaces of the scene do not
+    /// allow exactly `n`. A closed surface has an even number of triangles, so the result can have one primitive less
+    /// than an odd `n`. The ratio of spheres to triangles stays the same.
     ///
     /// Structures without primitives are removed together with their edits. The same scene and number give the same
     /// result on every host.
@@ -40,7 +40,7 @@ impl Scene {
         if n == all {
             return Ok(self.clone());
         }
-        // Rounded to the nearest integer.
+        // Spheres keep their share of the primitives, rounded to the nearest integer.
         let kept_spheres = (2 * n * spheres + all) / (2 * all);
         let kept = Kept {
             triangles: triangles_kept(self, n - kept_spheres),
@@ -50,7 +50,8 @@ impl Scene {
     }
 }
 
-/// Returns true if item `index` of `all` items is among the `kept` ones. The kept items are spread evenly.
+/// Returns true if the item with this index is kept, when `kept` of `all` items are kept. The kept items are spread
+/// evenly.
 const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
     index * kept / all != (index + 1) * kept / all
 }
@@ -59,7 +60,8 @@ const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
 /// remain.
 fn triangles_kept(scene: &Scene, wanted: usize) -> Vec<Option<[u32; 3]>> {
     let mut surface = Surface::new(scene);
-    // Later passes allow more damage: the second too few triangles, the third also folded triangles.
+    // Later passes have weaker rules. From the second pass on, too few triangles may remain. In the third pass,
+    // triangles may also fold over.
     let mut collapsing = Decimator::new(&mut surface);
     let passes = [(false, false), (false, true), (true, true)];
     for (may_flip_triangles, may_overshoot) in passes {
@@ -70,7 +72,7 @@ fn triangles_kept(scene: &Scene, wanted: usize) -> Vec<Option<[u32; 3]>> {
     surface.triangles
 }
 
-/// Removes whole connected pieces, the smallest first. It ends when `wanted` triangles or a single piece remain.
+/// Removes whole connected pieces, the smallest first, until at most `wanted` triangles or a single piece remain.
 fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
     if surface.left <= wanted {
         return;
@@ -95,8 +97,8 @@ fn drop_triangles(surface: &mut Surface<'_>, wanted: usize) {
     smallest_first(&areas).into_iter().take(excess).for_each(|index| remove(surface, left[index]));
 }
 
-/// Returns the indices of triangles by increasing area. Areas that agree to a thousandth count as equal, and their
-/// order spreads evenly over the surface.
+/// Returns the indices of triangles by increasing area. Areas that agree to a thousandth count as equal. Triangles of
+/// equal area are in an order that spreads evenly over the surface.
 fn smallest_first(areas: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..areas.len()).collect();
     // The key is the exponent and ten bits of the fraction, followed by the bits of the index in reverse order.

@@ -121,7 +121,7 @@ pub enum LoadError {
         at: FilePlace,
         /// Kind of the indexed items: "vertices" or "normals".
         what: &'static str,
-        /// Number of vertices or normals that the file has. A valid index refers to one of them.
+        /// Number of vertices or normals that the file has. A valid index refers to an existing vertex or normal.
         expected: usize,
         /// The index as it is written in the file.
         found: i64,

@@ -34,7 +34,8 @@ use crate::motion::HeadMotion;
 use crate::scene::Scene;
 
 impl Placement {
-    /// Returns the transformation that gives a model, described by balls (centre, radius), this placement.
+    /// Returns the transformation that brings a model to this placement. The balls (centre, radius) describe the extent
+    /// of the model.
     fn fit(self, balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Fit {
         match self {
             Self::Fitted => Fit::new(balls),
@@ -154,14 +155,14 @@ fn read_placed(
 /// triangles, weighted by area. In OBJ files the mean covers only triangles of the same smoothing group, and faces
 /// without a smoothing group are flat.
 ///
-/// The model is moved so that the centre of its bounding box is the origin. It is scaled so that its farthest point is
-/// [`crate::config::IMPORT_RADIUS_M`] from the origin. Both eyes then see the whole model under [`Scene::motion`],
-/// whatever the units of the file. The axes stay the same: +y is up, and +z faces the viewer.
+/// The model is moved so that the centre of its bounding box is the origin. The model is scaled so that its farthest
+/// point is [`crate::config::IMPORT_RADIUS_M`] from the origin. Both eyes then see the whole model under
+/// [`Scene::motion`], whatever the units of the file. The axes stay the same: +y is up, and +z faces the viewer.
 ///
 /// # Errors
 ///
-/// [`LoadError`] states the error and its position in the file. No input causes a panic. Reading takes at most
-/// [`crate::config::MEMORY_TIMES_FILE`] times the size of the file, including the file, plus
+/// [`LoadError`] states the error and its position in the file. No input causes a panic. Reading needs a limited amount
+/// of memory: [`crate::config::MEMORY_TIMES_FILE`] times the size of the file, including the file itself, plus
 /// [`crate::config::MEMORY_FLOOR_BYTES`].
 pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, LoadError> {
     placed_from_bytes(bytes, format, name, Placement::Fitted)

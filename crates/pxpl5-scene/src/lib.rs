@@ -19,7 +19,7 @@
 //!
 //! | name | triangles | spheres | provenance of the counts |
 //! |---|---|---|---|
-//! | `aircraft` | 100 | | assumed: Slats can draw it in time |
+//! | `aircraft` | 100 | | assumed: few enough for Slats to draw in one field |
 //! | `mig` | 417 | | published TR94 |
 //! | `molecules` | 2,620 | 1,219 | assumed |
 //! | `head` | 59,592 | | assumed |
@@ -47,9 +47,8 @@
 //! # Not modelled
 //!
 //! Scenes have no textures, transparency, nested structures or levels of detail. Materials are diffuse colours, and
-//! there is one light. Edits cannot add or remove primitives. The display has no lens distortion and parallel optical
-//! axes. Head speeds lack the long tail of recorded speeds. The errors of trackers are modelled in the crate
-//! `tracking`, not here.
+//! there is one light. Edits cannot add or remove primitives. The display has no lens distortion. Head speeds lack the
+//! long tail of recorded speeds. The errors of trackers are modelled in the crate `tracking`, not here.
 //!
 //! # Sources
 //!

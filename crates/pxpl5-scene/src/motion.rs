@@ -25,14 +25,15 @@ pub enum HeadPath {
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
     },
-    /// The head stands at `eye` and turns to the left (about +y) at a constant rate. At time 0 it looks along -z.
+    /// The head stands at `eye` and turns to the left (about +y) at a constant rate. At time 0 the head looks along -z.
     Pan {
         /// Position of the head in the world, metres.
         eye: Vec3,
         /// Turning rate of the head, degrees per second. A negative rate turns right.
         deg_per_s: f64,
     },
-    /// The head circles around `target` in a horizontal plane and looks at it. At time 0 the head is on the +z side.
+    /// The head circles around `target` in a horizontal plane and always looks at `target`. At time 0 the head is on
+    /// the +z side.
     Orbit {
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
@@ -43,8 +44,8 @@ pub enum HeadPath {
         /// Angular rate on the circle, degrees per second. With a positive rate the head moves towards +x first.
         deg_per_s: f64,
     },
-    /// The head looks at `target` from the +z side. The added [`Sway`] lets it lean and walk to and fro around the
-    /// target.
+    /// The head looks at `target` from the +z side. The added [`Sway`] moves the head around the target and changes the
+    /// distance.
     Look {
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
@@ -119,7 +120,7 @@ impl HeadMotion {
     }
 
     /// Creates the motion of a head that looks at a model. The distance is so large that both eyes always see the whole
-    /// model, with any seed. It is [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
+    /// model, with any seed. The distance is [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
     #[must_use]
     pub fn always_visible(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * WHOLE_DISTANCE_RADII };
@@ -147,8 +148,8 @@ impl HeadMotion {
 
     /// Returns the pose of the head at simulated time `time_ps`, in picoseconds.
     ///
-    /// The pose is computed in double precision with software trigonometry. It is then rounded to single precision, as
-    /// are all coordinates of a scene. The time is exact to 2 ns after 200 days.
+    /// The pose is computed in double precision with software trigonometry. The pose is then rounded to single
+    /// precision, as are all coordinates of a scene. The time is exact to 2 ns after 200 days.
     #[must_use]
     pub fn pose(&self, time_ps: u64) -> Pose {
         let seconds = time_ps as f64 * 1e-12;
@@ -247,7 +248,7 @@ fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
 }
 
 /// Returns the position and orientation of an upright head at `eye` that looks at `target`. If both positions are
-/// equal, the head looks along -z. If it looks straight up, its feet point towards +z.
+/// equal, the head looks along -z. If the head looks straight up, its lower side points towards +z.
 fn facing(eye: DVec3, target: DVec3) -> (DVec3, DQuat) {
     let back = (eye - target).normalize_or(DVec3::Z);
     let right = DVec3::Y.cross(back).normalize_or(DVec3::X);

@@ -44,7 +44,7 @@ pub enum Frame {
 pub struct Structure {
     /// Name of the structure for display. No result depends on the name.
     pub name: String,
-    /// Range of the structure's vertices in [`Scene::vertices`]. Only triangles of this structure use them.
+    /// Range of the structure's vertices in [`Scene::vertices`]. Only triangles of this structure use these vertices.
     pub vertices: Range<usize>,
     /// Range of the structure's triangles in [`Scene::triangles`].
     pub triangles: Range<usize>,
@@ -55,7 +55,7 @@ pub struct Structure {
     /// Motion of the structure as a function of time, or `None` for a structure that does not move by itself.
     pub hinge: Option<Hinge>,
     /// True if triangles that face away from the eye are not drawn. The corners of such a triangle run clockwise, seen
-    /// from the eye. Culling is correct for surfaces without holes that are seen from outside.
+    /// from the eye. Culling changes no picture of a surface without holes that is seen from outside.
     pub culls_back_faces: bool,
 }
 
@@ -73,7 +73,8 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// Returns a light from above and behind the viewer's right shoulder. Its direction is (2, 3, 6) / 7. Assumed, any.
+    /// Returns a light from above and behind the viewer's right shoulder. Its direction is (2, 3, 6) / 7. The direction
+    /// is assumed, and any direction would be plausible.
     #[must_use]
     pub fn over_the_shoulder() -> Self {
         Self {
@@ -117,7 +118,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Checks the contents and creates a scene of them.
+    /// Checks the given contents and creates a scene from these contents.
     ///
     /// # Errors
     ///
@@ -130,15 +131,15 @@ impl Scene {
         Ok(Self { parts, warnings: Vec::new() })
     }
 
-    /// Returns the scene with these warnings about its file instead of its present ones.
+    /// Returns the scene with these warnings about its file instead of its present warnings.
     #[must_use]
     pub fn with_warnings(mut self, warnings: Vec<String>) -> Self {
         self.warnings = warnings;
         self
     }
 
-    /// Returns warnings about the file from which the scene was read, one sentence each. They concern content that may
-    /// have been misinterpreted. The list is empty for a scene without a file.
+    /// Returns warnings about the file from which the scene was read, one sentence each. The warnings concern content
+    /// that may have been misinterpreted. The list is empty for a scene without a file.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
@@ -194,7 +195,7 @@ impl Scene {
     }
 
     /// Returns the same scene with back-face culling in all structures. Culling is correct for surfaces without holes
-    /// that are seen from outside. With other surfaces, their inner sides become invisible.
+    /// that are seen from outside. The inner side of an open surface becomes invisible.
     #[must_use]
     pub fn culled(mut self) -> Self {
         self.parts.structures.iter_mut().for_each(|structure| structure.culls_back_faces = true);
@@ -207,8 +208,8 @@ impl Scene {
         self.parts
     }
 
-    /// Returns the changed model matrices of a frame that begins at simulated time `time_ps` (picoseconds). There is
-    /// one for each structure with a motion of its own.
+    /// Returns the changed model matrices of a frame that begins at simulated time `time_ps` (picoseconds). The list
+    /// has one matrix for each structure with a motion of its own.
     #[must_use]
     pub fn edits_at(&self, time_ps: u64) -> Vec<Edit> {
         let structures = self.structures().iter().enumerate();
@@ -220,8 +221,8 @@ impl Scene {
             .collect()
     }
 
-    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. It serves
-    /// code that has no model matrices.
+    /// Returns a copy of the scene whose positions and normals are transformed by the matrices in `edits`. Renderers
+    /// without model matrices, such as a reference renderer, can draw the copy.
     ///
     /// The matrices may only rotate, move and scale uniformly. Matrices for structures that the scene does not have are
     /// ignored.
@@ -248,7 +249,7 @@ impl Scene {
 }
 
 /// Returns the centre of the bounding box around balls (centre, radius), and the distance from this centre to the
-/// farthest point of a ball. Without balls both are zero.
+/// farthest point of a ball. Without balls the centre and the distance are zero.
 pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
     let inverted = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = balls
@@ -288,7 +289,7 @@ impl SceneParts {
             vertex.position = model.transform_point3(vertex.position.as_dvec3()).as_vec3();
             vertex.normal = normal.normalize_or(DVec3::Y).as_vec3();
         }
-        // The matrix scales uniformly, so the scale of one axis is also that of the radii.
+        // The matrix scales uniformly, so the scale of one axis is also the scale of the radii.
         let scale = model.x_axis.truncate().length();
         for sphere in &mut self.spheres[structure.spheres.clone()] {
             sphere.centre = model.transform_point3(sphere.centre.as_dvec3()).as_vec3();

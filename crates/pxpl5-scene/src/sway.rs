@@ -6,7 +6,7 @@ use tracking::random;
 
 use crate::trig;
 
-/// Random head movement that is added to a path. It is a sum of sines of fixed frequencies below
+/// Random head movement that is added to a path. The movement is a sum of sines of fixed frequencies below
 /// [`crate::config::HEAD_BAND_HZ`], with phases drawn from the seed.
 ///
 /// At scale 1 on [`crate::HeadPath::Look`], three statistics agree with recorded traces of headset use. The mean

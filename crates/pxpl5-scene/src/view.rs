@@ -1,4 +1,4 @@
-//! The head-mounted display. It converts the pose of a head into the matrices of its two eyes.
+//! The head-mounted display, which converts the pose of a head into the matrices of its two eyes.
 
 use glam::{DMat4, DQuat, DVec3, DVec4, Mat4};
 use serde::{Deserialize, Serialize};
@@ -28,8 +28,8 @@ pub struct View {
     /// Matrix from world to eye coordinates, which only rotates and moves. Eye coordinates are right-handed with +y up,
     /// and the eye looks along -z.
     pub world_to_eye: Mat4,
-    /// Matrix from head to eye coordinates, which only rotates and moves. It is used for structures that are fixed to
-    /// the head.
+    /// Matrix from head to eye coordinates, which only rotates and moves. The matrix serves structures that are fixed
+    /// to the head.
     pub head_to_eye: Mat4,
     /// Matrix from eye to clip coordinates: -w <= x <= w (right), -w <= y <= w (up), 0 <= z <= w. The depth z/w grows
     /// from 0 at the near plane to 1 at the far plane.
@@ -37,7 +37,7 @@ pub struct View {
 }
 
 impl View {
-    /// Returns the matrix to eye coordinates from the coordinates of `frame`, the world or the head.
+    /// Returns the matrix from the coordinates of `frame` (the world or the head) to eye coordinates.
     #[must_use]
     pub fn to_eye(&self, frame: Frame) -> Mat4 {
         match frame {
@@ -61,7 +61,7 @@ pub struct HmdConfig {
     pub height_px: u32,
     /// Distance from the eye to the near plane, metres. Nothing nearer is drawn.
     pub near_m: f64,
-    /// Distance from the eye to the far plane, metres. Nothing beyond it is drawn.
+    /// Distance from the eye to the far plane, metres. Nothing farther away is drawn.
     pub far_m: f64,
     /// Distance from the head at which the optical axes of both eyes meet, metres. The axes are turned towards each
     /// other, and each picture is centred on its axis. `None` for parallel axes.
@@ -168,7 +168,8 @@ impl Hmd {
         self.view(EyePoint::Centre, head)
     }
 
-    /// Returns the distance from the eye to the picture in pixels. An angle with a tangent of 1 covers as many pixels.
+    /// Returns the focal length: the distance from the eye to the flat picture, in pixels. A direction at 45 degrees to
+    /// the optical axis meets the picture at this distance from the middle.
     #[must_use]
     pub fn focal_length_px(&self) -> f64 {
         f64::from(self.config.width_px) / 2.0 / half_width(&self.config)
@@ -204,8 +205,8 @@ impl Hmd {
     }
 }
 
-/// Returns the rotation that takes a point `right` metres to the right and `ahead` metres ahead to the axis of view.
-/// Square roots have the same bits on every host.
+/// Returns the rotation that moves a point onto the axis of view. The point lies `right` metres to the right and
+/// `ahead` metres ahead. Square roots have the same bits on every host.
 fn turn_towards(right: f64, ahead: f64) -> DMat4 {
     let distance = (right * right + ahead * ahead).sqrt();
     let (sin, cos) = (right / distance, ahead / distance);

@@ -125,7 +125,8 @@ fn of_separate_pieces_as_many_are_left_as_asked_for_and_from_everywhere() {
 fn spheres_and_triangles_are_left_in_their_proportion() {
     let whole = scene("molecules");
     let few = whole.decimated(384).expect("it has more");
-    // 384 of 3,839: 262 of 2,620 triangles and 122 of 1,219 spheres, give or take what a closed ribbon allows.
+    // 384 of 3,839 primitives: about 262 of 2,620 triangles, as far as a closed ribbon allows, and 122 of 1,219
+    // spheres.
     assert_eq!(few.spheres().len(), 122);
     assert!((255..=262).contains(&few.triangles().len()), "{}", few.triangles().len());
     assert!((few.bounding_sphere().1 / whole.bounding_sphere().1 - 1.0).abs() < 0.1);

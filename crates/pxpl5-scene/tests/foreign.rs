@@ -533,7 +533,7 @@ fn elements_are_told_by_the_names_of_atoms_where_the_columns_for_them_are_missin
         ("HETATM", " K  ", "K", 2.75),
         ("HETATM", "MN  ", "MN", 2.00),
         ("HETATM", " I1 ", "LIG", 1.98),
-        // Copper and mercury are not in the table: as all other elements.
+        // Copper and mercury are not in the table, so they are drawn as all other elements.
         ("HETATM", "CU  ", "CU", 1.80),
         ("HETATM", "HG  ", "HG", 1.80),
     ] {

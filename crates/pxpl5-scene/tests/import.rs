@@ -409,7 +409,7 @@ fn triangle_strips_are_read_and_every_other_triangle_is_turned() {
                      property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 2\n",
     );
     assert_eq!(scene.triangles(), [[0, 1, 2], [2, 1, 3], [0, 1, 2]]);
-    // All of them face the viewer.
+    // All triangles face the viewer.
     assert!(scene.vertices().iter().all(|vertex| vertex.normal == Vec3::Z));
 }
 

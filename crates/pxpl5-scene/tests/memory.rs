@@ -101,7 +101,7 @@ fn obj_files_made_for_it_take_at_most_seven_times_their_size() {
     is_accepted("corners.obj", obj_of_corners(500));
     is_accepted("short-corners.obj", obj_of_corners(99));
     is_accepted("many-corners.obj", obj_of_corners(1100));
-    // What has no area is refused: a triangle beside the polygon has one.
+    // A file without area is refused, so a triangle with an area is added beside the polygon.
     let seen = points("v ", 9) + "v 0 5 0\nf 1 2 10\n";
     is_accepted("polygon.obj", (seen.clone() + "f" + &" 1 2".repeat(900_000)).into_bytes());
     is_accepted("apart.obj", "v 1 2 3\nv 4 5 6\nv 7 8 0\nf -1 -2 -3\n".repeat(400_000).into_bytes());
@@ -157,7 +157,7 @@ fn ply(kind: &str, vertices: usize, vertex: &[u8], corners: impl Iterator<Item =
          property list uint {kind} vertex_indices\nend_header\n"
     );
     let mut file = header.into_bytes();
-    // What has no area is refused: the first three vertices are a triangle with one.
+    // A file without area is refused, so the first three vertices form a triangle with an area.
     file.extend([1, 2, 3, 2, 2, 3, 1, 3, 3]);
     file.extend(vertex.repeat(vertices - 3));
     file.extend((count as u32).to_le_bytes());

@@ -45,7 +45,7 @@ fn no_head_turns_faster_than_recorded_ones() {
 
 #[test]
 fn the_mean_translation_is_about_that_of_recorded_heads() {
-    // Published: 0.37 m/s in the mean; within a quarter of it.
+    // The published mean is 0.37 m/s. The mean of the motion must agree within a quarter.
     let motion = swaying(1);
     let moved = (0..6_000).map(|i| {
         let a = motion.pose(i * SECOND / 10);

@@ -170,7 +170,8 @@ fn sum_of_heights(scene: &Scene, structure: usize, time_ps: u64) -> f32 {
 #[test]
 fn the_ailerons_of_mig_deflect_oppositely() {
     let mig = scene("mig");
-    // A quarter and three quarters of their 4 s: full deflection one way and the other.
+    // After a quarter and three quarters of the period of 4 s, the deflection is greatest in one direction and in the
+    // other.
     let early = 1_000_000_000_000;
     let late = 3_000_000_000_000;
     assert!(
@@ -212,7 +213,7 @@ fn full_screen_triangles_lie_at_different_depths() {
 
 #[test]
 fn the_first_atoms_of_molecules_are_those_of_myoglobin() {
-    // 783 carbons, 216 nitrogens, 215 oxygens, 2 sulphurs in the entry; and a water molecule.
+    // The entry has 783 carbons, 216 nitrogens, 215 oxygens and 2 sulphurs. The scene adds a water molecule.
     let molecules = scene("molecules");
     let colours = [[144, 144, 144], [48, 80, 248], [255, 216, 48], [240, 24, 24], [255, 255, 255]];
     let counts = colours.map(|colour| molecules.spheres().iter().filter(|s| s.colour == colour).count());

@@ -45,7 +45,7 @@ fn assert_is_two(file: impl AsRef<[u8]>) {
     for (vertex, corner) in scene.vertices().iter().zip(TWO.as_flattened()) {
         assert_eq!((vertex.position, vertex.colour), (Vec3::from_array(*corner), DEFAULT_COLOUR));
     }
-    // Each triangle is flat: the first one faces +z, the second one +y.
+    // Each triangle is flat: the first triangle faces +z, the second triangle +y.
     let normals: Vec<Vec3> = scene.vertices().iter().map(|vertex| vertex.normal).collect();
     assert_eq!(normals, [Vec3::Z, Vec3::Z, Vec3::Z, Vec3::Y, Vec3::Y, Vec3::Y]);
     assert!(scene.warnings().is_empty(), "{:?}", scene.warnings());

@@ -1,11 +1,11 @@
-//! The hold model: a queue of constant length in which every event schedules another one.
+//! The hold model: a queue of constant length in which the handler of each event schedules another event.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5_sim::{EventQueue, Phase, Time, mix};
 
-/// As large as an event that carries a message.
+/// An event type with the size of an event that carries a message.
 type Event = [u64; 12];
 
 fn hold(queue: &mut EventQueue<Event>, events: u64) -> u64 {

@@ -1,16 +1,16 @@
-//! Clocks whose edges are exact: rounding errors do not accumulate.
+//! Clocks with exact edges. Rounding errors do not accumulate.
 
 use crate::{Span, Time};
 use serde::{Deserialize, Serialize};
 
-/// A number of cycles of one clock. Only the crate that owns the clock should use this type.
+/// A number of cycles of one clock. Only the crate that defines the clock should use this type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cycles(pub u64);
 
 /// A clock whose period is the rational number `numerator_ps / denominator` picoseconds.
 ///
-/// Edge n is at floor(n x period). The time of each edge is computed from time zero, with 128 bits if 64 bits are too
-/// few.
+/// Edge n is at floor(n x period). The time of each edge is computed from time zero, with 128-bit numbers if 64 bits
+/// are too few.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Clock {
     numerator_ps: u64,

@@ -1,4 +1,5 @@
-//! The interface of a device to the simulation during one event, and a test bench for a single device.
+//! The interface through which a device acts on the simulation during one event. Also has a test bench for a single
+//! device.
 
 use crate::{EventQueue, Phase, Span, Time};
 
@@ -20,7 +21,8 @@ impl<E, O> Default for Context<E, O> {
 }
 
 impl<E, O> Context<E, O> {
-    /// Sets the current time for the next event and returns the context. The lists keep their allocated memory.
+    /// Sets the current time for the next event and returns the context. The lists keep their allocated memory for
+    /// reuse.
     pub fn at(&mut self, now: Time) -> &mut Self {
         debug_assert!(self.own.is_empty() && self.outputs.is_empty(), "the wiring left something undone");
         self.now = now;
@@ -38,7 +40,7 @@ impl<E, O> Context<E, O> {
         self.own.push((time, phase, event));
     }
 
-    /// Schedules an event for the same device, `span` after the current time, in phase `Work`.
+    /// Schedules an event for the same device at `span` after the current time, in phase `Work`.
     pub fn after(&mut self, span: Span, event: E) {
         self.schedule(self.now + span, Phase::Work, event);
     }
@@ -53,8 +55,8 @@ impl<E, O> Context<E, O> {
         self.own.drain(..)
     }
 
-    /// Removes the events that were scheduled since the last call and passes them to `take`, in order. Most calls find
-    /// at most one event.
+    /// Removes the events that were scheduled since the last call and passes each event to `take`, in order. Most calls
+    /// find at most one event.
     #[inline]
     pub fn each_event(&mut self, mut take: impl FnMut(Time, Phase, E)) {
         // The usual case of one event needs no iterator.

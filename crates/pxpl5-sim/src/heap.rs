@@ -3,7 +3,7 @@
 
 /// A type with a sort key. The heap returns the element with the least key first.
 pub(crate) trait Keyed: Copy {
-    /// Returns the sort key as one number, so that the host compares two keys by one subtraction.
+    /// Returns the sort key as one number, so that one subtraction compares two keys.
     fn key(&self) -> u128;
 }
 

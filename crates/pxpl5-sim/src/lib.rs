@@ -6,7 +6,7 @@
 //! ```text
 //!            event                     own events (later)
 //!   queue ----------> device.handle ---------------------> queue
-//!                        |  outputs (what leaves the board, at least one cycle later)
+//!                        |  outputs (these leave the board at least one cycle later)
 //!                        v
 //!                     wiring  (turns an output of one device into an event of another)
 //! ```
@@ -16,12 +16,11 @@
 //! 1. Events are handled in the order of ([`Time`], [`Phase`]). At one instant all inputs *arrive*, then devices *work*
 //!    on them, then observers *observe*.
 //! 2. Results must not depend on the order of events with the same instant and phase. A device that must choose between
-//!    simultaneous requests stores them in `Arrive`. It chooses in `Work` by a rule of its own (first come, then lowest
-//!    port).
+//!    simultaneous requests stores them in `Arrive`. In `Work`, the device chooses by its own rule (for example first
+//!    come, then lowest port).
 //! 3. Events with the same instant and phase are handled in the order of scheduling. [`EventQueue::shuffle_ties`]
-//!    changes
-//!    this to a hashed order. Tests use the hashed order to check point 2.
-//! 4. No event can be scheduled in the past. An attempt is an error of the program and panics.
+//!    replaces this order by a pseudo-random order. Tests use the pseudo-random order to check point 2.
+//! 4. No event can be scheduled in the past. An attempt is a programming error and causes a panic.
 //!
 //! # Time
 //!

@@ -4,9 +4,9 @@
 //!
 //! ```text
 //!                        +--> table.word_ns        code reads a plain public field
-//!  parameter_table! { }--+--> table.get("word_ns") files, sweeps and reports reach it by name
-//!                        +--> Table::INFOS         unit, standing, range, limits, source
-//!                        +--> table.check()        refuses what the model cannot take
+//!  parameter_table! { }--+--> table.get("word_ns") files, sweeps and reports use the name
+//!                        +--> Table::INFOS         unit, provenance, range, limits, source
+//!                        +--> table.check()        rejects values outside the limits
 //! ```
 //!
 //! # A line of a table
@@ -18,7 +18,7 @@
 //!
 //! The parts are value, unit, provenance, the *range* that the sources allow, the *limits* within which the model
 //! works, and source. If a line has no limits, the range also serves as the limits. Values are whole numbers (`u64`,
-//! exact) unless the line says `f64`:
+//! exact) unless the line has the type `f64`:
 //!
 //! ```text
 //! /// Error of each axis, rms.
@@ -28,7 +28,7 @@
 //! # Range and limits
 //!
 //! A value outside its range is possible in an experiment, although no source allows such a value.
-//! [`ParameterTable::out_of_range`] lists these parameters. A value outside its limits is an error of
+//! [`ParameterTable::out_of_range`] lists the parameters with such values. A value outside its limits is an error of
 //! [`ParameterTable::check`].
 //!
 //! **Not here:** rules that relate several parameters, such as "at most the length of a line". The crate that owns the
@@ -46,7 +46,7 @@ mod value;
 
 pub use crate::{named, parameter_table};
 pub use error::ParameterError;
-pub use info::{ParameterInfo, Standing};
+pub use info::{ParameterInfo, Provenance};
 pub use name::{NameError, find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};

@@ -15,12 +15,12 @@ pub enum Phase {
     Observe,
 }
 
-/// The time, order and storage slot of a waiting event. The 24 bytes are small, so that the heap moves little data.
+/// The time, order and storage slot of a waiting event. The small size of 24 bytes keeps moves within the heap cheap.
 #[derive(Clone, Copy, Debug)]
 struct Due {
     time: Time,
-    /// The phase of the event in the upper two bits. Below it is the number of the scheduling call, or a hash of this
-    /// number.
+    /// The upper two bits have the phase of the event. The lower bits have the number of the scheduling call, or a hash
+    /// of this number.
     order: u64,
     slot: u32,
 }
@@ -33,22 +33,23 @@ impl Keyed for Due {
 
 const PHASE_SHIFT: u32 = 62;
 
-/// Greatest length of the sorted list of early events. A longer list would take more host time than the heap.
+/// Greatest length of the sorted list of early events. Insertion into a longer list would be slower than insertion into
+/// the heap.
 const NEAR: usize = 16;
 
-/// Returns a sort key that is greater than the keys of all events in phase `Work` at `now`. Keys of phase `Observe` are
-/// not smaller.
+/// Returns the sort key that separates the phases `Work` and `Observe` at `now`. The key is greater than the keys of
+/// all events in `Work`, and at most equal to the keys of events in `Observe`.
 const fn work_key(now: Time) -> u128 {
     (now.0 as u128) << 64 | ((Phase::Observe as u64) << PHASE_SHIFT) as u128
 }
 
-/// A queue of events in the order of time, then phase. Events with equal time and phase come in the order of
-/// scheduling, or shuffled.
+/// A queue of events in the order of time, then phase. Events with equal time and phase keep the order of scheduling,
+/// unless the queue shuffles them.
 #[derive(Debug)]
 pub struct EventQueue<E> {
     heap: QuadHeap<Due>,
-    /// The earliest events, at most [`NEAR`] of them, the next event last. If only few events wait, none of them uses
-    /// the heap.
+    /// The earliest events, at most [`NEAR`] of them, with the next event at the end. If at most [`NEAR`] events wait,
+    /// the heap is empty.
     near: Vec<Due>,
     /// Events in phase `Work` that were scheduled for the current instant during this instant. They need no sorting.
     /// The list is unused if events are shuffled.
@@ -84,8 +85,8 @@ impl<E> EventQueue<E> {
         Self::default()
     }
 
-    /// Shuffles events of the same instant and phase: a hash with `seed` determines their order. Only events scheduled
-    /// after this call are shuffled.
+    /// Shuffles events of the same instant and phase: a hash with `seed` determines their order. The call has no effect
+    /// on events that were scheduled before.
     pub fn shuffle_ties(&mut self, seed: u64) {
         self.shuffle = Some(seed);
     }
@@ -94,7 +95,7 @@ impl<E> EventQueue<E> {
     ///
     /// # Panics
     ///
-    /// Panics if `time` is earlier than the current time, because the caller has violated the ordering contract. Also
+    /// Panics if `time` is earlier than the current time, because such a call violates the ordering contract. Also
     /// panics if 2^32 events are waiting.
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         assert!(time >= self.now, "an event at {time} was scheduled at {}", self.now);
@@ -102,7 +103,7 @@ impl<E> EventQueue<E> {
         if time == self.now && phase == Phase::Work && self.shuffle.is_none() {
             return self.soon.push_back(event);
         }
-        // The key resolves ties by the sequence number or by a hash of it.
+        // The key resolves ties by the sequence number, or by a hash of this number.
         let tie = self.shuffle.map_or(self.sequence, |seed| mix(seed ^ mix(self.sequence)));
         let order = (phase as u64) << PHASE_SHIFT | tie & ((1 << PHASE_SHIFT) - 1);
         self.sequence += 1;
@@ -111,11 +112,11 @@ impl<E> EventQueue<E> {
     }
 
     fn enter(&mut self, due: Due) {
-        // Events later than the first one of the heap go into the heap.
+        // Events later than the first event of the heap go into the heap.
         if self.heap.peek().is_some_and(|first| first.key() < due.key()) {
             return self.heap.push(due);
         }
-        // Earlier events go into the sorted list, whose latest event moves to the heap if the list is full.
+        // Earlier events go into the sorted list. If the list is full, its latest event moves to the heap.
         let sooner = self.near.iter().rev().take_while(|near| near.key() < due.key()).count();
         self.near.insert(self.near.len() - sooner, due);
         if self.near.len() > NEAR {
@@ -132,8 +133,8 @@ impl<E> EventQueue<E> {
         self.near.pop().or_else(|| self.heap.pop())
     }
 
-    /// Returns true if the next event is in `soon`. Events in phase `Arrive` of this instant, and events in phase
-    /// `Work` that were scheduled before this instant, come first.
+    /// Returns true if the next event is in `soon`. Two kinds of events come before `soon`: events in phase `Arrive` of
+    /// this instant, and events in phase `Work` that were scheduled before this instant.
     fn is_current_work_next(&self, first: Option<Due>) -> bool {
         !self.soon.is_empty() && first.is_none_or(|first| first.key() >= work_key(self.now))
     }
@@ -271,8 +272,9 @@ mod tests {
         assert_ne!(order_of_ties(1), (0..100).collect::<Vec<_>>());
     }
 
-    /// Counts the different first events of 64 shuffled queues of 100 events. Fair draws give 100 (1 - 0.99^64) = 47 on
-    /// average, with a standard deviation of 3. Seeds with very few or very many set bits are no worse.
+    /// Counts the different first events of 64 shuffled queues of 100 events. A fair shuffle gives 100 (1 - 0.99^64) =
+    /// 47 on average, with a standard deviation of 3. Seeds with very few or very many set bits must give similar
+    /// counts.
     #[test]
     fn seeds_that_are_nearly_the_same_shuffle_as_fairly_as_any() {
         for bits in [0, u64::MAX] {
@@ -316,8 +318,8 @@ mod tests {
     }
 
     proptest! {
-        /// Compares the queue with a sorted list. Work scheduled for the current instant takes the separate path
-        /// through `soon`.
+        /// Compares the queue with a sorted list. Events that are scheduled in phase `Work` for the current instant
+        /// test the separate path through `soon`.
         #[test]
         fn what_events_schedule_comes_as_from_a_sorted_list(
             begun in proptest::collection::vec((0u64..4, 0u8..3), 1..60),

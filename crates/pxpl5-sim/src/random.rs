@@ -39,7 +39,7 @@ impl SplitMix64 {
     ///
     /// # Panics
     ///
-    /// If the range is empty, or has all 2^64 numbers.
+    /// Panics if the range is empty, or contains all 2^64 numbers.
     pub const fn between(&mut self, least: u64, most: u64) -> u64 {
         least + self.below(most - least + 1)
     }
@@ -48,12 +48,13 @@ impl SplitMix64 {
     ///
     /// # Panics
     ///
-    /// If the list is empty.
+    /// Panics if the list is empty.
     pub const fn element<T: Copy>(&mut self, list: &[T]) -> T {
         list[self.below(list.len() as u64) as usize]
     }
 
-    /// Returns a random number from 0 to below 1, in steps of 2^-24. `f32` can represent every step exactly.
+    /// Returns a random number that is at least 0 and less than 1, a multiple of 2^-24. `f32` represents every such
+    /// number exactly.
     pub const fn unit(&mut self) -> f32 {
         (self.bits() >> 40) as f32 / (1u32 << 24) as f32
     }

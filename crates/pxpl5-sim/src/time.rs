@@ -1,7 +1,7 @@
 //! Instants and durations of simulated time.
 //!
-//! Time ends after 2^64 ps (213 days). All later instants become [`Time::END`], which no run reaches. Events at this
-//! time never happen. No arithmetic wraps around to an earlier instant.
+//! Time ends after 2^64 ps (213 days). Arithmetic never wraps around: any later instant becomes [`Time::END`]. No run
+//! reaches this instant, so events at [`Time::END`] never happen.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -44,7 +44,7 @@ impl Span {
         Self(us.saturating_mul(1_000_000))
     }
 
-    /// Returns the duration in milliseconds, rounded. Use the result only in reports.
+    /// Returns the duration in milliseconds, rounded to the precision of `f64`. Use the result only in reports.
     #[must_use]
     pub fn as_ms(self) -> f64 {
         self.0 as f64 * 1e-9

@@ -19,10 +19,10 @@ pub const fn mix(value: u64) -> u64 {
     c ^ (c >> 31)
 }
 
-/// Sum of the hashes of all records. A record is the time of an event with numbers that describe the event.
+/// The sum of the hashes of all records. A record has the time of an event and numbers that describe the event.
 ///
-/// The sum does not depend on the order of simultaneous events, which has no meaning. The sum depends on every time and
-/// every number.
+/// The sum depends on every time and every number. The sum does not depend on the order of simultaneous events, because
+/// this order has no meaning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct TraceHash(pub u64);
 
@@ -68,8 +68,9 @@ mod tests {
         assert_ne!(base, hash(&[(1, &[2, 3]), (1, &[4]), (1, &[4])]));
     }
 
-    /// The record's mixed time and mixed fact are equal, so their exclusive or is 0. The hash is then the mix of 0, the
-    /// first output of SplitMix64 with seed 0 (Vigna's reference program).
+    /// The time and the fact of the record are equal. Their mixed values are then equal too, so the exclusive or of
+    /// both is 0. The hash is then the mix of 0, the first output of SplitMix64 with seed 0 (Vigna's reference
+    /// program).
     #[test]
     fn a_fact_that_is_its_own_time_leaves_the_hash_of_zero() {
         for both in [0, 1, 1_234_567, u64::MAX] {

@@ -1,13 +1,13 @@
-//! Tests of tables through their interface.
+//! Tests of parameter tables through their public interface.
 
-use pxpl5_sim::parameters::{ParameterError, ParameterTable, Standing, Value, parameter_table};
+use pxpl5_sim::parameters::{ParameterError, ParameterTable, Provenance, Value, parameter_table};
 
 parameter_table! {
-    /// Numbers of both kinds, with limits and without.
+    /// A table with whole and real numbers, with and without limits.
     struct Table {
-        /// A published time, with which an experiment may do more than the papers say.
+        /// A published time with limits wider than its range.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94";
-        /// A cost whose range is all that the model takes.
+        /// A cost whose range also serves as its limits.
         send_ns: 12_000, "ns", Assumed, 10_000..=25_000, "a reason";
         /// A measured error.
         noise: f64 = 2.5, "mm", Derived, 0.0..=5.0 in 0.0..=1000.0, "a data sheet";
@@ -77,7 +77,7 @@ fn tables_of_different_types_are_listed_together() {
     let entries: Vec<_> = tables.iter().flat_map(|table| table.entries()).collect();
     let values: Vec<_> = entries.iter().map(|entry| entry.value.to_string()).collect();
     assert_eq!(values, ["50", "12000", "2.5", "8"]);
-    assert_eq!(entries[2].info.standing, Standing::Derived);
+    assert_eq!(entries[2].info.provenance, Provenance::Derived);
 }
 
 #[test]

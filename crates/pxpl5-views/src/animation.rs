@@ -35,7 +35,7 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// Returns [`PngError`] if the picture has another size, or if the animation already has all its pictures.
+    /// Returns [`PngError`] if the picture has another size, or if the animation already has all announced pictures.
     pub fn add(&mut self, picture: &RgbImage) -> Result<(), PngError> {
         Ok(self.writer.write_image_data(picture.as_raw())?)
     }

@@ -18,11 +18,11 @@ use thiserror::Error;
 pub enum FilmSurfaces {
     /// A single surface, such as the surface of one eye.
     One(SurfaceId),
-    /// All surfaces side by side, the first one on the left.
+    /// All surfaces side by side, the first surface on the left.
     All,
 }
 
-/// A film of an experiment. It has one frame per display period, which shows the screen at the end of the period.
+/// A film of an experiment. The film has one frame per display period, which shows the screen at the end of the period.
 ///
 /// With an NTSC display, a frame combines the lines of the current field with the lines of the previous field.
 #[derive(Clone, Debug)]
@@ -79,7 +79,7 @@ impl Film {
     ///
     /// # Errors
     ///
-    /// [`FilmError`]. The file is then incomplete.
+    /// Returns [`FilmError`]. The file is then incomplete.
     pub fn write(&self, texts: &[(&str, String)], out: impl Write) -> Result<(), FilmError> {
         let mut machine = self.begin()?;
         let surfaces = self.surfaces(machine.record().display())?;
@@ -96,14 +96,14 @@ impl Film {
     ///
     /// # Errors
     ///
-    /// Like [`write`](Self::write), without errors of files.
+    /// Fails in the same cases as [`write`](Self::write), except for errors of the PNG file.
     pub fn each(&self, mut take: impl FnMut(PeriodNumber, RgbImage) -> bool) -> Result<(), FilmError> {
         let mut machine = self.begin()?;
         let surfaces = self.surfaces(machine.record().display())?;
         self.each_of(&mut machine, &surfaces, |period, picture| Ok(take(period, picture)))
     }
 
-    /// Builds the machine of the film.
+    /// Checks the number of periods, and builds the machine that runs the experiment.
     fn begin(&self) -> Result<Machine, FilmError> {
         if !(FILM_PERIODS.0..=FILM_PERIODS.1).contains(&self.periods) {
             return Err(FilmError::Periods { expected: FILM_PERIODS, found: self.periods });
@@ -136,8 +136,8 @@ impl Film {
         Ok(())
     }
 
-    /// Runs the experiment for the same length without pixels, to find the raster offset in each period. Returns `None`
-    /// for a raster that shifts nothing.
+    /// Runs the experiment for the same length without pixels, to find the shift that the display applies to the
+    /// picture in each period. Returns `None` if the display shifts no pictures.
     fn without_pixels(&self) -> Result<Option<Outcome>, FilmError> {
         if self.experiment.raster() == Raster::Plain {
             return Ok(None);
@@ -160,7 +160,7 @@ impl Film {
     }
 }
 
-/// Returns the total width and height of surfaces that are shown side by side.
+/// Returns the size of a frame that shows surfaces side by side: the sum of the widths, and the greatest height.
 fn size(display: &dyn Display, surfaces: &[SurfaceId]) -> (u32, u32) {
     let shown: Vec<&Surface> = surfaces.iter().filter_map(|id| display.surfaces().get(id.index())).collect();
     let width = shown.iter().map(|surface| surface.width).sum();

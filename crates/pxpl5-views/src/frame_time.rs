@@ -9,7 +9,7 @@ use pxpl5_wire::display::Display;
 /// Numerator and denominator have 16 bits each. The result is the fraction nearest to the duration of a display period.
 #[must_use]
 pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
-    // Ticks are rounded to picoseconds. Over so many periods, the rounding is negligible.
+    // Ticks are rounded to picoseconds. Over this number of periods, the rounding is negligible.
     const PERIODS: u64 = 60_000;
     let span = display.tick(PeriodNumber(PERIODS)).since(Time::ZERO);
     let nearest = nearest_fraction(Fraction { over: span.0.into(), under: u128::from(PERIODS) * PS_PER_S });
@@ -18,7 +18,7 @@ pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
 
 const PS_PER_S: u128 = 1_000_000_000_000;
 
-/// Largest numerator and denominator.
+/// Largest numerator and largest denominator that animated PNG can store.
 const LIMIT: u128 = u16::MAX as u128;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// Returns the distance from another fraction, multiplied by both denominators.
+    /// Returns the distance from another fraction, multiplied by both denominators so that the result is an integer.
     const fn distance(self, other: Self) -> u128 {
         (self.over * other.under).abs_diff(other.over * self.under)
     }
@@ -48,9 +48,9 @@ impl Fraction {
     }
 }
 
-/// Returns the nearest fraction within the limit, by continued fractions.
+/// Returns the fraction that is nearest to `exact` and has no part above [`LIMIT`], by continued fractions.
 ///
-/// The result is the last convergent within the limit, or a fraction between it and the next convergent.
+/// The result is the last convergent within the limit, or a fraction between this convergent and the next convergent.
 fn nearest_fraction(exact: Fraction) -> Fraction {
     let mut before = Fraction { over: 0, under: 1 };
     let mut last = Fraction { over: 1, under: 0 };

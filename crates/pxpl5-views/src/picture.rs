@@ -13,8 +13,8 @@ pub struct PngError(
     png::EncodingError,
 );
 
-/// Encodes a picture as PNG with texts, such as those of [`origin`](crate::results::origin). Each text becomes an iTXt
-/// chunk with the keyword `pxpl5 KEY`, which metadata viewers can read.
+/// Encodes a picture as PNG with texts, such as the texts of [`origin`](crate::results::origin). Each text becomes an
+/// iTXt chunk with the keyword `pxpl5 KEY`, which metadata viewers can read.
 ///
 /// # Errors
 ///

@@ -2,9 +2,9 @@
 //! `parquet`, Parquet.
 //!
 //! The origin of a file ([`origin`]) states how to reproduce the file. For CSV, the origin is in `report.json` and
-//! `experiment.toml` beside the file. For Parquet, it is in the key-value metadata (keys `pxpl5.machine` and so on).
-//! All times are whole picoseconds of simulated time, so nothing is rounded. [`columns`] returns the schema. Its name
-//! and version are in [`SCHEMA`].
+//! `experiment.toml` beside the file. For Parquet, the origin is in the key-value metadata (keys `pxpl5.machine` and so
+//! on). All times are whole picoseconds of simulated time, so nothing is rounded. [`columns`] returns the schema.
+//! [`SCHEMA`] has the schema's name and version.
 //!
 //! [`csv_table`] writes every CSV file. [`quantities_csv`] returns the table of the measured quantities of an
 //! experiment.

@@ -1,16 +1,16 @@
 //! Timelines in the style of the papers' pipeline figures (TR94 figures 1 to 6, I3D95 figures 5 to 8).
 //!
 //! Each independent resource has a row, and time runs to the right. Retraces and the dependencies of one picture are
-//! drawn too. [`Timeline::of`] collects the observations, and [`svg`] draws them. A drawing depends only on simulated
-//! time, so it is the same on every host.
+//! drawn too. [`Timeline::of`] collects the observations of a run, and [`svg`] draws the timeline. A drawing depends
+//! only on simulated time and is therefore the same on every host.
 //!
 //! | row | bars |
 //! |---|---|
 //! | tracker | an instant for each pose that was sampled |
 //! | host | SEND |
-//! | graphics processors | EDIT and TRANSFORM, from the first board that begins to the last one that ends |
-//! | renderers | RENDER: commands to the renderers, until the last is accepted |
-//! | each surface of the displays (frame buffer, left and right) | COPY, from the first word of the first region to the last pixel of the last; the narrow bar below is dark while the port receives data |
+//! | graphics processors | EDIT and TRANSFORM, from the first board that begins to the last board that ends |
+//! | renderers | RENDER: commands to the renderers, until the last command is accepted |
+//! | each surface of the displays (frame buffer, left and right) | COPY, from the first word of the first region to the last pixel of the last region; the narrow bar below is dark while the port receives data |
 //! | each port of a display that has more ports than surfaces (a display memory) | COPY as above; below it the picture that the port shows, from a swap to the next |
 //! | beam | the displayed picture, from the first lit pixel of a period to the last, with the position of the beam |
 //!

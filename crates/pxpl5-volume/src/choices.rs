@@ -11,7 +11,7 @@ pub enum ClipKind {
     UserPlanes,
     /// Clip by both boundary planes in the fragment program, which gives exactly the volume of the slice.
     Exact,
-    /// Clip by planes that leave some thickness at the axis, in two drawing passes.
+    /// Clip by planes around the slice that are a fixed distance apart at the axis, in two drawing passes.
     Tapered,
     /// Clip by both boundary planes of the slice, moved outwards.
     Parallel,

@@ -1,4 +1,5 @@
-//! Comparison of all clips and projections for one scene. It includes methods that the paper rejects as too expensive.
+//! Comparison of all clips and projections for one scene. The comparison includes methods that the paper rejects as too
+//! expensive.
 
 use crate::choices::{ClipKind, Named, ProjectionKind};
 use crate::error::VolumeError;
@@ -31,7 +32,8 @@ pub struct VariantRow {
     pub draws_percent: f64,
     /// Percentage of queried tiles in which a pixel was drawn.
     pub tile_occupancy_percent: f64,
-    /// Percentage of samples on the intersections of mesh and slices that have a drawn pixel beside them.
+    /// Percentage of shown samples, along the intersections of mesh and slices. A sample is shown if its pixel, or one
+    /// of the eight neighbouring pixels, is drawn.
     pub connected_percent: f64,
     /// Radius in pixels around the axis within which no slice can show anything, or `None` if no slice can show
     /// anything.
@@ -244,7 +246,7 @@ impl VolumeComparison {
         Some(grid(pictures, columns as u32))
     }
 
-    /// Returns five views with the hyperbolic clip side by side. They are orthographic with 1 sample, jittered,
+    /// Returns five views with the hyperbolic clip side by side. The views are orthographic with 1 sample, jittered,
     /// orthographic with 4 and with 16 samples, and with connected coverage. Returns `None` for a comparison without
     /// pictures.
     #[must_use]

@@ -15,7 +15,7 @@ pub enum VolumeError {
         place: String,
         /// Path that no setting has.
         found: String,
-        /// The valid path that is most similar.
+        /// The valid path that is most similar to the given path.
         nearest: String,
     },
     /// The value that was given for a setting is not allowed.
@@ -49,7 +49,7 @@ pub enum VolumeError {
 }
 
 impl VolumeError {
-    /// Returns true if the scene causes the error, and not the request.
+    /// Returns true if the error is caused by the scene instead of the request.
     #[must_use]
     pub const fn is_of_scene(&self) -> bool {
         matches!(self, Self::Pipeline(SpatialError::NotFinite { .. } | SpatialError::Index { .. }))

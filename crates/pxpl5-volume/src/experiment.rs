@@ -18,7 +18,7 @@ pub struct Volume {
     pub settings: VolumeSettings,
     /// Name of the scene that the volume shows.
     pub scene: String,
-    /// Display, with the volume and the bins of each slice.
+    /// Display, with the part of space and the bins of each slice.
     pub display: SweptDisplay,
     /// Recorded graphics commands that were replayed for every slice.
     pub commands: CommandBuffer,

@@ -23,8 +23,8 @@ use spatialgl::Workers;
 use spatialgl::perspecta::figures::{definitions, formulas, measured, packing};
 use std::sync::Arc;
 
-/// Measures all figures. P17 and the number of draws with bins are measured on each of the scenes. `finished` is called
-/// with the number of finished steps and the number of all steps.
+/// Measures all figures. Figure P17 (the percentage of occupied tiles) and the number of draws with bins are measured
+/// on each of the scenes. `finished` is called with the number of finished steps and the number of all steps.
 ///
 /// # Errors
 ///

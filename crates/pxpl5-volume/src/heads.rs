@@ -1,8 +1,8 @@
 //! Comparison of two displays for a moving viewer: the volume, and a head-mounted display of the same latency.
 //!
-//! A volume does not move, so a moving viewer sees another side of the volume at once. The errors of a volume come from
-//! the positions of its voxels. A head-mounted display draws each picture for a past pose of the head, so its errors
-//! come from its latency.
+//! A volume does not move, so a moving viewer sees another side of the volume without delay. The errors of a volume
+//! come from the positions of its voxels. A head-mounted display draws each picture for a past pose of the head, so its
+//! errors come from its latency.
 //!
 //! # Behaviour
 //!
@@ -11,11 +11,11 @@
 //!   volume.
 //! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. For the head-mounted display, the error
 //!   is the angle between the drawn and the true position of a point. The point was drawn for the pose one latency ago.
-//!   For the volume, it is the angle between a point and the voxel that shows the point in the nearest slice.
+//!   For the volume, the error is the angle between a point and the voxel that shows the point in the nearest slice.
 //! - Dither makes the level of a colour correct only on average over a cell of the dither matrix. The study reports the
 //!   visual angle of this cell.
 //! - In pictures, each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn
-//!   for the pose of the eye one latency ago. It is shifted by the error of its middle.
+//!   for the pose of the eye one latency ago. This picture is then shifted by the error of its middle.
 //!
 //! # Not modelled
 //!
@@ -36,7 +36,8 @@ use tracking::Pose;
 use tracking::motion::Motion;
 use tracking::view::HmdView;
 
-/// Number of scene vertices at which errors are evaluated. It is assumed that more points would not change the mean.
+/// Number of scene vertices at which errors are evaluated. The number is assumed to be large enough: more points would
+/// not change the mean.
 pub const POINTS: usize = 512;
 
 /// Picoseconds in a second.
@@ -121,8 +122,9 @@ pub struct HeadComparison<'a> {
 
 impl Volume {
     /// Returns the latency with which the volume shows changes of the scene, in milliseconds. The latency is the
-    /// model's time for one volume, plus two mean waits. The waits are half a turn until strobe 0, and then a quarter
-    /// turn until the screen reaches the changed plane. Returns `None` if the volume was not drawn by a GPU.
+    /// model's time for one volume, plus two mean waits. The waits are half a turn until strobe 0 (the first flash of a
+    /// turn), and then a quarter turn until the screen reaches the changed plane. Returns `None` if the volume was not
+    /// drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;
@@ -331,7 +333,7 @@ impl<'a> HeadComparison<'a> {
     }
 }
 
-/// Returns the position of a point in a flat picture that the head sees. The picture has focal length 1, with x to the
+/// Returns the position of a point in a flat picture seen from the head. The picture has focal length 1, with x to the
 /// right and y down. Returns `None` if the point is behind the head.
 fn direction(head: &Pose, point: DVec3) -> Option<DVec2> {
     let seen = head.view_of(point);
@@ -359,14 +361,15 @@ fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     DMat4::from_scale(DVec3::splat(pixels_per_metre)) * turn * DMat4::from_translation(-middle)
 }
 
-/// Returns azimuth and elevation of a position in degrees, measured as for cameras.
+/// Returns azimuth and elevation of a position in degrees, as for cameras: the azimuth from +z to +x, the elevation
+/// above the horizon.
 fn around(place: DVec3) -> [f64; 2] {
     let level = libm::hypot(place.x, place.z);
     [libm::atan2(place.x, place.z).to_degrees(), libm::atan2(place.y, level).to_degrees()]
 }
 
 /// Returns vertices of the scene that the display can show, each with the voxel that shows it. The vertices are evenly
-/// spread over the scene's list.
+/// spread over the scene's list of vertices.
 fn points(volume: &Volume) -> Vec<[DVec3; 2]> {
     let shown: Vec<DVec3> = volume
         .commands

@@ -18,7 +18,7 @@
 //! # Beyond the paper
 //!
 //! Connected coverage, mirrored strobes and the renderers of Pixel-Planes 5 are not in the paper. Every report lists
-//! the ones that it used ([`VolumeReport::beyond_paper`]).
+//! the features beyond the paper that it used ([`VolumeReport::beyond_paper`]).
 
 #![warn(missing_docs)]
 

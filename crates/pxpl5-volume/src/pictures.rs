@@ -67,7 +67,7 @@ impl Look {
         }
     }
 
-    /// Returns the picture with the given exposure. If none is given, the picture uses the result of
+    /// Returns the picture with the given exposure. Without a given exposure, the picture uses the result of
     /// [`Self::exposure`].
     ///
     /// # Errors
@@ -92,7 +92,7 @@ impl Look {
         Ok(self.light(volume, workers)?.exposure(BELOW_WHITE))
     }
 
-    /// Returns pictures of the volume from viewpoints on a circle around it, all with one exposure.
+    /// Returns pictures of the volume from viewpoints on a circle around the volume, all with one exposure.
     pub fn film<'a>(
         &self,
         volume: &'a Volume,
@@ -210,7 +210,8 @@ fn fill(picture: &mut RgbImage, [left, top]: [u32; 2], [width, height]: [u32; 2]
     }
 }
 
-/// Returns a slice with its tiles. Occupied tiles, which are sent, are lighter than empty ones. Drawn pixels are white.
+/// Returns a slice with its tiles. Occupied tiles, which are sent, are lighter than empty tiles. Drawn pixels are
+/// white.
 ///
 /// # Panics
 /// The same as [`halftoned`].
@@ -240,7 +241,7 @@ pub fn tiles_of_slice(volume: &Volume, slice: u32, tiling: Tiling) -> RgbImage {
     shown
 }
 
-/// Returns the pictures side by side as one picture, which is as high as the highest of them.
+/// Returns the pictures side by side as one picture, which is as high as the highest picture.
 #[must_use]
 pub fn beside(pictures: &[RgbImage]) -> RgbImage {
     grid(pictures, pictures.len().max(1) as u32)

@@ -7,7 +7,7 @@
 //!  bounds of renderers, ring, processors <--counted clocks and words---------------- colours of each region
 //! ```
 //!
-//! The emulated pixel arrays draw the slices, and the clocks are those of their instructions. Two methods compute the
+//! The emulated pixel arrays draw the slices, and their instructions determine the clocks. Two methods compute the
 //! number of volumes per second. [`SliceBounds`] has the time that each part of the machine needs if it never waits.
 //! [`simulate()`] sends the messages of the volume through the ring and the boards, event by event, and is never faster
 //! than the bounds.

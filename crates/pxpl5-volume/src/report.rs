@@ -70,8 +70,8 @@ pub struct VolumeReport {
     pub waste_percent: f64,
     /// Number of pixels lit in any colour, summed over all slices.
     pub lit_voxels: u64,
-    /// Connectedness of surfaces: percentage of samples on the intersections of mesh and slices that have a drawn pixel
-    /// beside them.
+    /// Connectedness of surfaces: percentage of shown samples, along the intersections of mesh and slices. A sample is
+    /// shown if its pixel, or one of the eight neighbouring pixels, is drawn.
     pub connected_percent: f64,
     /// Number of lit pixels in rings around the axis.
     pub brightness_by_radius: Brightness,
@@ -211,7 +211,7 @@ impl Volume {
         let stats = &self.frame.stats;
         let planes = &self.frame.planes;
         let settings = &self.settings;
-        // Time model and fragment counts are those of a GPU.
+        // The time model and the fragment counts apply only to a GPU.
         let fragments = self.bounds.is_none().then_some(stats);
         let time = self.bounds.is_none().then(|| self.time());
         VolumeReport {
@@ -258,7 +258,8 @@ impl Volume {
         }
     }
 
-    /// Returns the percentage of samples on the intersections of mesh and slices that have a drawn pixel beside them.
+    /// Returns the percentage of shown samples, along the intersections of mesh and slices. A sample is shown if its
+    /// pixel, or one of the eight neighbouring pixels, is drawn.
     #[must_use]
     pub fn connected_percent(&self) -> f64 {
         connected(&self.display, &self.commands, &self.frame).map_or(f64::NAN, |found| found.percent())

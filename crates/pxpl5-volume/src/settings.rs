@@ -12,7 +12,8 @@ use spatialgl::{
 
 /// All settings that determine a volume, and the numbers of its time model.
 ///
-/// [`Self::paper`] has the paper's values where the paper gives them. We chose the other values within their ranges.
+/// [`Self::paper`] has the values of the paper. Values that the paper does not give are assumed, each within a stated
+/// range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeSettings {
     /// Number of slices, width, height and spin of the display.
@@ -45,7 +46,7 @@ pub struct VolumeSettings {
     pub draw: DrawNumbers,
     /// Rule for the pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Rule for the slices of a turn that are drawn, and those that are mirrored copies.
+    /// Rule that determines which slices of a turn are drawn, and which slices are mirrored copies.
     pub strobes: Strobes,
     /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,
@@ -55,7 +56,7 @@ pub struct VolumeSettings {
     pub renderer: RendererKind,
     /// Rates and times of the host and its GPU.
     pub gpu: GpuTiming,
-    /// Position of the viewer before the display. It has no influence on the volume.
+    /// Position of the viewer before the display. The position has no influence on the volume.
     pub viewer: ViewerNumbers,
 }
 

@@ -3,8 +3,8 @@
 use spatialgl::{Task, Workers};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A wrapper of workers. After each task, it calls a function with the number of finished tasks and the number of all
-/// tasks.
+/// A wrapper of workers, which calls a function after each task. The arguments are the number of finished tasks and the
+/// number of all tasks.
 pub struct Counted<'a> {
     inner: &'a dyn Workers,
     finished: &'a (dyn Fn(u64, u64) + Sync),

@@ -160,7 +160,7 @@ fn bounds_follow_from_counts() {
     let bounds = SliceBounds { work: RendererWork::default(), tiles: 11_405, tile_words: 128, copies: 0 };
     let row = bounds.with(1, 1);
     assert!((row.ms[1] - 11_405.0 * 7.2e-3 / 8.0).abs() < 1e-9 && (row.ms[1] - 10.3).abs() < 0.05, "{row:?}");
-    // All of them arrive at the display's one port.
+    // All messages arrive at the display's one port.
     assert!((row.ms[2] - 11_405.0 * 7.2e-3).abs() < 1e-9 && (row.ms[2] - 82.0).abs() < 0.5, "{row:?}");
     assert_eq!(row.limited_by, "port");
     let work = RendererWork { clocks: 4_000_000_000, triangles: 1_000, commands: 1_000, ..RendererWork::default() };

@@ -1,5 +1,5 @@
-// A second worker with machines of its own, for work that takes long. The run goes on beside it, and its memory is apart from the
-// checkpoints of the run.
+// A second worker with its own machines, for long work. The run continues at the same time, and checkpoints of the run do not contain
+// the memory of this worker.
 
 let worker = null;
 let asked = new Map();
@@ -23,8 +23,8 @@ export function endAside() {
   fail("other machines were built meanwhile");
 }
 
-/** Builds machines in a new worker; `runs` and `files` are those of the request `build` of worker.js. Returns a function that asks
- *  this worker. */
+/** Builds machines in a new worker. `runs` and `files` are as in the request `build` of worker.js. Returns a function that sends
+ *  requests to this worker. */
 export async function buildAside({ runs, files }) {
   endAside();
   worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });

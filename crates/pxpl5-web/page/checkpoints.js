@@ -3,7 +3,7 @@
 // Between two requests, all state of the machines is in the memory of WebAssembly. A copy of this memory is therefore a whole
 // checkpoint. Only the newest copy is whole. Each older checkpoint has the pages that differ from the next newer one.
 
-/** Bytes that are compared and kept together. */
+/** Bytes of a page, the unit in which memories are compared and stored. */
 const PAGE = 4096;
 const WORDS = PAGE / 4;
 
@@ -11,14 +11,14 @@ const WORDS = PAGE / 4;
 const LIMITS = {
   /** Time between two checkpoints. */
   every: 1e12,
-  /** Milliseconds of computing after which a checkpoint is due too, so that slow machines also go back soon. */
+  /** Milliseconds of computing after which a checkpoint is due too. So a step back also takes a short time on slow machines. */
   work: 500,
-  /** Most bytes of the pages of older checkpoints together, except that one older checkpoint always stays. The newest checkpoint
-   *  needs as many bytes as the memory. */
+  /** Maximum sum of the bytes of older checkpoints. One older checkpoint always remains, even if it exceeds the maximum. The newest
+   *  checkpoint needs as many bytes as the memory. */
   bytes: 160e6,
-  /** Most checkpoints. */
+  /** Maximum number of checkpoints. */
   count: 64,
-  /** Most bytes that can be lost. After a return to a time when the memory was smaller, the allocator cannot use the rest. */
+  /** Maximum number of lost bytes. After a return to an instant with a smaller memory, the allocator cannot use the rest of the memory. */
   lost: 128e6,
 };
 
@@ -33,19 +33,19 @@ export class Checkpoints {
 
   /** Discards all checkpoints, for example because other machines were built. */
   clear() {
-    /** Checkpoints, the oldest first: the instant, what the caller notes with it, the size of the memory, and the pages that turn
-     *  the next newer checkpoint into this one. */
+    /** Checkpoints, the oldest first. Each has the instant, the note of the caller, the size of the memory, and the pages that turn the
+     *  next newer checkpoint into this checkpoint. */
     this.all = [];
     this.newest = new Uint8Array(0);
   }
 
-  /** Bytes of the pages of older checkpoints. */
+  /** Sum of the bytes of older checkpoints. */
   get bytes() {
     return this.all.reduce((sum, { pages }) => sum + pages.size * PAGE, 0);
   }
 
-  /** Takes a checkpoint at an instant if one is due, and returns true if it was taken. `note` is returned by `back`. `worked` is the
-   *  number of milliseconds of computing since the last checkpoint. */
+  /** Takes a checkpoint at an instant if a checkpoint is due. Returns true if a checkpoint was taken. `back` returns the `note`. `worked`
+   *  is the number of milliseconds of computing since the last checkpoint. */
   take(at, note, worked = 0) {
     const last = this.all.at(-1);
     if (last && (at <= last.at || (at < last.at + this.limits.every && worked < this.limits.work))) return false;
@@ -63,7 +63,7 @@ export class Checkpoints {
       let word = page * WORDS;
       while (word < end && now[word] === before[word]) word += 1;
       if (word === end) continue;
-      // The old page leads back to the checkpoint before, if there is one.
+      // The previous checkpoint keeps the old content of a changed page.
       if (page * PAGE < (last?.size ?? 0)) pages.set(page, this.newest.slice(page * PAGE, (page + 1) * PAGE));
       this.newest.set(bytes.subarray(page * PAGE, (page + 1) * PAGE), page * PAGE);
     }
@@ -72,8 +72,9 @@ export class Checkpoints {
     return true;
   }
 
-  /** Removes checkpoints until the limits hold: those that lie closest together, relative to their age. Recent ones stay dense. Of
-   *  three checkpoints the oldest is removed, because building the machines again also leads to the start. */
+  /** Removes checkpoints until the limits hold. The checkpoint with the smallest distance to its neighbours, relative to its age, is
+   *  removed first, so recent checkpoints stay close together. Of three checkpoints the oldest is removed, because new machines also
+   *  begin at the start. */
   thin(now) {
     const { bytes, count, every } = this.limits;
     while (this.all.length > 2 && (this.all.length > count || this.bytes > bytes)) {
@@ -82,14 +83,14 @@ export class Checkpoints {
       if (this.all.length > 3) for (let n = 1; n < this.all.length - 1; n += 1) if (closest === 0 || gap(n) < gap(closest)) closest = n;
       const [gone] = this.all.splice(closest, 1);
       if (closest === 0) continue;
-      // The checkpoint before is reached across the one that is gone.
+      // The previous checkpoint takes over the pages of the removed checkpoint.
       const older = this.all[closest - 1];
       for (const [page, content] of gone.pages) if (!older.pages.has(page) && page * PAGE < older.size) older.pages.set(page, content);
     }
   }
 
-  /** Puts the memory back to the last checkpoint at or before an instant. Later checkpoints are discarded. Returns `{ at, note }`, or
-   *  null without such a checkpoint. */
+  /** Restores the memory from the last checkpoint at or before an instant, and discards later checkpoints. Returns `{ at, note }`, or null
+   *  without such a checkpoint. */
   back(to) {
     const found = this.all.findLastIndex(({ at }) => at <= to);
     if (found < 0) return null;

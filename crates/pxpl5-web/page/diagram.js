@@ -1,4 +1,4 @@
-// The block diagram: boards around the ring, coloured by what they do, and messages that move at a visible speed.
+// The block diagram: boards around the ring with the colours of their stages, and messages that move at a visible speed.
 
 const SVG = "http://www.w3.org/2000/svg";
 const make = (name, given = {}, ...inner) => {
@@ -7,7 +7,7 @@ const make = (name, given = {}, ...inner) => {
   return element;
 };
 
-/** What a board does, in words for the legend. The first word is the class of its colour. */
+/** Stages of boards. The first text is the CSS class of the colour, and the second text is for the legend. */
 const STAGES = [
   ["waits", "waits"],
   ["send", "sends the pose of the head"],
@@ -16,14 +16,14 @@ const STAGES = [
   ["render", "RENDER: sends or executes drawing commands"],
   ["copy", "COPY: moves finished pixels"],
 ];
-/** Milliseconds in which a message crosses the diagram, however fast the machine runs. */
+/** Milliseconds in which a message crosses the diagram, at any speed of the machine. */
 const CROSSING = 900;
-/** Most messages that move at one time. */
+/** Maximum number of messages that move at the same time. */
 const MOST = 24;
 
 const kindOf = (name) => name.split(" ")[0];
 
-/** What a message carries, as far as its ends tell. */
+/** Returns the stage of a message, as far as it follows from the sender and the receiver. */
 function cargo({ from, to }) {
   const ends = `${kindOf(from)} ${kindOf(to)}`.toLowerCase();
   if (ends.startsWith("host")) return "send";
@@ -43,18 +43,18 @@ function label(name) {
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 export class Diagram {
-  /** Draws into a place; `choose` is called with the name of a board that is chosen. */
+  /** Draws into the element `place`. `choose` is called with the name of a chosen board. */
   constructor(place, legend, choose) {
     this.place = place;
     this.choose = choose;
     this.boards = new Map();
     this.moving = [];
     const chips = STAGES.map(([name, words]) => make("span", { className: "key" }, make("i", { className: `chip ${name}` }), ` ${words}`));
-    legend.replaceChildren(...chips, make("span", { className: "key" }, make("i", { className: "chip dot note" }), " a dot is a message, slowed down to be seen"));
+    legend.replaceChildren(...chips, make("span", { className: "key" }, make("i", { className: "chip dot note" }), " a dot is a message, slowed down to be visible"));
     new ResizeObserver(() => this.layOut()).observe(place);
   }
 
-  /** Begins again with the boards of another machine. */
+  /** Removes the boards, for example before another machine is drawn. */
   clear() {
     this.boards.clear();
     this.moving = [];
@@ -64,14 +64,14 @@ export class Diagram {
     this.place.append(this.ring);
   }
 
-  /** Boards stand at equal distances on a rounded rectangle, in the order in which they hand work on. */
+  /** Arranges the boards at equal distances around a rectangle, in the order in which a picture passes them. */
   layOut() {
     const count = this.boards.size;
     if (count === 0 || !this.ring) return;
     const [width, height] = [this.place.clientWidth, this.place.clientHeight];
     if (width === 0) return;
     const names = [...this.boards.keys()];
-    // Short names where boards are small.
+    // On a narrow page, boards have short names.
     names.forEach((name) => (this.boards.get(name).button.firstChild.textContent = width < 600 ? label(name).replace("Renderer", "Rend.").replace("Frame buffers", "Frames") : label(name)));
     const first = this.boards.get(names[0]).button;
     const inset = [first.offsetWidth / 2 + 4, first.offsetHeight / 2 + 4];
@@ -93,7 +93,7 @@ export class Diagram {
       board.button.style.left = `${board.at[0]}px`;
       board.button.style.top = `${board.at[1]}px`;
     });
-    // The ring itself lies within, and each board is plugged into it.
+    // The ring is inside the rectangle of boards, and a line connects each board to the ring.
     const gap = [inset[0] + 26, inset[1] + 26];
     this.box = [gap[0], gap[1], width - 2 * gap[0], height - 2 * gap[1]];
     this.ring.setAttribute("viewBox", `0 0 ${width} ${height}`);
@@ -120,13 +120,13 @@ export class Diagram {
     this.ring.replaceChildren(...plugs, ...rings, words, this.dots);
   }
 
-  /** The point of the ring that is nearest to a place. */
+  /** Returns the point of the ring that is nearest to a position. */
   nearest([x, y]) {
     const [left, top, width, height] = this.box;
     return [Math.min(Math.max(x, left), left + width), Math.min(Math.max(y, top), top + height)];
   }
 
-  /** Shows what each board does now, and begins to move new messages. */
+  /** Shows the current stage of each board, and starts to move new messages. */
   draw({ boards, messages, channels }, chosen) {
     if (boards.some((board) => !this.boards.has(board.name)) || boards.length !== this.boards.size) {
       this.clear();
@@ -154,7 +154,7 @@ export class Diagram {
       const word = stage === "waits" ? "waits" : stage === "note" ? "works" : stage.toUpperCase();
       if (does.textContent !== word) does.textContent = word;
     }
-    // Those on a channel now, then those that have crossed since the last look.
+    // First the messages that are on a channel now, then the messages that have ended since the last drawing.
     const news = [...onRing.map((message) => ({ ...message, key: `${message.from}>${message.to}` })), ...(messages ?? [])];
     for (const message of news) {
       if (this.moving.length >= MOST) break;
@@ -188,7 +188,7 @@ export class Diagram {
       dot.remove();
       this.moving = this.moving.filter((other) => other !== entry);
     };
-    // With reduced motion a message stands in the middle of its way for as long.
+    // With reduced motion, a message stays in the middle of its path for the same time.
     if (still.matches) {
       place(0.5);
       return void setTimeout(end, CROSSING);
@@ -203,7 +203,7 @@ export class Diagram {
     requestAnimationFrame(tick);
   }
 
-  /** Corners of the ring between two points of it, the shorter way round. */
+  /** Returns the corners between two points of the ring, along the shorter path. */
   corners(from, to) {
     const [left, top, width, height] = this.box;
     const all = [[left, top], [left + width, top], [left + width, top + height], [left, top + height]];

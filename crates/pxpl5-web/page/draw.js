@@ -1,4 +1,4 @@
-// Drawing of what the machines show: pictures, boards, latencies.
+// Drawing of the results of the machines: pictures, boards, latencies.
 
 const make = (name, given = {}, ...inner) => {
   const element = Object.assign(document.createElement(name), given);
@@ -6,20 +6,20 @@ const make = (name, given = {}, ...inner) => {
   return element;
 };
 
-/** A span for reading: whole milliseconds from 100 on, otherwise three digits. */
+/** Returns a time as text: whole milliseconds from 100 on, otherwise three digits. */
 export function inMs(ms) {
   if (Math.abs(ms) >= 100) return `${Math.round(ms).toLocaleString("en")} ms`;
   return `${ms.toFixed(Math.abs(ms) >= 10 ? 1 : 2)} ms`;
 }
 
-/** Numbers of a board's description for reading: 31.3 ms, not 31332.000 us. */
+/** Returns the description of a board with readable numbers: 31.3 ms, not 31332.000 us. */
 export function humane(text) {
   return text
     .replace(/(\d+\.\d{3}) us/g, (_, us) => (Number(us) >= 1000 ? inMs(Number(us) / 1000) : `${Number(us).toFixed(1)} us`))
     .replace(/\b(\d{4,}) bytes/g, (_, bytes) => `${Number(bytes).toLocaleString("en")} bytes`);
 }
 
-/** Bytes of a picture into a canvas of its size. */
+/** Draws the bytes of a picture into a canvas of the same size. */
 export function picture(canvas, bytes) {
   if (bytes.length !== 4 * canvas.width * canvas.height) return;
   canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(bytes.buffer), canvas.width, canvas.height), 0, 0);
@@ -32,24 +32,24 @@ function canvasOf(width, height, label) {
   return canvas;
 }
 
-/** Names of pipelines as the papers write them. */
+/** Names of pipelines as in the papers. */
 const NAMES = { slats: "Slats", "rendering-control": "Rendering Control", frameless: "Frameless rendering" };
 const FAMILIES = [["jitp-", "Just-in-time pixels"], ["arp-", "Address recalculation"]];
 
-/** The name of a pipeline for reading; variants of a family keep their key beside it. */
+/** Returns the name of a pipeline as in the papers. A variant of a family has its key in brackets. */
 export function nameOf(pipeline) {
   const family = FAMILIES.find(([begin]) => pipeline.startsWith(begin));
   return NAMES[pipeline] ?? (family ? `${family[1]} (${pipeline})` : pipeline);
 }
 
-/** A row of pictures for each machine; `record` is told of each canvas that a head can be dragged on. */
+/** Makes a row of pictures for each machine. `record` is called with each canvas on which a visitor can turn the head. */
 export function layOutEyes(place, states, names, record) {
   const machines = states.map((state, n) => {
     const eyes = state.surfaces.map(({ label, width, height }) => {
       const canvas = canvasOf(width, height, `What the beam has drawn: ${label}`);
       canvas.tabIndex = 0;
       record(canvas);
-      // Wire frame, beam and regions lie over the picture.
+      // This canvas has wire frame, beam and regions, and lies over the picture.
       const over = make("canvas", { width, height, className: "over" });
       over.setAttribute("aria-hidden", "true");
       const ideal = canvasOf(width, height, `Ideal picture: ${label}`);
@@ -75,12 +75,12 @@ export function layOutEyes(place, states, names, record) {
 /** Colours of regions by stage, the same as in the block diagram. */
 const REGION_COLOURS = { render: "#7fd6a8", copy: "#ffd166" };
 
-/** Draws over a picture: the wire frame of the world now, regions that are drawn or copied, and the beam's line (null for none). */
+/** Draws over a picture: the wire frame of the world, regions that are drawn or copied, and the line of the beam (null for none). */
 export function drawOver(over, { wire, regions, line }) {
   const context = over.getContext("2d");
   context.clearRect(0, 0, over.width, over.height);
   if (wire?.length === 4 * over.width * over.height) {
-    // Lines of several pixels, so that they are seen in a small picture.
+    // Lines are several pixels wide, so they are visible in a small picture.
     const lines = new OffscreenCanvas(over.width, over.height);
     lines.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(wire.buffer), over.width, over.height), 0, 0);
     const thick = Math.max(1, Math.round((1.6 * over.width) / Math.max(1, over.clientWidth)));
@@ -89,11 +89,11 @@ export function drawOver(over, { wire, regions, line }) {
   context.lineWidth = Math.max(3, over.width / 160);
   for (const { stage, works, rectangle: [left, top, width, height], lines: [first, step] } of regions ?? []) {
     const box = [left, first + top * step, width, Math.max(2, height * step)];
-    // A region whose renderer waits has only a frame.
+    // If the renderer of a region waits, the region has only a frame.
     context.fillStyle = `${REGION_COLOURS[stage]}${works ? "59" : "00"}`;
     context.fillRect(...box);
     context.strokeStyle = REGION_COLOURS[stage];
-    // Dashes tell the stages apart without colours.
+    // Dashes distinguish the stages without colours.
     context.setLineDash(stage === "render" ? [over.width / 40, over.width / 80] : []);
     context.strokeRect(...box);
   }
@@ -117,7 +117,7 @@ export function drawRing(place, channels) {
 
 const PLACES = { processor: "processors", renderer: "renderers", display: "displays" };
 
-/** A card for each board, made when it is first seen. */
+/** Shows a card for each board. A new board gets a new card. */
 export function drawBoards({ boards, renderers }, chosen, choose) {
   const numbers = { processor: 0, renderer: 0, display: 0 };
   for (const board of boards) {
@@ -149,10 +149,10 @@ function card(board, choose) {
   return button;
 }
 
-/** Height of the place for a title above a timeline's rows, which it has none of here. */
+/** Height of the space for a title above the rows of a timeline. On the page, timelines have no title. */
 const UNTITLED = 42;
 
-/** A drawing of its own, whose style reaches nothing else of the page. */
+/** Shows a timeline in a shadow root, so its style does not affect the rest of the page. */
 export function drawTimeline(place, svg) {
   const root = place.shadowRoot ?? place.attachShadow({ mode: "open" });
   root.innerHTML = `<style>svg { display: block; width: 100%; min-width: 720px; max-width: 1400px; height: auto; margin: 0 auto }</style>${svg}`;
@@ -165,14 +165,14 @@ export function drawTimeline(place, svg) {
   drawing.removeAttribute("height");
 }
 
-/** Keeps the exact number beside the rounded one, for those who point at it. */
+/** Stores the exact time, which appears when the visitor points at the rounded time. */
 const exact = (element, ms) => {
   element.dataset.ms = ms;
   element.title = `${ms} ms`;
   return element;
 };
 
-/** A bar for each of the last pictures, its parts beside each other; the numbers of the last one as a table. */
+/** Draws a bar with the parts of the latency for each of the last pictures, and a table with the parts of the last picture. */
 export function drawLatency(place, machines, names) {
   const longest = Math.max(1, ...machines.flatMap((machine) => machine.latencies.pictures.map((one) => one.total_ms)));
   place.replaceChildren(...machines.map((machine, n) => {
@@ -197,14 +197,14 @@ export function drawLatency(place, machines, names) {
   }));
 }
 
-/** Faces in the cross of the worker: name, column and row. */
+/** Faces in the unfolded cube: name, column and row. */
 const FACES = [["above", 1, 0], ["left", 0, 1], ["ahead", 1, 1], ["right", 2, 1], ["behind", 3, 1], ["below", 1, 2]];
 
-/** The six faces that each eye's display memory shows. */
+/** Draws the six faces of each eye's display memory. */
 export function drawFaces(place, faces, eyes = 2) {
   if (place.children.length === 0) {
     place.append(...["left", "right"].map((eye) =>
-      make("figure", {}, canvasOf(512, 384, `Six faces around the ${eye} eye, as an unfolded cube: left, ahead, right and behind in a row, above and below`), make("figcaption", { textContent: `around the ${eye} eye; where a face is black, nothing has been drawn` }))));
+      make("figure", {}, canvasOf(512, 384, `Six faces around the ${eye} eye, as an unfolded cube: left, ahead, right and behind in a row, above and below`), make("figcaption", { textContent: `around the ${eye} eye; black parts of a face have not been drawn` }))));
   }
   faces.forEach((bytes, eye) => {
     place.children[eye].hidden = bytes.length === 0 || eye >= eyes;

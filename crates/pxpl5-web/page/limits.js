@@ -1,4 +1,4 @@
-// What limits a run: the waits of its last pictures, how busy its boards are, and what would fit if nothing is shown.
+// The limits of a run: the waits of the last pictures, the use of the boards, and the number of triangles that the machine can show.
 import { inMs, nameOf } from "./draw.js";
 
 const make = (name, given = {}, ...inner) => {
@@ -7,12 +7,12 @@ const make = (name, given = {}, ...inner) => {
   return element;
 };
 
-/** A share of 0 to 1 for reading. What was not measured has a dash. */
+/** Returns a share of 0 to 1 as text. A share that was not measured is a dash. */
 export const percent = (share) => (typeof share === "number" && Number.isFinite(share) ? `${(100 * share).toFixed(share > 0 && share < 0.01 ? 1 : 0)} %` : "-");
 
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
-/** Rows of how busy boards are: name, share, and what is known besides. */
+/** Returns a row for each kind of board: name, share of busy time, and details. */
 function busyRows({ host, gps, renderers, ring, ports }) {
   const idle = ({ idle: count }) => (count > 0 ? `, ${count} idle` : "");
   const most = (kind, shares) => `busiest: ${kind} ${shares.busiest} with ${percent(shares.max)}${idle(shares)}`;
@@ -27,7 +27,7 @@ function busyRows({ host, gps, renderers, ring, ports }) {
 }
 
 function pathPart(path) {
-  if (!path) return [make("p", { textContent: "No complete picture has been shown yet, so nothing is known of its waits." })];
+  if (!path) return [make("p", { textContent: "No complete picture has been shown yet, so there are no waits to show." })];
   const bar = make("div", { className: "stack" }, ...path.parts.map(({ what, share }, n) => {
     const piece = make("i", { className: `part${n}`, title: `${what}: ${percent(share)}` });
     piece.style.width = `${100 * share}%`;
@@ -51,23 +51,23 @@ function busyPart(utilisation) {
   return [make("table", {}, make("caption", { textContent: "Share of the time since the start for which boards were busy" }), head, make("tbody", {}, ...rows))];
 }
 
-/** The waits of the last pictures and the use of the boards, for each machine. */
+/** Shows the waits of the last pictures and the use of the boards, for each machine. */
 export function drawLimits(place, machines, names) {
   place.replaceChildren(...machines.map(({ limits: { path, utilisation } }, n) =>
     make("div", {}, ...(machines.length > 1 ? [make("h3", { textContent: nameOf(names[n]) })] : []), ...pathPart(path), ...busyPart(utilisation))));
 }
 
-/** What "in time" means for a pipeline, as far as it has a deadline of its own. */
+/** Returns the meaning of "in time" for a pipeline with a deadline of its own, or an empty text. */
 function deadlineOf(name) {
   if (name === "slats") return " (within one field, a sixtieth of a second)";
   return name.startsWith("jitp") ? " (before the beam reaches its lines)" : "";
 }
 
-/** Says why a machine shows nothing, and what would fit: `found` is the answer of the worker, null before it has come. `use` is called
- *  with a number of triangles to build. */
+/** Shows the reason for which a machine shows no picture, and the number of triangles that it could show. `found` is the answer of the
+ *  worker, or null before the answer. `use` is called with a number of triangles to build. */
 export function drawHeavy(place, name, found, use) {
-  const why = `${nameOf(name)} finishes no picture in time${deadlineOf(name)}, so its screen is empty, unfinished or too old. `;
-  if (found === null) return place.replaceChildren(why, "Looking for the number of triangles that would fit ...");
+  const why = `${nameOf(name)} finishes no picture in time${deadlineOf(name)}, so its screen is empty, incomplete or too old. `;
+  if (found === null) return place.replaceChildren(why, "Searching for the number of triangles that would be in time ...");
   const { primitives, in_time: fits } = found;
   const has = `The scene has ${primitives.toLocaleString("en")} ${primitives === 1 ? "triangle" : "triangles"}. `;
   if (!fits) return place.replaceChildren(why, has, "Not even one triangle of this scene would be in time: choose another scene or pipeline.");

@@ -1,5 +1,5 @@
-// The page: stories, and the laboratory with settings from the form or the address; a run in pieces, and what there is to see of
-// it between them.
+// The page: stories, and the laboratory with settings from the form or the address. A worker runs the machines in short pieces, and
+// the page shows the state between two pieces.
 import { buildAside, endAside } from "./aside.js";
 import { Live, Recorder, csv } from "./recording.js";
 import { drawBoards, drawFaces, drawLatency, drawOver, drawRing, drawTimeline, humane, inMs, layOutEyes, nameOf, picture } from "./draw.js";
@@ -13,30 +13,30 @@ import { FIRST_SCREEN, STORIES, inPs, storyOf } from "./stories.js";
 const at = (id) => document.getElementById(id);
 const form = at("settings");
 
-/** The settings that the address may have, in the order of the link. */
+/** Settings that the address can have, in the order of the link. */
 const KEYS = ["pipeline", "scene", "triangles", "display", "head.motion", "head.tracker", "head.predict", "level", "fields"];
 const FIRST = { pipeline: "slats", scene: "aircraft", display: "ntsc", fields: "3600" };
-/** What else the address may have. */
+/** Other keys that the address can have. */
 const OTHERS = ["beside", "motion", "at", "story", "step"];
-/** What a recording of the visitor is called in settings and files. */
+/** Name of a recording of the visitor, in settings and files. */
 const RECORDED = "recorded.csv";
-/** The same of a head that is moved while the machine runs. */
+/** Name of the motion of a head that the visitor moves while the machine runs. */
 const LIVE = "live.csv";
-/** Names of motions in the list, where the setting itself says too little. */
+/** Names of motions in the list, for settings that do not explain themselves. */
 const MOTION_NAMES = { "": "scene's own", [LIVE]: "live: you move it", "synthetic:1": "synthetic:1 (computed viewer)" };
-/** Most simulated time of one piece, picoseconds: four fields. */
+/** Maximum simulated time of one piece in picoseconds: four fields. */
 const LONGEST = 66.7e9;
-/** Milliseconds between two looks at boards and errors, and at timeline and latency. */
+/** Milliseconds between two updates of boards and errors, and of timeline and latency. */
 const BOARDS_EVERY = 100;
 const TIMELINE_EVERY = 500;
-/** The same for the waits and the use of boards, which take longer to compute. */
+/** Milliseconds between two updates of the waits and the use of boards, which take longer to compute. */
 const LIMITS_EVERY = 2000;
 
 let settings = {};
 let beside = "";
-/** What the visitor recorded, as the address has it. */
+/** Recording of the visitor, in the form of the address. */
 let motion = "";
-/** The head that is moved while the machine runs; null for another. */
+/** The head that the visitor moves while the machine runs; null for another head. */
 let live = null;
 /** The file that was dropped last: name and bytes. */
 let dropped = null;
@@ -46,22 +46,22 @@ let chosen = null;
 let pixel = null;
 let running = false;
 let looked = { boards: 0, timeline: 0, limits: 0 };
-/** What the machines were built from: `runs` and `files`. */
+/** Input from which the machines were built: `runs` and `files`. */
 let source = null;
-/** What the page shows: `start`, `story` or `lab`. */
+/** Mode of the page: `start`, `story` or `lab`. */
 let mode = "start";
-/** What is drawn besides the pictures: `wire`, `beam`, `regions`, `age`, `latency`, `faces`, `diagram`. */
+/** Visible parts besides the pictures: `wire`, `beam`, `regions`, `age`, `latency`, `faces`, `diagram`. */
 let show = new Set();
-/** Eyes of each machine that are drawn. */
+/** Number of eyes that are drawn for each machine. */
 let eyesShown = 2;
 /** Messages that began after this instant have not been drawn yet, picoseconds. */
 let messagesAfter = 0;
-/** What was seen last, for what is written down of it. */
+/** Last data of the machines, for texts and reports. */
 let seenLast = null;
 let lastTimeline = "";
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
-// The worker that has the machines.
+// The worker with the machines.
 
 let worker;
 let asked = new Map();
@@ -88,12 +88,12 @@ function ask(operation, given) {
   worker.postMessage({ id: numbers, operation, given });
   return new Promise((done, failed) => {
     asked.set(numbers, { done, failed });
-    // Tests wait until nothing is asked any more.
+    // Tests wait until no request is open.
     document.documentElement.dataset.asked = asked.size;
   });
 }
 
-/** Tells how much of the machine has come. */
+/** Shows the loaded share of the machine. */
 function loading(bytes, all) {
   const had = `${(bytes / 1e6).toFixed(1)} MB`;
   at("loading-says").textContent = all ? `Loading the machine: ${had} of ${(all / 1e6).toFixed(1)} MB` : `Loading the machine: ${had} so far`;
@@ -101,7 +101,7 @@ function loading(bytes, all) {
   else at("loading-share").removeAttribute("value");
 }
 
-/** Nothing can be computed: what is wrong, and what there is to see all the same. */
+/** Shows the reason for which the machine cannot start, and a link to the gallery. */
 function cannotStart(why) {
   const book = Object.assign(document.createElement("a"), { href: "../docs/gallery.html", textContent: "The gallery of the book" });
   at("loading").hidden = false;
@@ -121,7 +121,7 @@ function choices(name, all) {
   }));
 }
 
-/** Keys of the address that this page does not have. */
+/** Unknown keys of the address. */
 let unknown = [];
 
 function fromAddress() {
@@ -138,14 +138,14 @@ function intoForm() {
   for (const key of [...KEYS, "beside"]) {
     const field = form.elements[key];
     const value = (key === "beside" ? beside : settings[key]) ?? "";
-    // A setting of the address that the lists do not have, such as another number of triangles in a scene's name.
+    // The address can have a value that is not in the list, such as another number of triangles in the name of a scene.
     if (field.options && ![...field.options].some((option) => option.value === value)) field.add(new Option(value, value));
     field.value = value;
   }
   mark();
 }
 
-/** Marks settings that no machine has been built of yet. */
+/** Marks changed settings for which no machine has been built yet. */
 function mark() {
   const wanted = { ...fromForm(), beside: form.elements.beside.value };
   const built = { ...settings, beside };
@@ -154,7 +154,7 @@ function mark() {
   at("build").classList.toggle("main", names.length > 0);
   const chosen = ["scene", "pipeline", "head.motion"].map((key) => [form.elements[key].closest("label").textContent.trim().split(/\s/)[0], form.elements[key].selectedOptions[0]?.title]);
   at("about").textContent = chosen.filter(([, about]) => about).map(([name, about]) => `${name}: ${about.replace(/\.$/, "")}.`).join(" ");
-  at("changed").textContent = names.length > 0 ? "Changed: press Build, the pictures above are of the settings before." : "";
+  at("changed").textContent = names.length > 0 ? "Changed: press Build. The pictures above show the previous settings." : "";
 }
 
 function fromForm() {
@@ -162,13 +162,13 @@ function fromForm() {
   return Object.fromEntries(pairs.filter(([, value]) => value !== ""));
 }
 
-/** Settings of the experiment under a pipeline, with what follows from others: a display that turns with the head for its pipelines. */
+/** Returns the settings of the experiment under a pipeline. Some settings follow from others, for example the display from the pipeline. */
 function settingsOf(pipeline) {
   const all = { ...settings, pipeline };
   if (pipeline.startsWith("arp") !== (all.display === "arp")) all.display = pipeline.startsWith("arp") ? "arp" : "ntsc";
   if (!all["head.motion"]) ["head.tracker", "head.predict"].forEach((key) => delete all[key]);
   if (all["head.motion"]?.endsWith(".csv")) all["head.end"] = "hold";
-  // What is done now is not known ahead.
+  // The motion of the visitor cannot be predicted.
   if (all["head.motion"] === LIVE) all["head.predict"] = "none";
   return all;
 }
@@ -180,20 +180,20 @@ function say(message) {
   at("error").hidden = !message;
 }
 
-/** A fault of the emulator itself leaves nothing to go on with: a new worker is started. */
+/** Shows an error. After a fault of the emulator itself, a new worker starts. */
 async function refused(error) {
   if (error.broken) {
     await startWorker();
     machines = [];
     at("run").inert = true;
-    say(`The emulator has met a fault of its own (${error.message}). Build another experiment.`);
+    say(`The emulator itself has failed (${error.message}). Build another experiment.`);
     return;
   }
   say(error.message);
 }
 
-/** Builds the machines of the settings; what is wrong with them is said, and the machines before stay. `kept` is a live head that
- *  was moved before, whose samples the new machines are told again. */
+/** Builds machines for the settings. If a setting is wrong, the page shows the error, and the previous machines stay. `kept` is a live
+ *  head with earlier samples, which the new machines get again. */
 async function build(kept = null) {
   pause();
   await piece;
@@ -207,7 +207,7 @@ async function build(kept = null) {
   const begun = settings["head.motion"] === LIVE ? kept ?? new Live() : null;
   if (begun) files.push([LIVE, new TextEncoder().encode(csv("0,0"))]);
   const texts = pipelines().map((name) => Object.entries(settingsOf(name)).map(([key, value]) => `${key}=${value}`).join("\n"));
-  say(unknown.length > 0 ? `The link has ${unknown.map((key) => `"${key}"`).join(", ")}, which this page does not know: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
+  say(unknown.length > 0 ? `The link has ${unknown.map((key) => `"${key}"`).join(", ")}, which is unknown: expected ${[...KEYS, ...OTHERS].join(", ")}.` : "");
   unknown = [];
   document.body.dataset.busy = "true";
   endAside();
@@ -229,7 +229,7 @@ async function build(kept = null) {
   pixel = null;
   of = 0;
   at("board").textContent = "";
-  at("board-name").textContent = "Choose a board for its state";
+  at("board-name").textContent = "Choose a board to see its state";
   at("pixel").hidden = true;
   at("volume").hidden = true;
   at("volume-says").textContent = "";
@@ -242,7 +242,8 @@ async function build(kept = null) {
   return true;
 }
 
-/** Goes back to an instant: from the last checkpoint before it, or from the start where none is left. Both give the same run. */
+/** Goes back to an instant: from the last checkpoint before the instant, or from the start if there is no checkpoint. Both ways give the
+ *  same run. */
 async function rewind(to) {
   pause();
   await piece;
@@ -256,14 +257,14 @@ async function rewind(to) {
     await build(live);
     live?.again(to);
   }
-  // Tests see how much was run again.
+  // Tests read the repeated simulated time.
   document.documentElement.dataset.repeatedPs = to - reached;
   await go({ to });
 }
 
-// Looks.
+// Data for the page.
 
-/** What is to be seen at this moment: pictures always, the rest now and then, or all of it when the run stands. */
+/** Returns the data that the page needs now: always the pictures, and the other data at intervals. A paused run shows all data. */
 function wanted(now) {
   const stands = !running;
   const inLab = mode === "lab";
@@ -289,30 +290,30 @@ function wanted(now) {
   return want;
 }
 
-/** True if a part is to be seen: in the laboratory what the machine has, in a story what the step names. */
+/** Returns true if a part is visible. In a story, the step names the visible parts. */
 function shows(part) {
   if (mode !== "lab") return show.has(part);
   if (part === "wire") return at("show-wire").checked;
   if (part === "faces") return machines.memories > 0;
-  // At full speed the eye sees neither the beam nor a region.
+  // At full speed, the beam and the regions are too fast for the eye.
   if (part === "beam" || part === "regions") return !running || slowness() >= 30;
   return true;
 }
 
 let piece = Promise.resolve();
-/** Where the run stands, picoseconds. */
+/** Instant that the run has reached, in picoseconds. */
 let reached = 0;
-/** How far one step goes at most: an event is not later than the next field. */
+/** Maximum simulated time of one step in picoseconds. An event is not later than the next field. */
 const STEP = 35e9;
 
-/** Most simulated time that is run to an instant in one piece, picoseconds, so that the page can tell how far it is. */
+/** Maximum simulated time of one piece of a long run in picoseconds, so the page can show the progress. */
 const WAY = 2e12;
 
-/** One piece of a run, one at a time; what cannot go on is said. */
+/** Runs one piece after the previous piece has ended. Shows an error if the machine cannot continue. */
 function go(how) {
   piece = piece.then(async () => {
     try {
-      // A long way is gone in parts, of which only the last one is looked at.
+      // A long run consists of several pieces. The page shows only the state after the last piece.
       while (how.to !== undefined && !how.stop && how.to - reached > WAY) {
         const to = reached + WAY;
         const { machines: all } = await ask("go", { to, rows: live?.until(to) ?? null, note: live?.told, want: null });
@@ -335,7 +336,7 @@ function go(how) {
   return piece;
 }
 
-/** A time for reading; when time goes slowly or in steps, to the microsecond. */
+/** Returns a time as text. In slow runs and after steps, the text has microseconds. */
 function readable(ps) {
   const ms = ps / 1e9;
   const digits = ms < 10 || (mode === "lab" && (slowness() > 10 || stepped)) ? 3 : 0;
@@ -350,13 +351,13 @@ function draw(seen) {
   if (machines.length === 0) layOut(states);
   machines.forEach(({ eyes, age }, n) => {
     const { age: found, regions } = seen.machines[n];
-    // Without a sample of its own, a picture has no age.
+    // A picture without a measurement of its own has no age.
     if (found) age.replaceChildren(Object.assign(document.createElement("strong"), { textContent: inMs(found.age_ms) }), " old");
     else if (found === null) age.textContent = "";
     seen.machines[n].surfaces.forEach((surface, number) => {
       const { canvas, over, ideal, heat, numbers } = eyes[number];
       if (surface.seen) picture(canvas, surface.seen);
-      // All machines have the same head: the world's wire frame is that of the first.
+      // All machines have the same head, so the wire frame of the first machine is valid for all.
       const wire = surface.wire ?? seen.machines[0].surfaces[number]?.wire;
       const mine = regions?.filter((region) => region.surface === number);
       drawOver(over, { wire, regions: mine, line: shows("beam") ? states[n].line : null });
@@ -377,7 +378,7 @@ function draw(seen) {
   at("bytes").textContent = `${Math.round(seen.bytes / 1e6)} MB`;
   at("hash").textContent = states.map((one) => one.trace_hash).join(" ");
   const failed = states.find((one) => one.failure);
-  const says = failed ? `The machine cannot go on: ${failed.failure}` : state.over ? "All fields have been simulated. Begin again goes back to the first." : mode === "lab" ? state.last : null;
+  const says = failed ? `The machine cannot go on: ${failed.failure}` : state.over ? "All fields have been simulated. The button Begin again goes back to the first field." : mode === "lab" ? state.last : null;
   at("failure").textContent = says ?? "";
   at("failure").hidden = !says;
   at("failure").className = failed ? "wrong" : "";
@@ -393,7 +394,7 @@ function draw(seen) {
       at("board").textContent = humane(seen.board);
     }
     at("pixel").hidden = pixel === null;
-    if (pixel) at("pixel").textContent = seen.pixel || "Nothing has been drawn there yet, or there is no such pixel.";
+    if (pixel) at("pixel").textContent = seen.pixel || "Nothing has been drawn at this pixel yet, or the pixel does not exist.";
   }
   if (seen.timeline !== null) {
     lastTimeline = seen.timeline;
@@ -411,10 +412,10 @@ function draw(seen) {
   if ((failed || state.over) && running) pause();
 }
 
-/** What is known of the machine that shows nothing: its number and the answer of the second worker; null without such a machine. */
+/** The machine that shows no picture: its number and the answer of the second worker; null without such a machine. */
 let heavy = null;
 
-/** Says why a machine shows nothing and what would fit. The number is searched for once. */
+/** Shows the reason for which a machine shows no picture, and the number of triangles in time. The search for the number runs once. */
 async function tellHeavy(seen) {
   const number = seen.findIndex(({ missesAll, state }) => missesAll && !state.failure);
   at("heavy").hidden = number < 0;
@@ -432,12 +433,12 @@ async function tellHeavy(seen) {
     mine.found = await askAside("fitting", { of: number });
     if (heavy === mine) drawHeavy(at("heavy"), name, mine.found, use);
   } catch {
-    // Other machines were built, or the browser has no room for a second worker: the reason alone is told.
+    // Other machines were built, or the browser has no memory for a second worker. The page then shows only the reason.
     if (heavy === mine) at("heavy").textContent = `${nameOf(name)} finishes no picture in time. Choose fewer triangles.`;
   }
 }
 
-/** Says in words what the pictures show, for those who do not see them: when the run stands, not while it goes on. */
+/** Describes the pictures in words for screen readers, when the run is paused. */
 function describe() {
   machines.forEach(({ eyes }, n) => {
     const { state, age, surfaces } = seenLast.machines[n];
@@ -492,7 +493,7 @@ function choose(name) {
 }
 
 function drawLink(state) {
-  // What was moved while the machine ran is a recording now.
+  // The motion of a live head is now a recording.
   if (live) motion = live.text();
   const told = live ? { ...settings, "head.motion": RECORDED, "head.predict": "none" } : settings;
   const address = addressOf(told);
@@ -508,7 +509,7 @@ function drawLink(state) {
   drawNeeds();
 }
 
-/** The address of settings, without what a page does of itself. */
+/** Returns the address of settings, without the default settings of the page. */
 function addressOf(all) {
   const kept = KEYS.filter((key) => all[key] && (all[key] !== FIRST[key] || key === "pipeline")).map((key) => [key, all[key]]);
   const address = new URLSearchParams(kept);
@@ -517,7 +518,7 @@ function addressOf(all) {
   return address;
 }
 
-/** Files that the command needs beside it. */
+/** Names of the files that the command needs, as they were last shown. */
 let needed = "";
 function drawNeeds() {
   const recorded = (live || settings["head.motion"] === RECORDED) && !running ? motion : "";
@@ -530,7 +531,7 @@ function drawNeeds() {
     const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: RECORDED, textContent: RECORDED });
     at("needs").append(", beside the file ", link, ",");
   }
-  if (model) at("needs").append(`, beside your file ${model}, which the link cannot carry,`);
+  if (model) at("needs").append(`, beside your file ${model}, which the link does not contain,`);
 }
 
 // Running.
@@ -546,13 +547,13 @@ function pause() {
 const slowness = () => 10 ** Number(at("slower").value);
 const nextFrame = () => new Promise((done) => requestAnimationFrame(done));
 
-/** Number of runs that were begun or ended, by which a run sees that it is not the present one any more. */
+/** Number of starts and ends of runs. A run whose number differs is not the present run any more. */
 let runs = 0;
-/** True if the last thing was a step of an event or a line. */
+/** True if the last action was a step of an event or a line. */
 let stepped = false;
 
-/** Goes on by as much simulated time as has passed, divided by how much slower it shall be, as far as the computer comes: to an
- *  instant, or until something happens. Returns true if it got there. */
+/** Runs the machines at the chosen speed, to an instant (`end`) or an event (`stop`). A slow computer runs them more slowly. Returns true
+ *  if the run has reached its end. */
 async function run({ end = Infinity, stop = null } = {}) {
   if (machines.length === 0) return false;
   running = true;
@@ -582,7 +583,7 @@ async function run({ end = Infinity, stop = null } = {}) {
     }
   }
   if (mine !== runs && !isThere) {
-    // Paused by somebody: what stands is looked at whole.
+    // The visitor has paused the run, so the page shows all data.
     if (!running) await go({});
     return false;
   }
@@ -595,7 +596,7 @@ at("go").addEventListener("click", () => (running ? pause() : run()));
 at("rewind").addEventListener("click", () => rewind(0));
 at("back").addEventListener("click", back);
 
-/** Back by one field of the first display. */
+/** Goes back by one field of the first display. */
 async function back() {
   pause();
   await piece;
@@ -632,7 +633,7 @@ form.addEventListener("submit", async (event) => {
   settings = fromForm();
   beside = form.elements.beside.value;
   if (await build()) return remember();
-  // The machine before stays, and the form keeps what was wanted of it.
+  // The previous machines stay, and the form keeps the refused settings.
   ({ settings, beside } = before);
   mark();
 });
@@ -645,12 +646,12 @@ function remember() {
 
 // The visitor's own head and files.
 
-/** Milliseconds of turning that are recorded, and after which a device that reports none is known. */
+/** Milliseconds for which the motion of a device is recorded. Without a report in this time, the device has no orientation sensor. */
 const TILTED = 5000;
-/** Width of a picture in degrees, as a drag across it turns the head. */
+/** Angle in degrees by which a drag across the whole width of a picture turns the head. */
 const WIDE = 60;
 
-/** Has a canvas move the head while somebody drags across it, or record a motion where the head is not moved live. */
+/** Lets the visitor turn a live head by a drag across a canvas. With another head, the drag is recorded. */
 function record(canvas) {
   let recorder = null;
   let from = null;
@@ -690,7 +691,7 @@ async function follow(recorder) {
   settings["head.tracker"] ??= form.elements["head.tracker"].value || "optical";
   settings["head.predict"] ??= form.elements["head.predict"].value || "none";
   intoForm();
-  at("recorded").textContent = `Recorded ${(recorder.angles.length / 60).toFixed(1)} s. The machine follows it.`;
+  at("recorded").textContent = `Recorded ${(recorder.angles.length / 60).toFixed(1)} s. The machine replays this motion.`;
   if (await build()) {
     remember();
     run();
@@ -700,7 +701,7 @@ async function follow(recorder) {
 if (window.DeviceOrientationEvent && matchMedia("(pointer: coarse)").matches) at("tilt").hidden = false;
 at("tilt").addEventListener("click", async () => {
   const allowed = (await DeviceOrientationEvent.requestPermission?.()) ?? "granted";
-  if (allowed !== "granted") return say("The device does not let this page know how it is turned.");
+  if (allowed !== "granted") return say("The device does not give its orientation to this page.");
   const head = live ?? new Recorder();
   let from = null;
   const turned = ({ alpha, beta }) => {
@@ -710,8 +711,8 @@ at("tilt").addEventListener("click", async () => {
   };
   addEventListener("deviceorientation", turned);
   await new Promise((later) => setTimeout(later, TILTED));
-  if (from === null) say("This device reports no turning.");
-  // A live head is turned by the device until another machine is built.
+  if (from === null) say("This device reports no orientation.");
+  // The device turns a live head until another machine is built.
   else if (head === live) return;
   removeEventListener("deviceorientation", turned);
   if (from !== null) follow(head);
@@ -777,13 +778,13 @@ document.addEventListener("fullscreenchange", () => {
   at("full").textContent = isFull ? "Leave full screen" : "Full screen";
 });
 
-// What can be taken along.
+// Files to save.
 
 const stamp = () => `pxpl5-${pipelines().join("-and-")}-${Math.round(reached / 1e9)}ms`;
 
 at("save-picture").addEventListener("click", async () => save(await wholePicture(machines, eyesShown), `${stamp()}.png`));
 
-/** What was not measured is null. */
+/** Returns the report. A value that was not measured is null. */
 function report() {
   return {
     machines: pipelines().map((name, n) => {
@@ -823,13 +824,13 @@ at("copy").addEventListener("click", async () => {
     await navigator.clipboard.writeText(at("link").href);
     at("copied").textContent = "Copied.";
   } catch {
-    at("copied").textContent = "The browser does not let this page copy: use the link's menu.";
+    at("copied").textContent = "The browser does not allow this page to copy. Use the menu of the link.";
   }
 });
 
-/** Draws the volume in a second worker, and returns a function that asks this worker. */
+/** Starts the second worker for the volume, and returns a function that sends requests to this worker. */
 async function volumeWorker() {
-  // What would fit is searched for again when the machine is looked at next.
+  // This ends a search for the number of triangles. The search starts again at the next update.
   if (heavy && !heavy.found) heavy = null;
   return buildAside({ ...source, runs: source.runs.slice(0, 1) });
 }
@@ -837,11 +838,11 @@ spinningScreen({ volumeWorker, refused });
 
 // Stories.
 
-/** The story that is told, and its step. */
+/** The current story and its step. */
 let telling = null;
-/** Number of steps that were begun or left, by which a step sees that it is not the present one any more. */
+/** Number of starts and ends of steps. A step whose number differs is not the present step any more. */
 let turns = 0;
-/** Number of things that were waited for. */
+/** Number of events for which stories have waited. */
 let watches = 0;
 
 const slowDown = (times) => {
@@ -849,14 +850,14 @@ const slowDown = (times) => {
   at("factor").textContent = Math.round(slowness()).toLocaleString("en");
 };
 
-/** Has the head go on along a path that begins now. From where the head is it comes to the path bit by bit. */
+/** Moves the head along a path that begins now. The head approaches the path gradually from its present direction. */
 function move(path) {
   if (!live || !path) return;
   const [from, base] = [live.samples.length / 60, live.now.map((angle) => angle / 10)];
   live.path = (seconds) => path(seconds - from).map((angle, n) => angle + base[n] * Math.exp(-2 * (seconds - from)));
 }
 
-/** Runs a step to where it stops: at the speed of the step, or at once. */
+/** Runs a step to its end, at the speed of the step or as fast as possible. */
 async function perform(tale, number, isFast) {
   const step = tale.steps[number];
   move(step.path);
@@ -876,7 +877,7 @@ async function perform(tale, number, isFast) {
   return true;
 }
 
-/** Builds the machines of a story and brings them to the begin of a step. */
+/** Builds the machines of a story and runs them to the start of a step. */
 async function prepare(tale, number) {
   settings = { ...tale.settings };
   beside = tale.beside ?? "";
@@ -890,7 +891,7 @@ async function prepare(tale, number) {
   return true;
 }
 
-/** True if the machine has been loaded; before, there is nothing to tell of. */
+/** Returns true if the machine has been loaded. */
 const isReady = () => document.documentElement.dataset.ready === "true";
 
 async function tell(name, number, isNext = false) {
@@ -959,7 +960,7 @@ async function toStart() {
   first();
 }
 
-/** Runs the picture of the first screen, and again from the begin after its minute. */
+/** Runs the picture of the first screen. After a minute, the run begins again. */
 async function first() {
   const mine = turns;
   await run();

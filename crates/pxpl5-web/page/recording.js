@@ -1,6 +1,6 @@
-// A head motion that a visitor made: angles sixty times a second, in the address and as the recording that the command reads.
+// A head motion of a visitor: angles sixty times a second. The motion is stored in the address, and as a recording for the command.
 
-/** Samples a second, and most of them: 20 s. */
+/** Samples a second, and the maximum number of samples (20 s). */
 const RATE = 60;
 const MOST = 1200;
 
@@ -10,31 +10,32 @@ export class Recorder {
     this.angles = [[0, 0]];
   }
 
-  /** The head has turned so far since the begin, degrees to the left and upwards; what lies between two samples is held. */
+  /** Records a turn of the head since the start, in degrees to the left and upwards. Missing samples repeat the last sample. */
   turn(yaw, pitch) {
     const due = Math.min(Math.floor(((performance.now() - this.begun) / 1000) * RATE), MOST - 1);
     while (this.angles.length < due) this.angles.push(this.angles.at(-1));
     this.angles[due] = [yaw, pitch];
   }
 
-  /** As it stands in the address. */
+  /** Returns the motion as text for the address. */
   text() {
     return packed(this.angles.map((angles) => angles.map((angle) => Math.round(angle * 10))));
   }
 }
 
-/** Rows of a recording as pxpl5 reads it: samples of yaw and pitch in tenths of a degree, the first of which has this number. */
+/** Returns samples as rows of a recording for the command. Samples are yaw and pitch in tenths of a degree. `first` is the number of the
+ *  first sample. */
 function rows(samples, first) {
   const of = ([yaw, pitch], n) => {
     const [y, p] = [yaw, pitch].map((tenths) => (tenths * Math.PI) / 3600);
-    // First about y, then about the turned x.
+    // The first rotation is about y, and the second rotation is about the turned x axis.
     const q = [Math.cos(y) * Math.cos(p), Math.cos(y) * Math.sin(p), Math.sin(y) * Math.cos(p), -Math.sin(y) * Math.sin(p)];
     return [((first + n) / RATE).toFixed(6), 0, 0, 0, ...q.map((part) => part.toFixed(9))].join(",");
   };
   return `time_s,x,y,z,qw,qx,qy,qz\n${samples.map(of).join("\n")}\n`;
 }
 
-/** Digits of the packed form, six bits each: the lower five are of a number, the sixth says that more follow. */
+/** Digits of the packed form, six bits each. The lower five bits belong to a number, and the sixth bit is 1 if more digits follow. */
 const DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
 function digits(number) {
@@ -48,7 +49,7 @@ function digits(number) {
   return text;
 }
 
-/** Samples as short text: differences of one to the next, and the number of samples in which nothing changes. */
+/** Returns samples as short text: differences of successive samples, and numbers of samples without a change. */
 export function packed(samples) {
   const folded = (value) => (value < 0 ? -2 * value - 1 : 2 * value);
   let text = "~";
@@ -57,7 +58,7 @@ export function packed(samples) {
     let same = 0;
     while (n + same < samples.length && samples[n + same][0] === before[0] && samples[n + same][1] === before[1]) same += 1;
     if (same > 0) {
-      // Zero says that a number of equal samples follows.
+      // The number 0 marks a count of equal samples.
       text += digits(0) + digits(same);
       n += same;
       continue;
@@ -70,7 +71,7 @@ export function packed(samples) {
   return text;
 }
 
-/** Samples of a text in the address, packed or as pairs of decimal numbers; null for what is none. */
+/** Returns the samples of a text in the address, packed or as pairs of decimal numbers. Returns null for any other text. */
 export function samplesOf(text) {
   if (!text.startsWith("~")) {
     const samples = text.split("_").map((pair) => pair.split(",").map(Number));
@@ -106,30 +107,30 @@ export function samplesOf(text) {
   return samples.length > 0 && samples.length <= MOST ? samples : null;
 }
 
-/** The recording of a text in the address; null for what is none. */
+/** Returns the recording of a text in the address, or null for any other text. */
 export function csv(text) {
   const samples = samplesOf(text);
   return samples && rows(samples, 0);
 }
 
-/** A head that is moved while the machine runs: where it is now, and where it was at each sample of simulated time. */
+/** A head that a visitor moves while the machine runs, with its present angles and its angles at each sample of simulated time. */
 export class Live {
-  /** `path` is a function of seconds that moves the head until somebody takes it over; null for none. */
+  /** `path` is a function of seconds that moves the head until the visitor moves the head; null for none. */
   constructor(path = null) {
     this.path = path;
     this.samples = [[0, 0]];
     this.now = [0, 0];
-    /** Number of samples that the machines have. */
+    /** Number of samples that the machines have received. */
     this.told = 1;
   }
 
-  /** The head is turned so far, degrees to the left and upwards. */
+  /** Turns the head to angles in degrees, to the left and upwards. */
   turn(yaw, pitch) {
     this.path = null;
     this.now = [yaw, pitch].map((angle) => Math.round(angle * 10));
   }
 
-  /** The rows that are missing for a run to an instant, picoseconds; null where none is. */
+  /** Returns the rows that the machines need for a run to an instant in picoseconds, or null if they have all rows. */
   until(ps) {
     const first = this.told;
     const last = Math.ceil((ps * RATE) / 1e12) + 1;
@@ -142,14 +143,15 @@ export class Live {
     return rows(this.samples.slice(first, last + 1), first);
   }
 
-  /** Machines go back to an instant, where they have the first `told` samples. The same samples follow up to this instant. */
+  /** Prepares a return of the machines to an instant at which they have the first `told` samples. Up to this instant, the machines get
+   *  the same samples again. */
   again(ps, told = 1) {
     this.samples.length = Math.min(this.samples.length, Math.max(told, Math.ceil((ps * RATE) / 1e12) + 2));
     this.now = this.samples.at(-1);
     this.told = told;
   }
 
-  /** As it stands in the address; null where it has become too long for it. */
+  /** Returns the motion as text for the address, or null if the motion is too long for the address. */
   text() {
     return this.samples.length <= MOST ? packed(this.samples) : null;
   }

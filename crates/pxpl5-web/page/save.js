@@ -1,6 +1,6 @@
-// What can be taken along from the page.
+// Files that a visitor can save.
 
-/** Has the browser save a file. */
+/** Saves a file with the browser. */
 export function save(blob, name) {
   const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
   document.body.append(link);
@@ -9,7 +9,7 @@ export function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** All pictures of all machines beside each other, with what lies over them, as a PNG. */
+/** Returns the pictures of all machines side by side as a PNG, with wire frame, beam and regions. */
 export function wholePicture(machines, eyesShown) {
   const all = machines.flatMap(({ eyes }) => eyes.slice(0, eyesShown));
   const whole = document.createElement("canvas");

@@ -3,7 +3,7 @@ import { picture } from "./draw.js";
 
 const at = (id) => document.getElementById(id);
 
-/** Connects the part of the page: `volumeWorker` begins the worker that draws the slices, `refused` tells an error. */
+/** Connects the controls of the spinning screen. `volumeWorker` starts the worker that draws the slices, and `refused` shows an error. */
 export function spinningScreen({ volumeWorker, refused }) {
   let ask = null;
   at("volume-draw").addEventListener("click", async () => {

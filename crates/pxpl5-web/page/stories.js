@@ -1,6 +1,6 @@
-// The stories: experiments that run by themselves, stop where something happens, and say in two sentences what it is.
+// The stories. A story is an experiment that runs in steps. Each step stops at an interesting instant, and two sentences explain it.
 
-/** To and fro by some degrees, with a period in seconds, from where the head is when it begins. */
+/** A path that turns the head to the left and right by some degrees, with a period in seconds. */
 const swing = (degrees, period) => (seconds) => [degrees * Math.sin((2 * Math.PI * seconds) / period), 0];
 const rest = () => [0, 0];
 
@@ -8,9 +8,11 @@ const HEAD = { "head.motion": "live.csv", "head.tracker": "fastrak", "head.predi
 const MS = 1e9;
 
 /**
- * Each step has a title and two sentences. It runs `slower` than the machine for `ms` of simulated time, or until something
- * happens (`until`, at most for `ms`; then for `then` more, `thenSlower` than the machine), and says `paused`. `show` names what is drawn besides the
- * pictures. A step without a `path` of the head goes on with that of the step before. With `hand` it waits for the visitor.
+ * Each step has a `title` and two sentences (`say`). The step runs for `ms` of simulated time, `slower` times slower than the
+ * machine. With `until`, the step ends at an event, after at most `ms`. The step can then run for `then` more milliseconds,
+ * `thenSlower` times slower than the machine. At the end of the step, the page shows the sentence `paused`. `show` names the parts
+ * of the page that are visible besides the pictures. A step without a `path` continues the path of the previous step. With `hand`,
+ * the visitor moves the head.
  */
 export const STORIES = {
   lag: {
@@ -21,37 +23,37 @@ export const STORIES = {
     steps: [
       {
         title: "Two pictures of one world",
-        say: "The yellow wire frame is the world as it really is at this moment. The picture behind it is what the machine shows you in your headset.",
+        say: "The yellow wire frame is the world as it really is at this moment. The picture behind the wire frame is what the machine shows in your headset.",
         path: rest, ms: 700, show: ["wire", "age"],
-        paused: "The head is at rest, so picture and world agree.",
+        paused: "The head is at rest, so the picture agrees with the world.",
       },
       {
         title: "The head turns",
-        say: "Now the head swings to the left and to the right. The picture comes after the wire frame: it was drawn for the place where the head was before.",
+        say: "Now the head turns to the left and to the right. The picture lags behind the wire frame, because the machine drew it for an earlier pose of the head.",
         path: swing(18, 2), ms: 1050, slower: 2, show: ["wire", "age"],
-        paused: "Stopped in the middle of a turn: the gap between the lines and the picture is what you would see as swimming.",
+        paused: "The run has stopped in the middle of a turn. In a headset, this gap between world and picture makes the picture seem to swim.",
       },
       {
         title: "This is latency",
-        say: "The time from measuring the head to the light of the picture is called latency. The numbers under the pictures say how old each picture is, and the older it is, the wider the gap.",
+        say: "Latency is the time from the measurement of the head to the light of the picture. The number beside each name is the age of the picture: the older the picture, the wider the gap.",
         ms: 320, slower: 6, show: ["wire", "age"],
-        paused: "Compare the two ages: the same scene, the same head, the same boards.",
+        paused: "Compare the two ages. The scene, the head and the boards are the same.",
       },
       {
         title: "Where the time goes",
-        say: "Rendering Control, the first of the two, draws one eye after the other and hands a picture from stage to stage. Each stage takes its own time, and a finished picture still waits for the screen, which begins anew 60 times a second (a field).",
+        say: "Rendering Control draws one eye after the other, and each picture passes through several stages. A finished picture then waits for the next field of the screen, which begins every sixtieth of a second.",
         ms: 120, slower: 6, show: ["wire", "age", "latency"],
-        paused: "Each coloured piece of a bar is one stage, or one wait.",
+        paused: "Each coloured piece of a bar is a stage or a wait.",
       },
       {
-        title: "What Slats does about it",
-        say: "Slats keeps the whole screen in the drawing boards (renderers) at once, so that each triangle is drawn as soon as its place is known. All stages then fit into one field, a sixtieth of a second; the price is that only about 140 triangles fit.",
+        title: "How Slats is faster",
+        say: "Slats keeps the whole screen in the drawing boards (renderers), so each triangle is drawn as soon as its position is known. All stages fit into one field, but only for scenes of at most about 140 triangles.",
         ms: 320, slower: 6, show: ["wire", "age", "latency"],
-        paused: "The same turn, a smaller gap: the picture of Slats is younger.",
+        paused: "In the same turn, Slats has the smaller gap, because its picture is younger.",
       },
       {
         title: "Now you",
-        say: "Drag across a picture to turn the head, or focus it and use the arrow keys. In the laboratory you can change the scene, the pipeline and the tracker of this experiment.",
+        say: "Drag across a picture to turn the head, or move the focus to a picture and use the arrow keys. In the laboratory you can change the scene, the pipeline and the tracker of this experiment.",
         path: rest, ms: 600_000, slower: 1, show: ["wire", "age", "latency"], hand: true,
         paused: "",
       },
@@ -65,77 +67,77 @@ export const STORIES = {
     steps: [
       {
         title: "Boards on a ring",
-        say: "The machine is a set of computer boards, all plugged into one fast ring. Time runs thousands of times slower here, so that you can see a message travel.",
+        say: "The machine is a set of computer boards around a fast ring, over which the boards send messages. In this story, time runs up to 8,000 times slower, so you can follow the messages.",
         ms: 5, slower: 400, show: ["diagram", "regions"],
-        paused: "Boards that wait are grey; a board that works says what it does.",
+        paused: "Boards that wait are grey. Each board that works shows its stage.",
       },
       {
         title: "1. The pose of the head",
-        say: "The host reads the tracker and sends the position of the head to the graphics processors. From this moment on the picture is growing old.",
+        say: "The host reads the tracker and sends the pose of the head (position and direction) to the graphics processors. From the measurement of this pose on, the picture grows older.",
         until: "pose", ms: 200, slower: 60, then: 0.06, thenSlower: 8000, show: ["diagram", "regions", "age"],
-        paused: "The host's message is on the ring.",
+        paused: "The message of the host is on the ring.",
       },
       {
         title: "2. TRANSFORM",
-        say: "Each graphics processor (GP) takes its share of the triangles and works out where they fall on the screen. It sorts them into bins, one for each region of 128 by 128 pixels.",
+        say: "Each graphics processor (GP) computes the positions of its triangles on the screen. The GP then sorts the triangles into bins, one for each region of 128 by 128 pixels.",
         until: "transform", ms: 200, slower: 60, then: 0.25, thenSlower: 4000, show: ["diagram", "regions", "age"],
-        paused: "The GPs work side by side, while the renderers still hand over the picture before.",
+        paused: "The GPs work at the same time. The renderers still copy the previous picture.",
       },
       {
         title: "3. RENDER",
-        say: "A renderer has a tiny processor for each of its 16,384 pixels, and all of them obey one command at once. A dashed green frame in the picture marks a region whose triangles are being drawn now.",
+        say: "A renderer has a small processor for each of its 16,384 pixels, and all of these processors execute the same command together. A dashed green frame in the picture marks a region that a renderer draws now.",
         until: "draw", ms: 200, slower: 100, show: ["diagram", "regions", "age"],
-        paused: "The renderers draw new regions, while they still hand over the pixels of others.",
+        paused: "The renderers draw new regions while they still copy the pixels of other regions.",
       },
       {
         title: "4. COPY",
-        say: "Finished pixels go over the ring into the memory of the picture, one region at a time. A yellow frame marks the region that travels now, while renderers already draw others.",
+        say: "Finished regions go over the ring into the memory of the picture (the frame buffer), one at a time. A yellow frame marks the region that is copied now, while the renderers already draw other regions.",
         until: "copy", ms: 200, slower: 100, then: 1.5, thenSlower: 800, show: ["diagram", "regions", "age"],
-        paused: "The picture on the screen is still an older one.",
+        paused: "The screen still shows an older picture.",
       },
       {
         title: "5. Swap",
-        say: "When all regions of both eyes have arrived, the screen changes to the new picture at the start of its next field. Every stage before this one has added to its age.",
+        say: "When all regions of both eyes have arrived, the screen changes to the new picture at the start of the next field. Every earlier stage has added to the age of the picture.",
         until: "swap", ms: 300, slower: 20, show: ["diagram", "regions", "age", "latency"],
-        paused: "The new picture is on the screen, and it is already this old.",
+        paused: "The new picture is now on the screen. The number beside the name is its age.",
       },
     ],
   },
   race: {
     name: "Race the beam",
-    settings: { pipeline: "jitp-scanline", scene: "aircraft", triangles: "30", display: "ntsc", fields: "3600", "head.motion": "sine:20:0.5", "head.tracker": "fastrak", "head.predict": "none" },
+    settings: { pipeline: "jitp-scanline-racing", scene: "aircraft", triangles: "30", display: "ntsc", fields: "3600", "head.motion": "sine:20:0.5", "head.tracker": "fastrak", "head.predict": "none" },
     eyes: 1,
     begin: 300,
     steps: [
       {
         title: "A screen is drawn in lines",
-        say: "A television screen of that time does not light all at once. A beam draws it line by line from the top, sixty times a second.",
+        say: "A television screen of that time does not light all of its pixels at once. Sixty times a second, a beam draws lines from the top of the screen to the bottom.",
         until: "line", value: 150, ms: 60, slower: 60, show: ["beam"],
-        paused: "The bright line is the beam. Lines below it are still of the field before.",
+        paused: "The bright line is the beam. Below the beam, the screen still shows the previous field.",
       },
       {
         title: "Waiting costs time",
-        say: "A usual machine finishes the whole picture before the beam may start. So the last line is at least one field, 17 thousandths of a second, older than it needs to be.",
+        say: "Most machines finish the whole picture before the beam begins to draw it. So the last line is at least one field (17 thousandths of a second) older than necessary.",
         until: "line", value: 420, ms: 60, slower: 60, show: ["beam"],
-        paused: "So the bottom of a usual picture is a field older than its top needs to be.",
+        paused: "The beam is now near the bottom of the picture.",
       },
       {
         title: "Just in time",
-        say: "Here each line is drawn for the pose that the head will have when the beam is there. The pixels of a line arrive in the memory just before they light.",
+        say: "In this story, each line is drawn from the newest measurement of the head. The pixels of a line arrive in the memory just before the beam lights them.",
         until: "strip", value: 200, ms: 60, slower: 120, show: ["beam", "regions", "diagram"],
-        paused: "The yellow frame marks the strip on its way: it is ahead of the beam.",
+        paused: "The yellow frame marks the strip that is copied now. The strip is just ahead of the beam.",
       },
       {
         title: "The race",
-        say: "Strip after strip is sent while the beam comes down behind it. A strip that is late would light with old pixels, so this needs a scene that is quick to draw.",
+        say: "Strip after strip is copied, and the beam follows close behind. A late strip would light with old pixels, so this method needs a scene with few triangles.",
         until: "strip", value: 330, ms: 60, slower: 120, show: ["beam", "regions", "diagram"],
-        paused: "Watch the messages: small ones, all the time, instead of whole regions.",
+        paused: "Watch the messages. Small messages travel all the time, instead of whole regions.",
       },
       {
         title: "What is left of the lag",
-        say: "The head swings, and the gap to the wire frame of the real world is a fraction of the one that Rendering Control leaves. Part of what remains is the delay of the tracker and its cable, which no way of drawing can remove.",
+        say: "The head turns, and the gap to the wire frame of the real world is much smaller than under Rendering Control. A part of this gap is the delay of the tracker and its cable, which no pipeline can remove.",
         ms: 900, slower: 4, show: ["beam", "wire", "age"],
-        paused: "In the laboratory, choose rendering-control as the one beside it, press Build, and compare.",
+        paused: "In the laboratory, choose rendering-control in the list Beside it, press Build, and compare.",
       },
     ],
   },
@@ -147,31 +149,31 @@ export const STORIES = {
     steps: [
       {
         title: "Draw all directions",
-        say: "What if the machine did not care where you look? Here it draws the world in all directions: six faces of a cube around the eye.",
+        say: "What if the picture did not depend on the direction of the head? Here the machine draws the world in all directions: on the six faces of a cube around the eye.",
         path: rest, ms: 300, slower: 2, show: ["faces"],
         paused: "The six faces are laid out like an unfolded box: left, ahead, right, behind, above and below.",
       },
       {
-        title: "Look up the eye's picture",
-        say: "The display itself decides, while the beam runs, which dot of which face each pixel of your view is. It needs only the direction of the head for that, and no drawing.",
+        title: "Look up the picture of the eye",
+        say: "While the beam runs, the display chooses a point on one of the faces for each pixel of your view. The display needs only the direction of the head, and nothing is drawn again.",
         until: "line", value: 240, ms: 60, slower: 60, show: ["faces", "beam"],
-        paused: "The view is looked up while it lights.",
+        paused: "The display looks up each pixel just before the pixel lights.",
       },
       {
         title: "Turn the head",
-        say: "The head turns, and the picture turns at once, although the faces in the memory are older. The wire frame of the real world lies almost on it, much closer than under Rendering Control.",
+        say: "The head turns, and the picture turns at once, although the faces in the memory are older. The wire frame of the real world is much closer to the picture than under Rendering Control.",
         path: swing(18, 2), ms: 1050, slower: 2, show: ["faces", "wire"],
-        paused: "Stopped in a fast turn: the gap that is left is the delay of the tracker, not of the drawing.",
+        paused: "The run has stopped in a fast turn. The remaining gap comes from the delay of the tracker, and not from the drawing.",
       },
       {
         title: "What is not free",
-        say: "Only turning is free. When the head moves to another place, or when things in the world move, the faces must be drawn again, as slowly as before.",
+        say: "Only turning is free. When the head moves to another place, or when objects move, the machine must draw the faces again, as slowly as before.",
         ms: 300, slower: 4, show: ["faces", "wire", "diagram"],
-        paused: "The boards draw new faces all the time; the display does not wait for them.",
+        paused: "The boards draw new faces all the time. The display does not wait for new faces.",
       },
       {
         title: "Now you",
-        say: "Drag across the picture to turn the head, or focus it and use the arrow keys. In the laboratory, set the pipeline to rendering-control with the display ntsc to feel the difference.",
+        say: "Drag across the picture to turn the head, or move the focus to the picture and use the arrow keys. In the laboratory, choose the pipeline rendering-control and the display ntsc to see the difference.",
         path: rest, ms: 600_000, slower: 1, show: ["faces", "wire"], hand: true,
         paused: "",
       },
@@ -179,13 +181,13 @@ export const STORIES = {
   },
 };
 
-/** The picture that moves on the first screen. */
+/** The moving picture of the first screen. */
 export const FIRST_SCREEN = {
   settings: { pipeline: "slats", scene: "gallery", display: "ntsc", fields: "3600", ...HEAD },
   path: swing(12, 5),
 };
 
-/** The story and step that an address names, such as `story=lag&step=2`; null for none. */
+/** Returns the story and the step of an address such as `story=lag&step=2`, or null without a story. */
 export function storyOf(given) {
   const name = given.get("story");
   if (!Object.hasOwn(STORIES, name ?? "")) return null;

@@ -1,8 +1,9 @@
-// The machines, apart from the page, so that it stays awake: one request after the other, each answered by what there is to see.
+// The worker with the machines. The page stays responsive, because the machines run in this thread. The worker handles one request after
+// the other, and answers most requests with data for the page.
 import { Checkpoints } from "./checkpoints.js";
 import init, { Files, WebMachine, catalog, glossary } from "./pxpl5_web.js";
 
-/** Milliseconds that a piece of a run may take before the page is told. */
+/** Maximum milliseconds of computing for one piece of a run, before the worker answers. */
 const PATIENCE = 40;
 
 let wasm = null;
@@ -13,7 +14,7 @@ let checkpoints = null;
 /** Milliseconds of computing since the last checkpoint. */
 let worked = 0;
 
-/** Takes a checkpoint if one is due; `note` comes back with it. */
+/** Takes a checkpoint if a checkpoint is due. The request `back` returns the `note`. */
 function checkpoint(note) {
   if (checkpoints.take(Math.max(...machines.map((machine) => machine.now())), note, worked)) worked = 0;
 }
@@ -25,7 +26,7 @@ const OPERATIONS = {
     checkpoints = new Checkpoints(wasm.memory);
     return { catalog: JSON.parse(catalog()), glossary: JSON.parse(glossary()) };
   },
-  /** Builds a machine for each of some settings; where one of them is refused, the machines before stay. */
+  /** Builds a machine for each text of settings. If one text has an error, the previous machines stay. */
   build({ runs, files }) {
     const held = new Files();
     files.forEach(([name, bytes]) => held.add(name, bytes));
@@ -45,14 +46,14 @@ const OPERATIONS = {
     checkpoints.clear();
     return null;
   },
-  /** Puts the machines back to the last checkpoint at or before an instant. Returns its instant and note, or null without one. */
+  /** Restores the machines from the last checkpoint at or before an instant. Returns the instant and the note of the checkpoint, or null. */
   back({ to }) {
     watched = { key: null, happened: null };
     worked = 0;
     return checkpoints.back(to);
   },
-  /** Goes on to an instant, as far as it comes in time, or by a step, and looks. With `stop` it ends where that happens. `note` is kept
-   *  with a checkpoint on the way. */
+  /** Runs the machines to an instant (`to`), by a time (`by`) or by a step (`step`), and returns data for the page. A run by a time can
+   *  end earlier, because its computing time is limited. With `stop`, the run ends at this event. Checkpoints of the run get the `note`. */
   go({ by, to, step, stop, rows, want, note }) {
     if (rows) machines.forEach((machine) => machine.moved(rows));
     checkpoint(note);
@@ -74,7 +75,7 @@ const OPERATIONS = {
     }
     return look(want);
   },
-  /** Primitives of a machine's scene, and how many of them would be shown in time. */
+  /** Returns the number of primitives in a machine's scene, and the number that the machine could show in time. */
   fitting: ({ of }) => JSON.parse(machines[of].fitting()),
   volume() {
     volume?.free();
@@ -85,11 +86,11 @@ const OPERATIONS = {
   round: ({ azimuth, elevation, side }) => volume.seen(azimuth, elevation, side),
 };
 
-/** Bytes of a file; the page is told what share of them has come. */
+/** Loads the bytes of a file, and reports the progress to the page. */
 async function load(url) {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url.pathname.split("/").at(-1)} cannot be loaded (${response.status} ${response.statusText})`);
-  // A compressed file does not say how long it becomes.
+  // The length of an uncompressed file is unknown if the server compresses the file.
   const all = response.headers.get("content-encoding") ? 0 : Number(response.headers.get("content-length") ?? 0);
   const reader = response.body.getReader();
   const parts = [];
@@ -110,16 +111,16 @@ const GP = /^GP/;
 
 const copies = (machine) => JSON.parse(machine.regions()).some((region) => region.stage === "copy" && region.surface === 0);
 
-/** What a story can wait for: given what was before, a function that says whether it has happened. */
+/** Events that a story can wait for. Each entry returns a function that returns true after the event. */
 const HAPPENINGS = {
   pose: () => ends(/^host/, GP),
   transform: () => staged("transform"),
-  /** Renderers draw some regions of the first eye, and execute commands for one of them. */
+  /** Renderers draw at least three regions of the first eye, and execute commands for one of these regions. */
   draw: () => (machine) => {
     const drawn = JSON.parse(machine.regions()).filter((region) => region.stage === "render" && region.surface === 0);
     return drawn.length >= 3 && drawn.some((region) => region.works);
   },
-  /** A region of the first eye is on its way. */
+  /** A region of the first eye is copied. */
   copy: () => copies,
   swap(machine) {
     const before = JSON.parse(machine.age())?.picture;
@@ -128,7 +129,7 @@ const HAPPENINGS = {
       return picture !== undefined && picture !== before;
     };
   },
-  /** The beam comes to a line of a later field than the present one. */
+  /** The beam reaches a line in a later field than the present field. */
   line(machine, line) {
     const before = JSON.parse(machine.state()).field;
     return () => {
@@ -136,7 +137,7 @@ const HAPPENINGS = {
       return state.field > before && (state.line ?? -1) >= line;
     };
   },
-  /** The same, while a region or a strip of the first eye is on its way. */
+  /** The beam has reached a line in a later field, and a region or strip of the first eye is copied. */
   strip(machine, line) {
     const isThere = HAPPENINGS.line(machine, line);
     return () => isThere() && copies(machine);
@@ -144,10 +145,10 @@ const HAPPENINGS = {
 };
 let watched = { key: null, happened: null };
 
-/** Runs in small pieces until something happens in the first machine, at most to an instant; says whether it has happened. */
+/** Runs in small pieces to an event in the first machine, at most to the instant `end`. Returns true if the event has happened. */
 function seek({ what, value, key, piece }, end) {
   const machine = machines[0];
-  // What was before is remembered from the first call for a step on.
+  // The state before the event is stored at the first call for a step.
   if (watched.key !== key) watched = { key, happened: HAPPENINGS[what](machine, value) };
   while (machine.now() < end) {
     const before = machine.now();
@@ -158,9 +159,9 @@ function seek({ what, value, key, piece }, end) {
   return false;
 }
 
-/** What is wanted of the machines; boards, timeline and latency of one of them. */
+/** Returns the requested data of all machines, and boards and timeline of one machine. */
 function look(want) {
-  // On the way to an instant nobody looks.
+  // On the way to an instant, the page needs only the states.
   if (!want) return { machines: machines.map((machine) => ({ state: JSON.parse(machine.state()) })), blind: true };
   const seen = machines.map((machine, n) => {
     const state = JSON.parse(machine.state());
@@ -190,7 +191,7 @@ function look(want) {
   };
 }
 
-/** Buffers that are handed over instead of copied. */
+/** Returns the buffers that are transferred to the page instead of copied. */
 function buffers(value, found = []) {
   if (value instanceof Uint8Array) found.push(value.buffer);
   else if (value && typeof value === "object") Object.values(value).forEach((inner) => buffers(inner, found));

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Settings have the format of experiment files. The page and the command-line program therefore run the same
-//! experiment and get the same trace hash. The page has one [`WebMachine`] for each pipeline, each in its own worker
+//! experiment and compute the same trace hash. The page has one [`WebMachine`] for each pipeline, all in one worker
 //! thread of the browser. Models and recorded motions that a visitor drops onto the page are passed as [`Files`].
 //! `scripts/site` builds the page. Building and testing this crate needs no browser.
 //!
@@ -31,8 +31,8 @@ pub use files::Files;
 use session::Session;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
-/// Returns everything that a visitor can choose as JSON: pipelines, scenes, displays and motions, each with its name
-/// and a description.
+/// Returns, as JSON, the pipelines, scenes, displays and motions that a visitor can choose, each with a name and a
+/// description.
 #[wasm_bindgen]
 #[must_use]
 pub fn catalog() -> String {
@@ -79,7 +79,7 @@ impl WebMachine {
     }
 
     /// Adds poses to the motion of a head that the visitor moves (`head.motion=live.csv`). `rows` is a recording with
-    /// its header line. Its last row must not be earlier than the instant to which the machine runs next.
+    /// its header line. The last row of `rows` must not be earlier than the instant to which the machine runs next.
     ///
     /// # Errors
     ///
@@ -89,7 +89,7 @@ impl WebMachine {
         self.0.moved(rows).map_err(refused)
     }
 
-    /// Runs the machine for one `event`, `line` (a scanline) or `field`.
+    /// Runs the machine for one step. The step `of` is `event`, `line` (a scanline) or `field`.
     ///
     /// # Errors
     ///
@@ -123,14 +123,14 @@ impl WebMachine {
         look::boards(self.0.stepper()).to_string()
     }
 
-    /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most`. If there are
-    /// more, only every n-th message is returned.
+    /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most` messages. If
+    /// more messages began, only every n-th message is returned.
     #[must_use]
     pub fn messages(&self, after_ps: f64, most: usize) -> String {
         diagram::messages(self.0.stepper(), pxpl5_sim::Time(after_ps as u64), most).to_string()
     }
 
-    /// Returns the regions that renderers are copying to displays, as JSON.
+    /// Returns the regions that renderers are drawing or copying to displays, as JSON.
     #[must_use]
     pub fn regions(&self) -> String {
         diagram::regions(self.0.stepper()).to_string()
@@ -144,7 +144,7 @@ impl WebMachine {
     }
 
     /// Returns the outlines of the ideal picture at the present instant as bytes, with transparent pixels elsewhere.
-    /// The ideal picture is the one without latency. The result is empty if a surface has no ideal picture.
+    /// The ideal picture has no latency. The result is empty if a surface has no ideal picture.
     #[must_use]
     pub fn outlines(&self, surface: u16) -> Vec<u8> {
         self.0.outlines(surface)
@@ -188,23 +188,23 @@ impl WebMachine {
     }
 
     /// Returns the difference between the seen and the ideal picture of a surface as JSON. The object has the
-    /// percentage of pixels that differ. It also has the mean over all pixels of the largest difference of any colour,
-    /// in per cent. The result is `null` without an ideal picture.
+    /// percentage of pixels that differ, and the mean difference over all pixels in per cent. The difference at a pixel
+    /// is the largest of the differences of red, green and blue. The result is `null` without an ideal picture.
     #[must_use]
     pub fn difference(&self, surface: u16) -> String {
         self.0.difference(surface).map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())
     }
 
     /// Returns the 128 x 128 pixels of a renderer as bytes. Enabled pixels are green, and other pixels have the colours
-    /// in their memory. The result is empty before the first command.
+    /// in their memory. The result is empty before the renderer's first command.
     #[must_use]
     pub fn renderer(&self, renderer: usize) -> Vec<u8> {
         pictures::renderer(self.0.stepper(), renderer)
     }
 
     /// Returns the six faces of a cube around the head that an eye's display memory holds. `eye` is 0 or 1. The faces
-    /// form a cross of 512 x 384 pixels. Without `memory` all memories are combined: each texel is the nearest one of
-    /// all. The result is empty for a display without such memories.
+    /// form a cross of 512 x 384 pixels. Without `memory`, all memories are combined: each texel is the nearest texel
+    /// of all memories. The result is empty for a display without such memories.
     #[must_use]
     pub fn faces(&self, eye: usize, memory: Option<usize>) -> Vec<u8> {
         self.0.faces(eye, memory)
@@ -216,27 +216,29 @@ impl WebMachine {
         look::timeline(self.0.stepper(), u64::from(fields))
     }
 
-    /// Returns the parts of the latency of the last complete pictures, at most `most` pictures, as JSON.
+    /// Returns, as JSON, the parts of the latency for each of the last complete pictures. The result has at most `most`
+    /// pictures.
     #[must_use]
     pub fn latencies(&self, most: usize) -> String {
         look::latencies(self.0.stepper(), most).to_string()
     }
 
-    /// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
+    /// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
     #[must_use]
     pub fn misses_all(&self) -> bool {
         look::misses_all(self.0.stepper())
     }
 
     /// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1,
-    /// and what was not measured is null.
+    /// and values that were not measured are null.
     #[must_use]
     pub fn limits(&self) -> String {
         look::limits(self.0.stepper()).to_string()
     }
 
-    /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in time
-    /// as JSON. The second number is null if the scene cannot be decimated. It can take some seconds.
+    /// Returns the number of triangles and spheres in the scene, followed by the number that the pipeline shows in
+    /// time, as JSON. The second number is null if the scene cannot be decimated. The search for the second number can
+    /// take some seconds.
     #[must_use]
     pub fn fitting(&self) -> String {
         self.0.fitting().to_string()
@@ -265,7 +267,8 @@ impl WebVolume {
         self.0.size().to_vec()
     }
 
-    /// Returns the slice with index `number` as bytes. A pixel has one bit for each of red, green and blue.
+    /// Returns the slice with index `number` as bytes. The value of each colour of a pixel is 0 or 255, because the
+    /// display has one bit for each colour.
     #[must_use]
     pub fn slice(&self, number: u32) -> Vec<u8> {
         self.0.slice(number)

@@ -1,4 +1,4 @@
-//! The state of the machine as JSON and SVG, as the page needs it.
+//! The state of the machine as JSON and SVG, in the form that the page needs.
 
 use crate::code;
 use crate::diagram;
@@ -33,9 +33,9 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     })
 }
 
-/// Returns the instant to which one step back by a period leads, or `None` at time zero. From the begin of a period, a
-/// step leads to the begin of the period before. From within a period, it leads to the same place of the period before,
-/// or to time zero.
+/// Returns the instant one display period before the present instant, for the page's step back. The result has the same
+/// distance from the beginning of its period as the present instant. Within the first period the result is time zero,
+/// and at time zero the result is `None`.
 fn back(stepper: &Stepper) -> Option<Time> {
     let (now, period) = (stepper.now(), stepper.period());
     let tick = |period| stepper.record().tick(period);
@@ -46,7 +46,7 @@ fn back(stepper: &Stepper) -> Option<Time> {
     Some(tick(before) + now.since(tick(period)))
 }
 
-/// Returns true if pictures after the warm-up were due, and none of the recent ones was complete in time.
+/// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
 pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     let run = stepper.so_far();
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)

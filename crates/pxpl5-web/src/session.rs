@@ -1,4 +1,4 @@
-//! A run in short steps, with the functions that the page needs.
+//! An experiment that runs in short steps, with the functions that the web page needs.
 
 use crate::files::Files;
 use crate::look;
@@ -54,8 +54,8 @@ impl Session {
         Ok(Self { stepper, is_over: false, plan, moves })
     }
 
-    /// Adds poses to the motion of the head that the visitor moves. The last row of `rows` must not be earlier than the
-    /// instant to which the machine runs next.
+    /// Adds poses to the motion of the head that the visitor of the page moves. The last row of `rows` must not be
+    /// earlier than the instant to which the machine runs next.
     pub(crate) fn moved(&self, rows: &str) -> Result<(), String> {
         let moves = self.moves.as_ref().ok_or("this head is not moved on the page")?;
         let more = Recording::read(rows.as_bytes()).map_err(|error| error.to_string())?;
@@ -121,10 +121,11 @@ impl Session {
         faces.unwrap_or_default()
     }
 
-    /// Returns the number of primitives in the scene, and about the number that the pipeline shows in time, as JSON.
+    /// Returns the number of primitives in the scene, and approximately the number that the pipeline shows in time, as
+    /// JSON.
     ///
     /// The second number comes from the closed form of the pipeline. For a pipeline without a closed form, runs of
-    /// decimated scenes find the number by bisection. It is null if the scene cannot be decimated.
+    /// decimated scenes find the number by bisection. The second number is null if the scene cannot be decimated.
     pub(crate) fn fitting(&self) -> Value {
         let experiment = self.stepper.experiment();
         let scene = experiment.scene();
@@ -147,8 +148,8 @@ impl Session {
     }
 }
 
-/// Replaces the experiment's head motion by one that begins with a recording and grows later. The future of this motion
-/// is unknown, so a predictor is refused.
+/// Replaces the experiment's head motion by a growing motion, which begins with the recording `begin`. The future of
+/// this motion is unknown, so a predictor is refused.
 fn moved_on_the_page(experiment: Experiment, begin: &[u8]) -> Result<(Experiment, Option<GrowingRecording>), String> {
     let Some(head) = experiment.tracked_head().cloned() else { return Ok((experiment, None)) };
     if head.predicts() {
@@ -289,7 +290,7 @@ mod tests {
     }
 
     /// TR94 gives the limit of Slats: about 140 triangles of any size. The Mig has ten times as many. For just-in-time
-    /// pixels, a reduced scene runs in time, and twice as many triangles do not.
+    /// pixels, the decimated scene is shown in time, but a scene with twice as many triangles is not.
     #[test]
     fn a_scene_that_is_too_heavy_is_reported_with_what_would_fit() {
         let misses_all = |settings: &str| {

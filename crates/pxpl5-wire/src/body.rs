@@ -32,14 +32,14 @@ pub enum Body {
 /// A list of commands for a renderer, in order.
 #[derive(Clone, Debug)]
 pub struct CommandList {
-    /// Kinds of the commands, in order; successive commands of one kind form one entry. The time of the list depends
-    /// only on these entries.
+    /// Kinds of the commands, in order. Each run of successive commands of one kind forms one entry. The execution time
+    /// of the list depends only on these entries.
     pub runs: Vec<CommandRun>,
-    /// Region context, a part of pixel memory, on which all commands of this list work.
+    /// Region context on which all commands of this list work. A region context is a part of pixel memory.
     pub context: u8,
     /// Parameters of each copy command in the list, in order.
     pub copies: Vec<CopyOrder>,
-    /// Command words, computed on demand. `None` means that no pixel of the picture will be read.
+    /// Source of the command words, computed on demand. `None` means that no reader needs the pixels of the picture.
     pub content: Option<CommandContent>,
 }
 
@@ -53,21 +53,22 @@ pub struct CommandContent {
 }
 
 impl CommandContent {
-    /// Makes the content of one message. `part` is the number of the message, counted from 0, among those of the source
-    /// `words`.
+    /// Makes the content of one message. The source `words` computes the words of several messages, and `part` is the
+    /// number of this message, counted from 0.
     #[must_use]
     pub const fn new(words: Arc<dyn CommandWords>, part: u32) -> Self {
         Self { words, part, frame_buffer: None }
     }
 
-    /// Returns the same content, marked as commands for the picture of a frame buffer. The mark serves observers only.
+    /// Returns the same content, marked with the frame buffer for whose picture the commands draw. Only observers use
+    /// the mark.
     #[must_use]
     pub fn for_frame_buffer(self, frame_buffer: NodeId) -> Self {
         Self { frame_buffer: Some(frame_buffer), ..self }
     }
 
-    /// Returns the region for which the message draws. Returns `None` if the source of the words does not state the
-    /// region.
+    /// Returns the region for which the message's commands draw. Returns `None` if the source of the words does not
+    /// state the region.
     #[must_use]
     pub fn place(&self) -> Option<RegionPlace> {
         let place = self.words.place()?;
@@ -79,8 +80,8 @@ impl CommandContent {
         self.words.append_words(self.part, out);
     }
 
-    /// Passes the commands of the message to `out`. Primitives that touch no pixel of the region can be left out
-    /// ([`CommandWords::append_visible`]).
+    /// Passes the commands of the message to `out`. The source may leave out primitives that touch no pixel of the
+    /// region ([`CommandWords::append_visible`]).
     pub fn append_visible(&self, out: &mut dyn CommandSink) -> bool {
         self.words.append_visible(self.part, out)
     }
@@ -89,8 +90,8 @@ impl CommandContent {
 /// The region of a picture for which renderer commands draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RegionPlace {
-    /// Ring port of the frame buffer that will receive the region. `None` if the commands do not depend on the frame
-    /// buffer and no program has stated it.
+    /// Ring port of the frame buffer that will receive the region. `None` if the commands suit any frame buffer and no
+    /// program has set the port.
     pub frame_buffer: Option<NodeId>,
     /// Lines of the frame that the rows of the picture fill.
     pub lines: Lines,
@@ -105,13 +106,14 @@ pub struct RegionPlace {
 pub struct CopyOrder {
     /// Frame buffer and region that receive the pixels.
     pub target: CopyTarget,
-    /// Region context, a part of pixel memory, that holds the pixels.
+    /// Region context that holds the pixels. A region context is a part of pixel memory.
     pub context: u8,
     /// Path that the colours take to the frame buffer.
     pub way: CopyPath,
     /// Kind of data that is sent for each pixel.
     pub content: CopyContent,
-    /// Port that is notified after the last pixel has arrived, by a message of [`COPY_ACKNOWLEDGEMENT_WORDS`] words.
+    /// Port that receives a notification of [`COPY_ACKNOWLEDGEMENT_WORDS`] words after the last pixel has arrived.
+    /// `None` if no notification is sent.
     pub acknowledge: Option<NodeId>,
 }
 
@@ -138,8 +140,8 @@ impl CopyContent {
         }
     }
 
-    /// Returns the ring words of a region. `colours` are 0x00RRGGBB. `depths` is called only if the copy sends depths;
-    /// it must return 24-bit values.
+    /// Returns the ring words of a region. `colours` are in the form 0x00RRGGBB. The function calls `depths` only if
+    /// the copy sends depths. `depths` must return 24-bit values.
     #[must_use]
     pub fn of(self, colours: Arc<[Word]>, depths: impl FnOnce() -> Vec<Word>) -> Arc<[Word]> {
         match self {
@@ -158,10 +160,10 @@ fn packed((colour, depth): (&Word, Word)) -> Word {
 /// The path of a region's colours from a renderer's pixel memory to the frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CopyPath {
-    /// Directly from pixel memory to the frame buffer. The commands that follow wait until the last pixel has arrived.
+    /// Directly from pixel memory to the frame buffer. The following commands wait until the last pixel has arrived.
     FromPixelMemory,
     /// Into the renderer's backing store, and from there to the frame buffer while the following commands execute. The
-    /// second step waits while another region of this renderer is being sent.
+    /// step from the backing store to the frame buffer waits while this renderer still sends another region.
     ThroughBacking,
     /// Into the renderer's backing store, where the colours stay until a [`CopyPath::FromBacking`] command for the same
     /// target.
@@ -181,7 +183,7 @@ impl CommandList {
         self.runs.iter().map(|run| run.count * run.words_each).sum()
     }
 
-    /// Returns the same list, marked as commands for the picture of a frame buffer
+    /// Returns the same list, marked with the frame buffer for whose picture the commands draw
     /// ([`CommandContent::for_frame_buffer`]).
     #[must_use]
     pub fn for_frame_buffer(self, frame_buffer: NodeId) -> Self {
@@ -205,27 +207,28 @@ pub trait CommandWords: Debug + Send + Sync {
     /// Appends the words of message `part` to `out`. Every call appends the same words.
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
-    /// Passes the commands of message `part` to `out`. Primitives that touch no pixel of the region can be left out.
-    /// Returns true if a primitive is among the passed commands. `out` receives only whole commands, and each command
-    /// that draws first sets the Enable bits of the pixels.
+    /// Passes the commands of message `part` to `out`. The source may leave out primitives that touch no pixel of the
+    /// region. Returns true if the passed commands contain a primitive. `out` receives only whole commands. Before each
+    /// drawing command, the passed commands set the Enable bits of the pixels.
     fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         self.append_words(part, out.words());
         true
     }
 
-    /// Returns the region for which all messages draw. The default is `None`: the source does not know the region.
+    /// Returns the region for which all messages draw. The default is `None`, for a source that does not state the
+    /// region.
     fn place(&self) -> Option<RegionPlace> {
         None
     }
 }
 
-/// A receiver of renderer commands in order. Commands come as words, or as triangles in a form that needs no words.
+/// A receiver of renderer commands in order. The commands come as words, or as triangles in another form.
 pub trait CommandSink {
     /// Returns the list to which the caller appends the words of commands.
     fn words(&mut self) -> &mut Vec<Word>;
 
-    /// Accepts triangles that follow the words appended so far. Returns false if the caller must append the words of
-    /// the triangles instead.
+    /// Offers triangles that follow the words appended so far. Returns true if the sink accepts the triangles in this
+    /// form. If the result is false, the caller must append the words of the triangles instead.
     fn triangles(&mut self, batch: &TriangleBatch<'_>) -> bool;
 }
 
@@ -239,14 +242,14 @@ impl CommandSink for Vec<Word> {
     }
 }
 
-/// A source whose words are already computed, for a single message.
+/// A list of computed words also serves as a source for a single message.
 impl CommandWords for Vec<Word> {
     fn append_words(&self, _: u32, out: &mut Vec<Word>) {
         out.extend_from_slice(self);
     }
 }
 
-/// The lines of a frame that a picture fills: all of them, or those of one field.
+/// The lines of a frame that a picture fills: all lines, or the lines of one field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lines {
@@ -256,8 +259,8 @@ pub enum Lines {
     Field(FieldParity),
 }
 
-/// The two fields of an interlaced frame, by their lines. Line 0 is the top line of the picture and belongs to the even
-/// field.
+/// The two fields of an interlaced frame, distinguished by their lines. Line 0 is the top line of the picture and
+/// belongs to the even field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FieldParity {
@@ -294,13 +297,14 @@ pub struct CopyTarget {
     pub grid: RegionGrid,
     /// Number of the region within the grid.
     pub region: RegionId,
-    /// Number of the picture that contains the region, as counted by its pipeline; see [`PictureNumber`]. Boards use
+    /// Number of the picture that contains the region. The pipeline counts its pictures ([`PictureNumber`]). Boards use
     /// the number only to separate successive copies of a region. Observers use the number to collect the regions of a
     /// picture.
     pub picture: PictureNumber,
 }
 
-/// A message with a part of a region's pixels: number `part` of `parts` messages.
+/// A message with a part of a region's pixels. The region needs `parts` messages, and this message has the number
+/// `part`.
 #[derive(Clone, Debug)]
 pub struct RegionPixels {
     /// Destination of the region's pixels in a display.
@@ -316,7 +320,7 @@ pub struct RegionPixels {
 /// The pixels of a region, computed on demand.
 pub trait PixelSource: Debug + Send + Sync {
     /// Returns one word 0x00RRGGBB for each of the `width * height` pixels of the region, row by row. For a copy with
-    /// depth, [`CopyContent`] defines the words.
+    /// depth, the result has the words that [`CopyContent`] describes.
     fn pixels(&self) -> Arc<[Word]>;
 }
 

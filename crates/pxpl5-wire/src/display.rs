@@ -11,13 +11,14 @@
 //! *period* is the time from one tick to the next.
 //!
 //! The machine owns any number of displays and uses only this interface. The first display is the machine's sync
-//! generator. Its ticks reach the first graphics processor. The length of a run is counted in its periods.
+//! generator. The machine passes the ticks of the first display to the first graphics processor. The length of a run is
+//! a number of periods of the first display.
 //!
 //! A crate that provides a display implements two traits: [`DisplayConfig`] for the parameters of a display, and
 //! [`Display`] for its boards. Timelines, traces, reports, pictures, films and pixel errors use only these traits.
 //!
-//! **Not here:** knowledge that firmware needs to draw for one kind of display, such as fields or beams. A pipeline for
-//! one kind of display can find that type, because every display is [`Any`].
+//! **Not here:** properties of one kind of display that its firmware needs, such as fields or beams. A pipeline for one
+//! kind of display can downcast to the type of this display, because every display is [`Any`].
 
 #![warn(missing_docs)]
 
@@ -42,8 +43,8 @@ use std::fmt::Debug;
 /// An event of a display.
 #[derive(Clone, Debug)]
 pub enum DisplayEvent {
-    /// The display's clock ticks and a period begins, exactly at the time [`Display::tick`]. The event belongs to phase
-    /// `Arrive` of the event queue.
+    /// The display's clock ticks and a period begins. The time of the event is exactly the time that [`Display::tick`]
+    /// returns. The event belongs to phase `Arrive` of the event queue.
     Tick(PeriodNumber),
     /// The last word of a message has arrived at a port. The event belongs to phase `Arrive` of the event queue.
     Delivered {
@@ -80,8 +81,9 @@ pub enum DisplayOutput {
         /// Number of the period that begins with the tick.
         tick: PeriodNumber,
     },
-    /// A display memory shows its other buffer from this tick of the display's clock on. The memory belongs to a
-    /// surface with several ports. The status line of the memory's port notifies the first graphics processor.
+    /// A display memory shows its other buffer from this tick of the display's clock on. The memory is one of several
+    /// memories, each with its own port, that share a surface. The status line of the memory's port notifies the first
+    /// graphics processor.
     Updated {
         /// Index of the surface that shows the display memory, counted from the display's first surface.
         surface: usize,
@@ -130,8 +132,9 @@ pub trait Display: Any + Debug + Send + Sync {
     /// display has discarded the data of the period.
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage>;
 
-    /// Returns the picture that a viewer sees at time `time`, which lies in a period that the display remembers. The
-    /// default is the picture at the end of the period. The default suits displays that light all pixels at once.
+    /// Returns the picture that a viewer sees at time `time`, which must lie in a period whose pictures the display
+    /// still holds. The default implementation returns the picture at the end of the period. This result is right for
+    /// displays that light all pixels at once.
     fn seen_at(&self, surface: usize, time: Time) -> Option<RgbImage> {
         self.seen(surface, self.period_at(time))
     }
@@ -145,7 +148,7 @@ pub trait Display: Any + Debug + Send + Sync {
     fn picture_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
         let period = self.period_at(now);
         let size = self.surfaces().get(surface)?;
-        // Begin with the last complete picture and add the pixels lit since.
+        // Begin with the last complete picture, and add the pixels lit in the current period.
         let before = self.last_seen().and_then(|last| self.seen(surface, last));
         let mut screen = before.unwrap_or_else(|| RgbImage::new(size.width, size.height));
         let shown = self.shown(surface)?;
@@ -160,14 +163,14 @@ pub trait Display: Any + Debug + Send + Sync {
     /// Returns the number of the last period for which [`Display::seen`] has a picture.
     fn last_seen(&self) -> Option<PeriodNumber>;
 
-    /// Returns the index of the first row that is lit in a period, and the distance between lit rows. Callers that
-    /// shift a picture row by row need both numbers.
+    /// Returns the index of the first row that is lit in a period, and the distance between lit rows. Both numbers are
+    /// in rows of the surface. Callers need both numbers to shift a picture row by row.
     fn rows_lit(&self, _period: PeriodNumber) -> (u32, u32) {
         (0, 1)
     }
 
-    /// Returns the order in which pixels are lit, and how long each pixel shines after the time [`Display::lights`].
-    /// The default is a scan line by line from the top, in which each pixel shines only for an instant.
+    /// Returns the order in which pixels are lit, and the time for which each pixel shines from [`Display::lights`] on.
+    /// The default is a scan from the top, line by line, in which each pixel shines only for an instant.
     fn light(&self) -> Light {
         Light::default()
     }
@@ -175,12 +178,12 @@ pub trait Display: Any + Debug + Send + Sync {
     /// Returns the display's counters. Each counter covers the time since the start of the run.
     fn counters(&self) -> Vec<Counter>;
 
-    /// Returns the number of messages that the display could not use. The text is the reason for the first one, if
-    /// known.
+    /// Returns the number of messages that the display could not use. The text is the reason for the first such
+    /// message, if known.
     fn faults(&self) -> (u64, Option<String>);
 
     /// Returns the time at which pixel `x` of line `y` starts to shine in a period. If the period skips this line, the
-    /// next line is used.
+    /// function uses the next line.
     fn line_lights(&self, surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time> {
         self.lights(surface, x, y, period).or_else(|| self.lights(surface, x, y + 1, period))
     }

@@ -1,10 +1,10 @@
-//! Expressions that a renderer evaluates at all its pixels at once.
+//! Expressions that a renderer evaluates at all its pixels at the same time.
 
 use serde::{Deserialize, Serialize};
 
 /// The expression `a x + b y + c` at the integer pixel (x, y) of the screen, in 32-bit two's complement (sums wrap).
 ///
-/// The code that computes the coefficients must include the offset of the pixel's centre in `c`.
+/// Code that computes the coefficients must add the offset from the pixel's corner to its centre to `c`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Linear {
     /// Increase of the value from one pixel to the next one on the right.
@@ -30,8 +30,8 @@ impl Linear {
     }
 }
 
-/// Number of triangles whose expressions are stored side by side. Eight doubles, one for each triangle, fill the widest
-/// vector register of host processors.
+/// Number of triangles whose expressions are stored side by side. Eight `f64` values, one for each triangle, fill the
+/// widest vector register of host processors.
 pub const LANES: usize = 8;
 
 /// The linear expressions of [`LANES`] triangles, stored by coefficient.
@@ -57,7 +57,7 @@ impl LinearLanes {
     }
 }
 
-/// Up to [`LANES`] triangles, as the expressions in their renderer commands.
+/// Up to [`LANES`] triangles with the expressions of their renderer commands.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleBatch<'a> {
     /// Number of triangles in the batch, at most [`LANES`].
@@ -74,8 +74,9 @@ pub struct TriangleBatch<'a> {
 /// The expression `xx x^2 + xy x y + yy y^2 + x x + y y + one` at the integer pixel (x, y). Sums wrap in 64-bit two's
 /// complement.
 ///
-/// The machine's evaluator computes `A x^2 + B x y + C y^2 + D x + E y + F` (F89). Two words per coefficient are
-/// assumed: 32 bits cannot hold both a screen's range and a small sphere's silhouette.
+/// The machine's evaluator computes `A x^2 + B x y + C y^2 + D x + E y + F` (F89). The two words per coefficient are
+/// assumed. With 32 bits, a coefficient could not have both the range of a screen and the precision for the silhouette
+/// of a small sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Quadratic {
     /// Coefficient of x squared, A in F89.

@@ -1,8 +1,8 @@
 //! Fixed-point formats of expression coefficients and of fields in pixel memory.
 //!
-//! All formats are **assumed**. The papers give the bits of pixel memory (208), the bits of colour (24) and the time of
-//! a triangle. A 24-bit Z and 8-bit colours are the sizes that fit these figures. This project has chosen the numbers
-//! of fraction bits.
+//! All formats are **assumed**. The papers give the number of bits of pixel memory (208), the number of bits of a
+//! colour (24) and the time of a triangle. These figures fit a 24-bit Z and 8-bit colour components. The numbers of
+//! fraction bits are choices of this project.
 
 /// Number of fraction bits of a vertex position on the screen. Positions are multiples of 1/16 pixel.
 pub const SUBPIXEL_BITS: u32 = 4;
@@ -23,7 +23,7 @@ pub const COLOUR_FRACTION_BITS: u32 = 12;
 /// `1 << NORMAL_ONE_BITS` stands for 1.0.
 pub const NORMAL_BITS: u32 = 12;
 
-/// Position of the bit that stands for 1.0 in a normal component: 1.0 is stored as `1 << NORMAL_ONE_BITS`. The range of
+/// Number of fraction bits of a normal component in pixel memory: 1.0 is stored as `1 << NORMAL_ONE_BITS`. The range of
 /// a component is therefore -2 to 2.
 pub const NORMAL_ONE_BITS: u32 = 10;
 

@@ -1,7 +1,7 @@
 //! Data on the ring: words, messages, addresses, and the number formats of expressions.
 //!
-//! This crate contains only types. Every board depends on this crate, and no board depends on another board. The crate
-//! therefore defines everything that two boards share:
+//! This crate contains only types. The crate of every board depends on this crate, and on no crate of another board.
+//! This crate therefore defines everything that two boards share:
 //!
 //! - [`Message`]: at most [`MAX_MESSAGE_WORDS`] words from one [`NodeId`] to another;
 //! - [`Body`]: the content of a message: renderer commands, pixels of a region, or words that firmware defines;
@@ -10,11 +10,11 @@
 //! - [`PeriodNumber`], [`PictureNumber`], [`ViewNumber`]: the counts of periods, pictures and views;
 //! - [`RegionGrid`]: the division of a picture into regions of at most 128 x 128 pixels.
 //!
-//! Bodies are *lazy*: their words are computed only when a picture is read. A message always has its length and the
-//! sequence of its command kinds. Simulated times depend only on these two, because a SIMD array takes the same cycles
-//! for all data.
+//! Bodies are *lazy*: their words are computed only when a picture is read. A message always contains its length and
+//! the sequence of its command kinds. Simulated times depend only on the length and the kinds, because a SIMD array
+//! takes the same number of cycles for all data.
 //!
-//! **Not modelled:** routing headers and check words. The ring adds a fixed overhead to each message in their place.
+//! **Not modelled:** routing headers and check words. Instead, the ring adds a fixed overhead to each message.
 //!
 //! Sources: TR94 (message length, regions), F89 (expressions, region size).
 
@@ -37,13 +37,13 @@ pub use region::{Eye, RegionGrid, RegionId, SurfaceId};
 /// One word of the ring: 32 bits (TR94).
 pub type Word = u32;
 
-/// Greatest length of a message in words. The value is derived: a field region is 15 x 1,024 pixels.
+/// Greatest length of a message in words. The value is derived: a region of a field has 15 x 1,024 pixels.
 pub const MAX_MESSAGE_WORDS: u32 = 1024;
 
 /// Width and height of a renderer's pixel array, in pixels (F89).
 pub const REGION_SIZE: u32 = 128;
 
-/// Number of a board's port on the ring. Ports are counted in the direction in which messages travel.
+/// Number of a board's port on the ring. Ports are numbered in the direction in which messages travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub struct NodeId(pub u16);
 

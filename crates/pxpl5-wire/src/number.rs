@@ -4,9 +4,9 @@
 //! |---|---|---|
 //! | [`PeriodNumber`] | periods of a display: fields of NTSC video, refreshes of the high-resolution monitor | the display's clock |
 //! | [`PictureNumber`] | pictures of a pipeline: frames, fields, batches of blocks | the pipeline's firmware |
-//! | [`ViewNumber`] | poses and edits received from the host | the program that requests them |
+//! | [`ViewNumber`] | poses and edits received from the host | the program that requests the views |
 //!
-//! A picture is shown in a period, and the picture shows a view. Only the pipeline knows the relation between the three
+//! A picture is shown in a period, and the picture shows a view. The pipeline determines the relation between the three
 //! numbers: [`PictureNumber::drawn_for`], [`PictureNumber::period_drawn_for`], [`ViewNumber::taken_for`] and
 //! [`ViewNumber::picture_taken_for`].
 
@@ -14,8 +14,8 @@ use crate::Word;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Declares a number type that counts from 0. Its arithmetic accepts only numbers of the same type. In text and data
-/// files the number stands without the name of its type.
+/// Declares a number type that counts from 0. Arithmetic combines only numbers of the same type. Text and data files
+/// contain only the number, without the name of its type.
 macro_rules! count_from_zero {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
@@ -27,13 +27,13 @@ macro_rules! count_from_zero {
             /// The first number, 0.
             pub const FIRST: Self = Self(0);
 
-            /// Returns the next number, or the same number if it is the greatest one.
+            /// Returns the next number. The greatest number of the type is returned unchanged.
             #[must_use]
             pub const fn next(self) -> Self {
                 self.after(1)
             }
 
-            /// Returns the number that is smaller by `count`. Returns `None` if the result would be negative.
+            /// Returns the number that is lower by `count`. Returns `None` if the result would be negative.
             #[must_use]
             pub const fn before(self, count: u64) -> Option<Self> {
                 match self.0.checked_sub(count) {
@@ -42,24 +42,25 @@ macro_rules! count_from_zero {
                 }
             }
 
-            /// Returns the number that is greater by `count`, but at most the greatest number.
+            /// Returns the number that is higher by `count`. The result is at most the greatest number of the type.
             #[must_use]
             pub const fn after(self, count: u64) -> Self {
                 Self(self.0.saturating_add(count))
             }
 
-            /// Returns the distance from an earlier number. Returns 0 if `earlier` is the later one.
+            /// Returns the distance from the number `earlier` to this number. Returns 0 if `earlier` is the greater
+            /// number.
             #[must_use]
             pub const fn since(self, earlier: Self) -> u64 {
                 self.0.saturating_sub(earlier.0)
             }
 
-            /// Iterates over this number and all greater ones.
+            /// Iterates over this number and all greater numbers.
             pub fn onwards(self) -> impl Iterator<Item = Self> {
                 (self.0..).map(Self)
             }
 
-            /// Iterates from this number to `end`, without `end` itself.
+            /// Iterates over the numbers from this number up to, but not including, `end`.
             pub fn until(self, end: Self) -> impl DoubleEndedIterator<Item = Self> + Clone {
                 (self.0..end.0).map(Self)
             }
@@ -87,8 +88,8 @@ macro_rules! count_from_zero {
 
 count_from_zero! {
     /// The number of a display period. A period is the time from one tick of the display's clock to the next. Number n
-    /// begins at tick n, and tick 0 is the start of simulated time. A period of NTSC video is a field; a retrace has
-    /// the number of the field that it begins. A period of the high-resolution frame buffer is a refresh.
+    /// begins at tick n, and tick 0 is the start of simulated time. A period of NTSC video is a field. A retrace has
+    /// the number of the field that begins with it. A period of the high-resolution frame buffer is a refresh.
     PeriodNumber
 }
 
@@ -109,15 +110,15 @@ count_from_zero! {
 }
 
 impl PictureNumber {
-    /// Returns the number of the picture that is drawn for a period. Valid only in pipelines that draw one picture for
-    /// every period: Slats and just-in-time pixels. Both numbers are equal.
+    /// Returns the number of the picture that is drawn for a period. The result is valid only in pipelines that draw
+    /// one picture for every period: Slats and just-in-time pixels. The picture and the period have equal numbers.
     #[must_use]
     pub const fn drawn_for(period: PeriodNumber) -> Self {
         Self(period.0)
     }
 
-    /// Returns the number of the period for which a picture is drawn. Valid only in pipelines that draw one picture for
-    /// every period.
+    /// Returns the number of the period for which a picture is drawn. The result is valid only in pipelines that draw
+    /// one picture for every period.
     #[must_use]
     pub const fn period_drawn_for(self) -> PeriodNumber {
         PeriodNumber(self.0)
@@ -125,15 +126,15 @@ impl PictureNumber {
 }
 
 impl ViewNumber {
-    /// Returns the number of the view that a picture shows. Valid only in pipelines that request one view for every
-    /// picture: Rendering Control and frameless rendering. Both numbers are equal.
+    /// Returns the number of the view that a picture shows. The result is valid only in pipelines that request one view
+    /// for every picture: Rendering Control and frameless rendering. The view and the picture have equal numbers.
     #[must_use]
     pub const fn taken_for(picture: PictureNumber) -> Self {
         Self(picture.0)
     }
 
-    /// Returns the number of the picture that shows a view. Valid only in pipelines that request one view for every
-    /// picture.
+    /// Returns the number of the picture that shows a view. The result is valid only in pipelines that request one view
+    /// for every picture.
     #[must_use]
     pub const fn picture_taken_for(self) -> PictureNumber {
         PictureNumber(self.0)

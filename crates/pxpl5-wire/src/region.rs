@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum Eye {
     /// The left eye, or the only eye of a picture without stereo.
     Left,
-    /// The right eye, shown by the second frame buffer.
+    /// The right eye. The second frame buffer shows its picture.
     Right,
 }
 
@@ -106,9 +106,10 @@ impl RegionGrid {
         [left, top, min(self.region_width, self.width - left), min(self.region_height, self.height - top)]
     }
 
-    /// Returns left, top, width and height of a region that was named in a message. Returns `None` if the grid or the
-    /// region is invalid. The grid must not be empty or larger than `width` x `height`, and must contain the region.
-    /// The region must have at least one pixel, and at most as many pixels as a renderer's array.
+    /// Returns left, top, width and height of a region in pixels, for a grid and a region from a message. Returns
+    /// `None` if the grid or the region is invalid. The grid must not be empty or larger than `width` x `height`, and
+    /// must contain the region. The region must have at least one pixel, and at most as many pixels as a renderer's
+    /// array.
     #[must_use]
     pub const fn rectangle_within(&self, region: RegionId, width: u32, height: u32) -> Option<[u32; 4]> {
         // Check the grid before any division by its sizes.
@@ -116,7 +117,7 @@ impl RegionGrid {
         if !fits || self.region_width == 0 || self.region_height == 0 {
             return None;
         }
-        // The product of columns and rows in a message can exceed 32 bits.
+        // A message can contain a grid whose number of regions exceeds 32 bits.
         if region.0 as u64 >= self.columns() as u64 * self.rows() as u64 {
             return None;
         }

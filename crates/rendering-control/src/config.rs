@@ -8,28 +8,28 @@ use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId,
 /// The boards of the pipeline, and the kind of picture that they make.
 #[derive(Clone, Debug)]
 pub struct RenderingControlConfig {
-    /// Node of the host interface, which sends views and edits.
+    /// Ring port of the host, which sends views and edits.
     pub host: NodeId,
-    /// Node of the master GP, which begins every stage.
+    /// Ring port of the master GP, which begins every stage.
     pub master: NodeId,
-    /// Nodes of the slave GPs, at least one.
+    /// Ring ports of the slave GPs, at least one.
     pub slaves: Vec<NodeId>,
-    /// Nodes of the renderers, at least one.
+    /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// Node of the first port of each frame buffer. A mono picture has one frame buffer; a stereo picture has one for
-    /// the left and one for the right eye.
+    /// First ring port of each frame buffer. A mono picture has one frame buffer. A stereo picture has one frame buffer
+    /// for the left eye and one for the right eye.
     pub frame_buffers: Vec<NodeId>,
-    /// Nodes of all frame-buffer ports: first the first port of each frame buffer, then the second ports. The regions
-    /// of an eye use the ports of its frame buffer in turn.
+    /// All ring ports of the frame buffers. The list starts with the first port of each frame buffer, followed by the
+    /// second ports, and so on. The regions of an eye use the ports of its frame buffer in turn.
     pub frame_buffer_ports: Vec<NodeId>,
     /// Parameters of the picture that is drawn for each eye.
     pub picture: Picture,
-    /// Largest number of finished regions that a renderer stores in its backing store while their frame buffer is not
-    /// available.
+    /// Largest number of finished regions in the backing store of a renderer. A finished region waits there until its
+    /// frame buffer is available.
     ///
-    /// The renderer meanwhile continues with the next region. With 0, the renderer keeps the region in pixel memory and
-    /// waits for its copy. The size of the backing store limits the number to `renderer.backing_bits /
-    /// renderer.kept_bits`.
+    /// In the meantime, the renderer continues with the next region. With a value of 0, the renderer keeps a finished
+    /// region in pixel memory and waits until the region is copied. The size of the backing store limits the number to
+    /// `renderer.backing_bits / renderer.kept_bits`.
     pub regions_stored: usize,
 }
 
@@ -49,7 +49,7 @@ impl RenderingControlConfig {
         drawing.frame(self.eyes())
     }
 
-    /// Returns the surface on which a drawing is shown: the display of the drawing's eye.
+    /// Returns the surface that shows a drawing: the display of the drawing's eye.
     pub(crate) fn eye_of(&self, drawing: EyeDrawing) -> SurfaceId {
         SurfaceId(drawing.eye(self.eyes()) as u16)
     }
@@ -62,7 +62,8 @@ impl RenderingControlConfig {
         self.picture.viewport
     }
 
-    /// Returns the half of the frame buffer that is hidden while this frame is drawn. Half 0 is visible at the start.
+    /// Returns the index of the half of the frame buffer that receives this frame. This half is hidden while the frame
+    /// is drawn. Half 0 is visible at the start.
     pub(crate) fn buffer_of(frame: PictureNumber) -> u8 {
         (frame.next().0 % 2) as u8
     }
@@ -86,7 +87,7 @@ impl RenderingControlConfig {
         self.frame_buffer_ports[usize::from(region.0) % of_an_eye * eyes + eye.index()]
     }
 
-    /// Returns the eye to whose frame buffer a port belongs. Returns `None` if the node is no frame-buffer port.
+    /// Returns the eye to whose frame buffer a port belongs. Returns `None` if the node is not a frame-buffer port.
     pub(crate) fn eye_at(&self, port: NodeId) -> Option<usize> {
         let place = self.frame_buffer_ports.iter().position(|node| *node == port)?;
         Some(place % self.frame_buffers.len())

@@ -2,43 +2,43 @@
 //! six faces around the eye.
 //!
 //! ```text
-//!   host:    which memory, which structures, where the eye is: SEND u   (wait for EDIT u)   SEND u+1 ...
+//!   host:    memory, structures, position of the eye: SEND u   (wait for EDIT u)   SEND u+1 ...
 //!   slaves:           EDIT u, TRANSFORM u for six faces
-//!   master:                            map of the regions that come, request to swap --> port of the memory
-//!   slaves, renderers:                 RENDER u (token walk, regions with primitives alone)
-//!   renderers, display memories:              COPY u: colours, then depths          swap at a retrace that finds all there
+//!   master:                            map of the regions to come, request to swap --> port of the memory
+//!   slaves, renderers:                 RENDER u (token walk, only regions with primitives)
+//!   renderers, display memories:              COPY u: colours, then depths          swap when all are there
 //! ```
 //!
-//! The structure is that of Rendering Control (TR94). One GP is the [`master`](fn@master); the other GPs are slaves
-//! with two programs each. A token for each region moves from slave to slave. The rules of TR94 decide when a stage may
-//! begin. They apply to updates instead of frames. An *update* draws one display memory: all six faces, in the grid of
-//! [`address_recalculation::region_grid`].
+//! The division of work is the same as in Rendering Control (TR94). One GP is the [`master`](fn@master). The other GPs
+//! are slaves with two programs each. A token for each region moves from slave to slave. The rules of TR94 for the
+//! start of a stage apply to updates instead of frames. An *update* draws one display memory: all six faces, in the
+//! grid of [`address_recalculation::region_grid`].
 //!
 //! # Differences from Rendering Control
 //!
 //! - **Faces.** The host sends the eye's position but no orientation. Each slave derives six axis-aligned views
 //!   ([`face_view`]). A primitive is transformed once for each face that it touches. Comparisons of coordinates find
-//!   the faces that a primitive does not touch. By the timing table these comparisons take no time (assumed). i860 code
-//!   takes its own time for them ([`pphigs::CubeTransform`]).
+//!   the faces that a primitive does not touch. In the timing table, these comparisons take no time (assumed). With
+//!   i860 code, the comparisons take the time of their code ([`pphigs::CubeTransform`]).
 //! - **Depth.** The depth of a texel is the depth that the renderers compute: z/w along the axis of the face, in 24
 //!   bits. The near plane is 0, and empty texels have all bits set. All views have the same near and far plane, so
 //!   depths of different memories can be compared. A region is copied as two words for each texel in 32 messages,
-//!   through two blocks of the backing store. With 16 bits of colour and 16 bits of depth, it takes 16 messages.
+//!   through two blocks of the backing store. With 16 bits of colour and 16 bits of depth, a region takes 16 messages.
 //! - **Empty regions** get no token and are not copied. The message that announces an update omits them. An update
 //!   without primitives still copies one region, so that its end is detected.
 //! - **Memories** are updated in the order that the host chooses. Each memory has its own double buffer. An update must
-//!   not be copied before the previous update of the same memory is visible. The swap is requested at the beginning of
-//!   the update. The display swaps at the first retrace at which the update is complete, and counts the retraces before
-//!   it. Updates of a group swap together.
+//!   not be copied before the previous update of the same memory is visible. The master requests the swap at the
+//!   beginning of the update. The display swaps at the first retrace at which the update is complete, and counts the
+//!   earlier retraces. The memories of a group swap together.
 //! - **Warping.** An update can displace its vertices ([`FaceWarp`]). Each slave displaces the vertices that it
-//!   transforms. Vertices on the border to a slower memory then appear in the direction in which the slower memory
-//!   shows them. Spheres and moving objects are not warped.
+//!   transforms. Vertices on the border to a slower memory then appear in the same direction in both memories. Spheres
+//!   and moving objects are not warped.
 //!
 //! # Not modelled
 //!
 //! - Traversal of attributes (each edit has a fixed cost instead).
 //! - The time to displace vertices: about twenty floating-point operations for each vertex, compared with a thousand
-//!   for a triangle. There is no i860 code for it either.
+//!   for a triangle. There is no i860 code for this work either.
 //!
 //! Sources: TR94 for the firmware; Chow, Pose and Regan 2005 for memories, updates and groups. No such machine was ever
 //! built.

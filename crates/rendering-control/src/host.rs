@@ -1,4 +1,4 @@
-//! Program of the host: it performs SEND.
+//! Program of the host, which performs SEND.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::StageOrder;
@@ -7,13 +7,13 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
-/// Sends frame after frame. For each frame it reads the tracker, sends view and edits over the host's link to all GPs,
-/// and waits for the end of EDIT.
+/// Sends one frame after the other. For each frame, the program reads the tracker and sends the view and the edits over
+/// the host's link to all GPs. The program then waits for the end of EDIT.
 ///
 /// SEND of a frame must not begin before EDIT of the previous frame has finished (TR94).
 ///
-/// `start_of` gets the time at which the host is ready for a frame, and returns the time at which the frame begins. It
-/// returns `None` if no further frame begins. `view_of` returns a view whose pose is sampled at the given time.
+/// `start_of` gets the time at which the host is ready for a frame. The function returns the time at which the frame
+/// begins, or `None` if no further frame begins. `view_of` returns a view whose pose is sampled at the given time.
 ///
 /// # Errors
 ///
@@ -27,12 +27,12 @@ pub async fn host(
 ) -> Result<(), Fault> {
     for frame in PictureNumber::FIRST.onwards() {
         let Some(start) = start_of(gp.now()) else { break };
-        // The sample and SEND begin together.
+        // The sample is taken when SEND begins.
         gp.spend(start.since(gp.now())).await;
         gp.begin(Stage::Sample, frame, None);
         gp.begin(Stage::Send, frame, None);
         let (words, body) = StageOrder::Send(view_of(ViewNumber::taken_for(frame), gp.now())).message();
-        // The slow link to the machine comes before the ring.
+        // The words pass the slow link to the machine before they enter the ring.
         gp.spend(timing.link_span(words)).await;
         let receivers = config.slaves.iter().chain([&config.master]);
         let batch = receivers.map(|node| (*node, words, body.clone())).collect();

@@ -7,25 +7,26 @@
 //!   renderers, frame buffers:               COPY left, COPY right          swap at the retrace
 //! ```
 //!
-//! One GP is the [`master`](fn@master); it begins each stage when the [`rules`] of TR94 permit it. The other GPs are
-//! slaves. Each slave runs two programs: EDIT and TRANSFORM in the foreground, and an interrupt program that receives
-//! tokens and sends bins. The [`host`](fn@host) reads the tracker and sends view and edits.
+//! One GP is the [`master`](fn@master), which begins each stage when the [`rules`] of TR94 permit the stage. The other
+//! GPs are slaves. Each slave runs two programs: EDIT and TRANSFORM in the foreground, and an interrupt program that
+//! receives tokens and sends bins. The [`host`](fn@host) reads the tracker and sends view and edits.
 //!
-//! RENDER: the master assigns the heaviest regions to the renderers first. It creates a token for each region and sends
-//! it to a slave, each time to another one. A slave with a token sends its bin of the region and passes the token on.
-//! The last slave adds the end-of-frame commands. It also adds the copy command, if the frame buffer was available when
-//! the master sent the token. Otherwise the renderer keeps the region until the master sends the copy command. RENDER
-//! ends when the last commands are *accepted*.
+//! RENDER: the master assigns the heaviest regions to the renderers first. The master creates a token for each region
+//! and sends the token to a slave. The slaves take turns as the first holder of a token. A slave with a token sends its
+//! bin of the region and passes the token on. The last slave adds the commands that end the region. If the frame buffer
+//! was available when the master sent the token, the last slave also adds the copy command. Otherwise the renderer
+//! keeps the region until the master sends the copy command. RENDER ends when the last commands are *accepted*.
 //!
-//! An observer measures the latency from events in the trace. It starts with TRANSFORM of an eye's picture. It ends
-//! with COPY of this picture, with the retrace at which the picture becomes visible, or with the display of its first
-//! line.
+//! An observer measures the latency from events in the trace. The latency starts with TRANSFORM of an eye's picture.
+//! Three ends are possible: the end of COPY of this picture, the retrace at which the picture becomes visible, or the
+//! display of its first line.
 //!
 //! **Not modelled:** traversal of attributes (each edit has a fixed cost instead), loss of messages.
 //!
-//! Assumed: a finished region goes to the renderer's backing store (51 us). From there it goes to the frame buffer in
-//! parallel with the next region's commands, one region at a time. A second finished region waits in pixel memory, and
-//! later commands wait in the input FIFO. One software cost covers a chain of messages given to the DMA at once.
+//! Assumed: a finished region goes to the renderer's backing store (51 us). From there, the region goes to the frame
+//! buffer while the renderer executes the next region's commands. Only one region is sent at a time. A second finished
+//! region waits in pixel memory, and later commands wait in the input FIFO. A chain of messages, which the DMA gets as
+//! a whole, has the software cost of one message.
 //!
 //! Sources: TR94, I3D95.
 

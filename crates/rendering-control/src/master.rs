@@ -1,4 +1,4 @@
-//! Program of the master GP: it synchronizes host, slaves, renderers and frame buffers.
+//! Program of the master GP, which synchronizes host, slaves, renderers and frame buffers.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::{RegionEnd, StageOrder, Token};
@@ -8,7 +8,7 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyPath, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
 
-/// State of a renderer, as far as the master knows it.
+/// State of a renderer, as it follows from the messages that the master has received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
@@ -18,7 +18,7 @@ enum RendererUse {
     Holding(EyeDrawing, RegionId),
 }
 
-/// A copy that may begin now, according to the rules.
+/// A copy that the rules permit now.
 #[derive(Clone, Copy, Debug)]
 struct AllowedCopy {
     renderer: usize,
@@ -31,13 +31,14 @@ struct AllowedCopy {
 #[derive(Debug)]
 struct RenderStage {
     drawing: EyeDrawing,
-    /// Regions that no renderer has been assigned to yet, heaviest first.
+    /// Regions without an assigned renderer, heaviest first.
     unassigned: VecDeque<RegionId>,
     /// Number of tokens that have not returned from the slaves.
     tokens_out: u16,
 }
 
-/// Counted reports of the slaves about a frame or drawing that some slaves have not finished.
+/// Reports of the slaves about one drawing (picture of one eye) or one frame that not all slaves have finished.
+/// `slaves` is the number of reports, and `entries` the sum of the reported bin entries of each region.
 #[derive(Debug, Default)]
 struct SlaveReports {
     slaves: usize,
@@ -48,9 +49,9 @@ struct RegionMaster {
     gp: Gp,
     config: RenderingControlConfig,
     completed: Completed,
-    /// The first frame whose EDIT has not been ordered yet.
+    /// The first frame for which the master has not ordered EDIT.
     next_edit: PictureNumber,
-    /// The first drawing whose TRANSFORM is not permitted yet.
+    /// The first drawing for which the master has not permitted TRANSFORM.
     next_transform: EyeDrawing,
     /// The next frame for which a swap will be requested.
     next_swap: PictureNumber,
@@ -72,7 +73,7 @@ struct RegionMaster {
 ///
 /// # Errors
 ///
-/// Returns [`Fault::Protocol`] for an unknown message, [`Fault::Memory`] if the program does not fit in memory.
+/// Returns [`Fault::Protocol`] for an unknown message, or [`Fault::Memory`] if the program does not fit in memory.
 pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     let mut master = RegionMaster::new(gp, config);
@@ -111,7 +112,7 @@ impl RegionMaster {
     }
 
     /// Returns `Some(Some(message))` if a message has arrived. Returns `Some(None)` if the frame buffers have swapped
-    /// since the last call of `begin_one`.
+    /// since the last call of `begin_one`. Otherwise returns `None`.
     fn message_or_swap(&self) -> Option<Option<Received>> {
         match self.gp.take_message() {
             Some(received) => Some(Some(received)),
@@ -123,7 +124,7 @@ impl RegionMaster {
         self.config.frame_buffers.iter().map(|node| self.gp.status(*node)).min().unwrap_or(0)
     }
 
-    /// Begins the most urgent action that the rules permit. Returns false if they permit none.
+    /// Begins the most urgent action that the rules permit. Returns false if the rules permit no action.
     async fn begin_one(&mut self) -> bool {
         self.completed.swapped = self.swaps_shown();
         self.begin_render();
@@ -195,7 +196,7 @@ impl RegionMaster {
         rendering.tokens_out += 1;
         let drawing = rendering.drawing;
         self.renderers[renderer] = RendererUse::Receiving;
-        // Another slave begins with each token, so that the slaves share the work.
+        // Each token starts at another slave, so that the slaves share the work.
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
         let token = Token {
@@ -209,7 +210,7 @@ impl RegionMaster {
         self.gp.send(slave, words, body).await;
     }
 
-    /// Returns where a region's pixels go after the region's last commands.
+    /// Returns the destination of a region's pixels after the region's last commands.
     fn end_of(&self, renderer: usize, drawing: EyeDrawing) -> RegionEnd {
         if self.completed.may_copy(drawing) {
             RegionEnd::Copied
@@ -220,7 +221,7 @@ impl RegionMaster {
         }
     }
 
-    /// Returns a copy that the rules permit, of the renderer with the lowest index. A region in the backing store is
+    /// Returns a copy that the rules permit, for the renderer with the lowest index. A region in the backing store is
     /// copied before a region in pixel memory.
     fn next_allowed_copy(&self) -> Option<AllowedCopy> {
         (0..self.renderers.len()).find_map(|renderer| {
@@ -233,7 +234,7 @@ impl RegionMaster {
         })
     }
 
-    /// Sends the copy command of a region whose token was sent before COPY was permitted.
+    /// Sends the copy command of a region. The region's token was sent before the rules permitted COPY.
     async fn copy(&mut self, AllowedCopy { renderer, drawing, region, way }: AllowedCopy) {
         match way {
             CopyPath::FromBacking => drop(self.stored[renderer].pop_front()),
@@ -290,7 +291,7 @@ impl RegionMaster {
 
     fn note_accepted(&mut self, token: Token) {
         let renderer = usize::from(token.renderer);
-        // A held region blocks its renderer. The renderer of a stored or copied region is free.
+        // A region that stays in pixel memory blocks its renderer. The renderer of a stored or copied region is free.
         self.renderers[renderer] = match token.end {
             RegionEnd::Held => RendererUse::Holding(token.drawing, token.region),
             RegionEnd::Stored | RegionEnd::Copied => RendererUse::Idle,
@@ -318,8 +319,8 @@ impl RegionMaster {
         }
     }
 
-    /// Returns true if all regions of a drawing have been copied. It is enough to count regions, because the drawings
-    /// reach a frame buffer in order.
+    /// Returns true if all regions of a drawing have been copied. A count of regions is sufficient, because the
+    /// drawings reach a frame buffer in order.
     fn is_copied(&self, drawing: EyeDrawing) -> bool {
         let regions = u64::from(self.config.grid().regions());
         self.copied_regions[self.config.eye_of(drawing).index()] >= regions * self.config.frame_of(drawing).next().0

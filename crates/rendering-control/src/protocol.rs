@@ -15,14 +15,14 @@ const TOKEN: Word = 6;
 const ACCEPTED: Word = 7;
 const EDITS_DONE: Word = 8;
 
-/// A token. The slave that holds the token may send the slave's commands of one region to one renderer.
+/// A token. While a slave holds the token, it may send its commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) drawing: EyeDrawing,
     pub(crate) region: RegionId,
     /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
-    /// Number of slaves that have not finished with the token, including the slave that holds it.
+    /// Number of slaves that have not finished with the token, including the slave that holds the token.
     pub(crate) slaves_left: u16,
     /// Destination of the region's pixels at its end. The last slave adds the command for this destination.
     pub(crate) end: RegionEnd,
@@ -33,9 +33,9 @@ pub(crate) struct Token {
 pub(crate) enum RegionEnd {
     /// The region stays in pixel memory, and the renderer waits for a copy command.
     Held,
-    /// The region goes to the renderer's backing store and stays there.
+    /// The region goes to the renderer's backing store and stays there until the master sends a copy command.
     Stored,
-    /// The region goes to its frame buffer at once.
+    /// The region goes through the backing store to its frame buffer, without a further command.
     Copied,
 }
 
@@ -71,7 +71,7 @@ pub(crate) enum StageOrder {
     Token(Token),
     /// From the last slave to the master: all commands of a region have been accepted.
     Accepted(Token),
-    /// From renderer to master: a region has arrived in the frame buffer with the node `frame_buffer`.
+    /// From renderer to master: a region has arrived in the frame buffer at the ring port `frame_buffer`.
     Copied { frame_buffer: NodeId },
 }
 
@@ -105,7 +105,7 @@ impl StageOrder {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// Decodes words. Returns `None` if the words are no message of this protocol.
+    /// Decodes words. Returns `None` if the words are not a message of this protocol.
     fn from_words(words: &[Word]) -> Option<Self> {
         match words.first() {
             Some(&SEND) => FrameView::from_words(&words[1..]).ok().map(Self::Send),

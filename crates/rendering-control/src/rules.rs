@@ -1,4 +1,5 @@
-//! The rules of TR94: functions that tell from the progress of all stages whether a stage may begin.
+//! The rules of TR94 for the beginning of each stage. Each rule is a function of the progress of all stages, and
+//! returns true if the stage may begin.
 
 use pxpl5_wire::PictureNumber;
 
@@ -64,56 +65,56 @@ impl Completed {
 
     /// Returns true if EDIT of a frame may begin.
     ///
-    /// Three things must be complete: SEND of the frame, TRANSFORM of the previous frame, and the work on older
-    /// drawings that still use buffers. This work is RENDER of the 2nd previous eye (mono: frame) and COPY of the 3rd
-    /// previous eye.
+    /// Four stages must be complete: SEND of the frame, TRANSFORM of the previous frame, RENDER of the second previous
+    /// drawing, and COPY of the third previous drawing. (A drawing is the picture of one eye, or the whole picture of a
+    /// mono frame.) If RENDER or COPY were not complete, these earlier drawings would still use the buffers.
     #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
         let first = EyeDrawing::first_of(frame, self.eyes);
         self.sent > frame.0 && self.transformed >= first.0 && self.buffers_free(first)
     }
 
-    /// Returns true if TRANSFORM of an eye may begin.
+    /// Returns true if TRANSFORM of a drawing (the picture of one eye) may begin.
     ///
-    /// All slaves must have finished EDIT of the eye's frame. (TR94 requires only that this EDIT has begun.) RENDER of
-    /// the 2nd previous eye and COPY of the 3rd previous eye must be complete. The function is not used for the first
-    /// eye of a frame, because each slave begins that eye when its own edits are done.
+    /// All slaves must have finished EDIT of the drawing's frame. (TR94 requires only that this EDIT has begun.) RENDER
+    /// of the second previous drawing and COPY of the third previous drawing must be complete. The rule does not apply
+    /// to the first eye of a frame. Each slave begins the first eye when its own edits are done.
     #[must_use]
     pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
         self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)
     }
 
-    /// Returns true if a bin context of the slaves and a region context of the renderers are free for a drawing. Each
+    /// Returns true if a drawing can use a bin context of the slaves and a region context of the renderers. Each
     /// processor and each renderer has two contexts.
     const fn buffers_free(&self, drawing: EyeDrawing) -> bool {
         self.rendered + 1 >= drawing.0 && self.copied + 2 >= drawing.0
     }
 
-    /// Returns true if RENDER of an eye may begin. All slaves must have finished TRANSFORM of this eye, and RENDER of
-    /// the previous eye must be complete.
+    /// Returns true if RENDER of a drawing (the picture of one eye) may begin. All slaves must have finished TRANSFORM
+    /// of this drawing, and RENDER of the previous drawing must be complete.
     #[must_use]
     pub const fn may_render(&self, drawing: EyeDrawing) -> bool {
         self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
-    /// Returns true if the hidden half of the drawing's frame buffer is free. It is free when the previous frame has
-    /// become visible.
+    /// Returns true if the hidden half of the drawing's frame buffer is free. The half is free when the previous frame
+    /// has become visible.
     #[must_use]
     pub const fn frame_buffer_available(&self, drawing: EyeDrawing) -> bool {
         self.swapped >= drawing.frame(self.eyes).0
     }
 
-    /// Returns true if COPY of an eye may begin. The frame buffer must be free, and COPY of the previous eye must be
-    /// complete.
+    /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden half of the frame buffer must
+    /// be free, and COPY of the previous drawing must be complete.
     ///
-    /// Each frame buffer has its own ring port. TR94 nevertheless copies to only one frame buffer at a time, one eye
-    /// after the other.
+    /// Each frame buffer has its own ring port. Nevertheless, the rule of TR94 permits copies to only one frame buffer
+    /// at a time, one eye after the other.
     #[must_use]
     pub const fn may_copy(&self, drawing: EyeDrawing) -> bool {
         self.frame_buffer_available(drawing) && self.copied >= drawing.0
     }
 
-    /// Returns true if a swap may make a frame visible, which requires that COPY of all its eyes is complete.
+    /// Returns true if a swap may make a frame visible. COPY of all eyes of the frame must be complete.
     #[must_use]
     pub const fn may_swap(&self, frame: PictureNumber) -> bool {
         self.copied >= EyeDrawing::first_of(frame.next(), self.eyes).0
@@ -126,7 +127,7 @@ mod tests {
 
     #[test]
     fn mono_edit_waits_for_send_transform_render_and_copy_of_the_frames_before() {
-        // EDIT 5 needs SEND 5, TRANSFORM 4, RENDER 3, COPY 2 (TR94).
+        // EDIT 5 needs SEND 5, TRANSFORM 4, RENDER 3 and COPY 2 (TR94).
         let ready = Completed { eyes: 1, sent: 6, edited: 5, transformed: 5, rendered: 4, copied: 3, swapped: 0 };
         assert!(ready.may_edit(PictureNumber(5)));
         for blocked in [
@@ -141,7 +142,7 @@ mod tests {
 
     #[test]
     fn stereo_transform_waits_for_the_second_and_third_previous_eye() {
-        // The right eye of frame 4 is drawing 9: RENDER of 7, COPY of 6.
+        // The right eye of frame 4 is drawing 9, which needs RENDER of drawing 7 and COPY of drawing 6.
         let ready = Completed { eyes: 2, sent: 5, edited: 5, transformed: 9, rendered: 8, copied: 7, swapped: 0 };
         assert!(ready.may_transform(EyeDrawing(9)));
         assert!(!Completed { rendered: 7, ..ready }.may_transform(EyeDrawing(9)));
@@ -157,7 +158,7 @@ mod tests {
     }
     #[test]
     fn copy_of_the_right_eye_waits_for_copy_of_the_left() {
-        // Frame 3 is drawings 6 and 7. Frame 2 has been swapped in, so both frame buffers are free.
+        // Frame 3 consists of drawings 6 and 7. Frame 2 has become visible, so both frame buffers are free.
         let state = Completed { swapped: 3, copied: 6, ..Completed::none(2) };
         assert!(state.may_copy(EyeDrawing(6)));
         assert!(state.frame_buffer_available(EyeDrawing(7)) && !state.may_copy(EyeDrawing(7)));
@@ -168,7 +169,7 @@ mod tests {
 
     #[test]
     fn a_mono_copy_waits_for_nothing_but_its_frame_buffer() {
-        // A frame before that has been swapped in has been copied.
+        // Frame 2 has become visible, so it was copied.
         let state = Completed { swapped: 3, copied: 3, ..Completed::none(1) };
         assert!(state.may_copy(EyeDrawing(3)) && !state.may_copy(EyeDrawing(4)));
     }

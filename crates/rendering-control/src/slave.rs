@@ -15,27 +15,27 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// State that both programs of a slave share.
+/// State that the two programs of a slave share.
 #[derive(Debug, Default)]
 struct SlaveState {
     views: VecDeque<FrameView>,
-    /// The first frame that the master has not permitted for EDIT.
+    /// The first frame for which the master has not permitted EDIT.
     next_edit: PictureNumber,
     next_transform: EyeDrawing,
-    /// The bins of both contexts. A context is one of two sets of bins. `None` for an empty context.
+    /// The bins of both contexts. A context is one of two sets of bins. An empty context has the value `None`.
     bins: [Option<Arc<Pass>>; 2],
     regions_left: [u32; 2],
 }
 
 impl SlaveState {
-    /// Fills a context with the bins of a pass. They stay until the slave has received a token for each region.
+    /// Fills a context with the bins of a pass. The bins stay until the slave has received a token for each region.
     fn fill(&mut self, context: usize, pass: Arc<Pass>, regions: u32) {
         self.bins[context] = Some(pass);
         self.regions_left[context] = regions;
     }
 
-    /// Counts a token for the bins of a context. Returns true if it was the last token, after which the context is
-    /// empty.
+    /// Counts a token for the bins of a context. After the last token, the function empties the context and returns
+    /// true.
     fn count_token(&mut self, context: usize) -> bool {
         self.regions_left[context] -= 1;
         let is_last = self.regions_left[context] == 0;
@@ -50,8 +50,8 @@ type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
 /// Returns the programs of the slave with index `index`, for both priorities of its board.
 ///
-/// Each program fails with [`Fault::Memory`] if display list, commands or bins do not fit. It fails with
-/// [`Fault::Protocol`] for an unknown message.
+/// Each program fails with [`Fault::Memory`] if the display list, commands or bins do not fit into memory. A program
+/// fails with [`Fault::Protocol`] for an unknown message.
 pub fn slave(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -80,7 +80,7 @@ async fn transform_program(
     share: Share,
     state: SharedSlaveState,
 ) -> Result<(), Fault> {
-    // Account for memory and load the display list before the first frame.
+    // Reserve memory and load the display list before the first frame.
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
     gp.install(|processor| share.install(processor))?;
@@ -112,10 +112,10 @@ async fn edit(
     Ok(view)
 }
 
-/// Performs TRANSFORM: makes the commands of all primitives that the slave holds, and puts them into bins.
+/// Performs TRANSFORM. The slave makes the commands of all its primitives, and puts the commands into bins.
 ///
-/// If the bins of two drawings do not fit together, TRANSFORM waits. It begins when RENDER of the previous drawing has
-/// freed its bins. The simulated program has the number of entries in advance. A real program would estimate this
+/// If the bins of two drawings do not fit into memory together, TRANSFORM waits until RENDER of the previous drawing
+/// has freed its bins. The simulated program has the number of entries in advance. A real program would estimate this
 /// number from the previous drawing.
 async fn transform(
     gp: &Gp,
@@ -153,7 +153,8 @@ async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: 
     gp.until("room in the bins", || fits().then_some(())).await;
 }
 
-/// Reserves memory for commands and bins. If the bins do not fit, the error names the region whose bin was too large.
+/// Reserves memory for commands and bins. If the bins do not fit, the error contains the region whose bin was too
+/// large.
 fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     gp.reserve(Account::Commands(context), pass.command_bytes(), None)?;
     let mut bytes = 0;
@@ -164,7 +165,7 @@ fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Runs the interrupt program: it stores views and permissions when they arrive, and handles tokens.
+/// Runs the interrupt program. The program stores views and permissions, and handles tokens.
 async fn token_program(
     gp: Gp,
     config: RenderingControlConfig,
@@ -174,7 +175,7 @@ async fn token_program(
     loop {
         let received = gp.next_message().await;
         let order = StageOrder::read(&received, gp.node());
-        // The software cost of a token is paid in `walk`, that of other messages here.
+        // `walk` spends the software cost of a token. The software cost of other messages is spent here.
         if let Ok(StageOrder::Token(token)) = order {
             walk(&gp, &config, index, &state, &received, token).await?;
             continue;
@@ -204,16 +205,16 @@ async fn walk(
 ) -> Result<(), Fault> {
     let renderer = config.renderers[usize::from(token.renderer)];
     let context = (token.drawing.0 % 2) as u8;
-    // The bins of this drawing's context.
+    // Get the bins of this drawing's context.
     let pass = state.borrow().bins[usize::from(context)].clone();
     let envelope = envelope(config, token);
     let handing = pass.as_ref().map(|pass| BinHandoffWork { pass, context, view: 0, region: token.region, envelope });
     let lists = pass.as_ref().map_or_else(Vec::new, |pass| region_messages(pass, token.region, 0, envelope));
-    // Observers of the renderer see for which eye it draws.
+    // The frame buffer in the message shows observers for which eye the renderer draws.
     let frame_buffer = config.target(token.drawing, token.region).frame_buffer;
     let lists = lists.into_iter().map(|list| list.for_frame_buffer(frame_buffer));
     let messages = lists.map(|list| (renderer, list.words(), Body::Commands(list)));
-    // Pay for the token, hand over the bin, and pass the token on in the background.
+    // Spend the cost of the token, send the bin, and pass the token on in the background.
     gp.answer(received, handing.as_ref(), messages, passed_on(config, index, token)).await?;
     free_bins(gp, state, token.drawing)
 }
@@ -232,7 +233,7 @@ fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (No
     (receiver, words, body)
 }
 
-/// Frees a drawing's commands and bins when the tokens of all its regions have been here.
+/// Frees a drawing's commands and bins after the slave has received the tokens of all regions.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(), Fault> {
     let context = (drawing.0 % 2) as u8;
     if state.borrow_mut().count_token(usize::from(context)) {

@@ -25,7 +25,7 @@ impl BoundRegion {
     }
 }
 
-/// All regions of both eyes, each bound to a renderer for the whole run.
+/// All regions of both eyes, each with a renderer that is fixed for the whole run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
     regions: Vec<BoundRegion>,
@@ -34,11 +34,11 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Distributes the regions round-robin to the renderers. The order is: top left eye, top right eye, bottom left
-    /// eye, bottom right eye.
+    /// Assigns the regions to the renderers in turn. The order is: top regions of the left eye, top regions of the
+    /// right eye, bottom regions of the left eye, bottom regions of the right eye.
     ///
-    /// Each renderer thus gets nearly the same number of regions of each kind. Clumps are sent in this order, so that
-    /// all renderers have work.
+    /// Each renderer thus gets nearly the same number of regions of each kind. Clumps are sent to the regions in this
+    /// order, so that all renderers have work.
     ///
     /// # Errors
     ///
@@ -61,7 +61,7 @@ impl Binding {
         Ok(Self { regions: regions.collect(), renderers, copy })
     }
 
-    /// Returns all regions, in the order in which a clump is sent to them.
+    /// Returns all regions, in the order in which they receive a clump.
     #[must_use]
     pub fn regions(&self) -> &[BoundRegion] {
         &self.regions
@@ -70,7 +70,8 @@ impl Binding {
     /// Returns the regions of a renderer in the order of copying. The eyes alternate.
     ///
     /// A copy that is not split includes both halves of the picture and begins with the left eye. A split copy includes
-    /// one half (`top` or bottom). Odd renderers begin a split copy with the right eye.
+    /// only the top half (`top`) or only the bottom half. Renderers with an odd index begin a split copy with the right
+    /// eye.
     #[must_use]
     pub fn copies(&self, renderer: usize, top: bool) -> Vec<BoundRegion> {
         let of_renderer = self.regions.iter().filter(|b| b.renderer == renderer);
@@ -88,8 +89,8 @@ impl Binding {
     }
 }
 
-/// Reorders regions so that the eyes alternate as long as both eyes have regions left. The eye of the first region
-/// stays first.
+/// Reorders regions so that left and right eye alternate while both eyes have regions left. The first region stays
+/// first.
 fn alternate(regions: Vec<BoundRegion>) -> Vec<BoundRegion> {
     let Some(first) = regions.first().map(|b| b.eye) else { return regions };
     let (mut ours, mut others): (Vec<_>, Vec<_>) = regions.into_iter().partition(|b| b.eye == first);

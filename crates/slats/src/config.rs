@@ -11,13 +11,13 @@ use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNu
 /// The boards of the pipeline, and the variant of Slats.
 #[derive(Clone, Debug)]
 pub struct SlatsConfig {
-    /// Node of the host interface, which sends the viewing transforms.
+    /// Ring port of the host, which sends the viewing transforms.
     pub host: NodeId,
-    /// Nodes of the GPs; the first one is the leader.
+    /// Ring ports of the GPs. The first GP is the leader.
     pub processors: Vec<NodeId>,
-    /// Nodes of the renderers, at the indices that [`crate::BoundRegion`] uses.
+    /// Ring ports of the renderers. [`crate::BoundRegion`] uses the indices of this list.
     pub renderers: Vec<NodeId>,
-    /// Nodes of the left and the right eye's frame buffer.
+    /// Ring ports of the left and the right eye's frame buffer.
     pub frame_buffers: [NodeId; 2],
     /// Schedule for copying the regions of a field.
     pub copy: CopySchedule,
@@ -28,7 +28,7 @@ pub struct SlatsConfig {
     pub shading: Shading,
     /// Division of pixel memory among contexts.
     pub layout: Layout,
-    /// True if the run may compute pixels. Otherwise no command words are made, but all times stay the same.
+    /// True if the run can compute pixels. If false, no command words are made, but all times stay the same.
     pub pixels: bool,
 }
 
@@ -58,8 +58,8 @@ impl SlatsConfig {
 
     /// Returns the place in a frame buffer that receives a region.
     ///
-    /// A field is written into the lines that the beam does not scan at that time. Interlace thus acts as a double
-    /// buffer, and without a backup buffer only buffer 0 is needed.
+    /// While a field is written into its lines, the beam scans the other lines of the frame. Interlace thus acts as a
+    /// double buffer. Without a backup buffer, only buffer 0 is needed.
     pub(crate) fn target(&self, bound: &crate::BoundRegion, field: PeriodNumber, buffer: u8) -> CopyTarget {
         CopyTarget {
             frame_buffer: self.frame_buffers[bound.eye.index()],

@@ -2,11 +2,11 @@
 
 use thiserror::Error;
 
-/// The error for a machine on which Slats cannot run.
+/// The reason why Slats cannot run on a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SlatsConfigError {
-    /// The renderers have fewer contexts than there are regions.
+    /// The number of contexts of all renderers is less than the number of regions.
     #[error(
         "Slats binds 20 field regions statically: expected at least {expected} renderers of four contexts, found {found}"
     )]

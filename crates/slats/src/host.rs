@@ -1,4 +1,4 @@
-//! Program of the host: it performs SEND for every new report of the tracker.
+//! Program of the host, which performs SEND for every new report of the tracker.
 
 use crate::config::SlatsConfig;
 use pphigs::{FrameView, send_as_tracked};
@@ -8,15 +8,15 @@ use pxpl5_wire::ViewNumber;
 
 /// Sends the viewing transforms of both eyes to the leading GP.
 ///
-/// The first message is sent at the start of the run, so that a first field can be drawn. Then a message follows for
-/// every report of the tracker ([`send_as_tracked`]). The GP uses the newest view when it begins a field.
+/// The host sends the first message at the start of the run, so that the GP can draw the first field. Then a message
+/// follows for every report of the tracker ([`send_as_tracked`]). The GP uses the newest view when it begins a field.
 ///
 /// `next_report` returns the time at which the first report after a given time arrives. `view_of` returns a view whose
 /// pose is sampled at the given time.
 ///
 /// # Errors
 ///
-/// The function itself never returns an error; its return type is that of every program.
+/// The function never returns an error. Its return type is the return type of all programs.
 pub async fn host(
     gp: Gp,
     config: SlatsConfig,

@@ -1,5 +1,5 @@
-//! Slats: a pipeline that draws a new image for every NTSC field. It runs on one graphics processor (GP). The model
-//! also supports several GPs, which the prototype did not.
+//! Slats: a pipeline that draws a new image for every NTSC field. The pipeline runs on one graphics processor (GP). The
+//! model also supports several GPs, although the prototype had only one.
 //!
 //! ```text
 //!   retrace n                                                    retrace n+1
@@ -10,33 +10,34 @@
 //! A field that is shown from retrace n+1 on is drawn between the retraces n and n+1. The latency is therefore one
 //! field.
 //!
-//! - SEND: the host sends the viewing transforms whenever the tracker has new ones. Each field uses the newest
-//!   transforms at its start; they may be those of the previous field. Primitives are in memory from the start.
+//! - SEND: the host sends viewing transforms for every new report of the tracker. Each field uses the newest transforms
+//!   that have arrived at its start. If no new transforms have arrived, the field uses the transforms of the previous
+//!   field. Primitives are in memory from the start.
 //! - TRANSFORM: the primitives are divided into *clumps* of 30. A clump goes to all regions of both eyes
-//!   ([`pphigs::RegionBinning::All`], as in the prototype) or to the regions that it touches. There is one clump
-//!   buffer.
+//!   ([`pphigs::RegionBinning::All`], as in the prototype) or only to the regions that it touches. Each GP has one
+//!   clump buffer.
 //! - RENDER: every region has a fixed renderer, and only the lines of the coming field are drawn. A renderer holds up
-//!   to four region contexts in the 208 bits of its pixels. There is room only for Gouraud shading.
+//!   to four region contexts in the 208 bits of its pixels. This memory is sufficient only for Gouraud shading.
 //! - COPY, whole ([`CopySchedule::Whole`]): all regions are copied before the retrace.
-//! - COPY, split ([`CopySchedule::Split`]): the top regions are copied before the retrace, the bottom regions right
-//!   after it. Each renderer acknowledges its last top region by a message, which takes software time. When all
-//!   renderers have acknowledged, the GP orders the copies of the bottom regions. In TR94, too, the GP ensures that all
-//!   top regions go first.
-//! - COPY, backup ([`CopySchedule::Backup`], not in the prototype): like split, but into the other buffer. If a field's
-//!   top regions are not ready at its retrace, the last complete field of the same lines is shown again. The late field
-//!   is shown at the next retrace of its lines.
+//! - COPY, split ([`CopySchedule::Split`]): the top regions are copied before the retrace, and the bottom regions
+//!   directly after the retrace. Each renderer acknowledges its last top region by a message, which takes software
+//!   time. After all acknowledgements, the GP orders the copies of the bottom regions. In TR94, the GP also ensures
+//!   that all top regions are copied first.
+//! - COPY, backup ([`CopySchedule::Backup`], not in the prototype): like split, but into the buffer that is not shown.
+//!   If a field's top regions are not ready at its retrace, the last complete field of the same lines is shown again.
+//!   The late field is shown at the next retrace of its lines.
 //! - Without a backup buffer, a field that is late at its retrace is shown as far as it is complete. The GPs continue
 //!   with the field that begins at the next retrace.
 //!
-//! If there are several GPs, each holds every n-th primitive. The first GP sends the copy commands when all other GPs
-//! have reported that their last clump was accepted.
+//! If there are n GPs, each GP holds every n-th primitive. The first GP sends the copy commands when all other GPs have
+//! reported that their last clump was accepted.
 //!
 //! **Not modelled:** loading of the primitives at initialization.
 //!
-//! Assumed: the odd renderers begin a split copy with the right eye, so that copies to both frame buffers start at
-//! once. If all renderers began with the left eye, ten regions would take the time of six regions instead of the
-//! published five. A whole copy begins with the left eye on every renderer. Then 20 regions take the time of 11
-//! regions, as published.
+//! Assumed: renderers with an odd index begin a split copy with the right eye, so that copies to both frame buffers
+//! start at the same time. If all renderers began with the left eye, ten regions would take the time of six regions
+//! instead of the published five. A whole copy begins with the left eye on every renderer. Then 20 regions take the
+//! time of 11 regions, as published.
 //!
 //! Sources: TR94, I3D95.
 

@@ -22,23 +22,23 @@ pub const CLUMP: usize = 30;
 /// First word of a message to the leading GP: the sender's clumps of a field have been accepted.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 
-/// First word of the message by which the leading GP begins a field on the other GPs. The field's number and view
-/// follow.
+/// First word of the message by which the leading GP begins a field on the other GPs. The number and the view of the
+/// field follow this word.
 const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
 struct ProcessorState {
-    /// The newest view from the host. Only the leading GP stores it.
+    /// The newest view from the host. Only the leading GP stores this view.
     newest: Option<FrameView>,
-    /// Fields that the leading GP has begun. Only the other GPs store them.
+    /// Fields that the leading GP has begun. Only the other GPs store these fields.
     begun: VecDeque<(PeriodNumber, FrameView)>,
-    /// Number of renderers that have acknowledged the copy of their last region, counted since the last copy order.
+    /// Number of renderers that have acknowledged the copy of their last region since the last copy order.
     copied: usize,
-    /// The prepared copies of the bottom regions. They wait until the top regions are copied.
+    /// The prepared copies of the bottom regions. These copies wait until the top regions are copied.
     bottom: Option<Bottom>,
     /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],
-    /// For each field being drawn, the number of other GPs that have finished it.
+    /// For each unfinished field, the number of other GPs that have finished their share of the field.
     finished: Vec<(PeriodNumber, usize)>,
 }
 
@@ -48,12 +48,14 @@ struct Bottom {
     chain: Chain,
     /// Field of the bottom regions.
     field: PeriodNumber,
-    /// Earliest field period in which the copy may start, since the beam still scans the lines before this period.
+    /// Earliest field period in which the copy may start. Before this period, the beam still scans the lines of the
+    /// copy.
     not_before: PeriodNumber,
-    /// Number of renderers that copy top regions. All of them must have acknowledged their copies before the bottom
-    /// copies start.
+    /// Number of renderers that copy top regions. The bottom copies start after all these renderers have acknowledged
+    /// their copies.
     copiers: usize,
-    /// True between two moments: the field is requested for display, and the chain of copies starts.
+    /// True while the chain of copies is about to start: from the request to display the field until the start of the
+    /// copies.
     is_taken: bool,
 }
 
@@ -61,8 +63,8 @@ type SharedState = Rc<RefCell<ProcessorState>>;
 
 /// Returns the programs of the GP with index `index`, for both priorities of its board.
 ///
-/// Each program fails with [`Fault::Memory`] if the display list does not fit. It fails with [`Fault::Protocol`] for an
-/// unknown message.
+/// Each program fails with [`Fault::Memory`] if the display list does not fit into memory. A program fails with
+/// [`Fault::Protocol`] for an unknown message.
 pub fn processor(
     gp: &Gp,
     config: &SlatsConfig,
@@ -92,27 +94,28 @@ pub fn processor(
     })
 }
 
-/// The frame buffers under [`CopySchedule::Backup`]. The leading GP requests them to show the last complete field.
+/// The frame buffers under [`CopySchedule::Backup`]. The leading GP asks the frame buffers to show the last complete
+/// field.
 #[derive(Clone, Copy, Debug)]
 struct Backup {
     frame_buffers: [NodeId; 2],
 }
 
-/// A wake-up event of the interrupt program.
+/// An event that ends the wait of the interrupt program.
 enum Event {
     Message(Received),
     Retrace(PeriodNumber),
 }
 
-/// Runs the interrupt program: it stores the newest view and counts finished GPs. When the top regions are copied, it
-/// starts the copies of the bottom regions.
+/// Runs the interrupt program. The program stores the newest view and counts the GPs that have finished a field. When
+/// the top regions are copied, the program starts the copies of the bottom regions.
 ///
-/// With a backup buffer it also requests, after every retrace, the field that the frame buffers show in the next
-/// period.
+/// With a backup buffer, the program also sends a request after every retrace. This request selects the field that the
+/// frame buffers show in the next period.
 async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<(), Fault> {
     let mut present = gp.field();
     loop {
-        // With a backup the program also wakes at every retrace.
+        // With a backup buffer, a retrace also ends the wait.
         let event = gp
             .until("a message", || {
                 let retrace = || Some(gp.field()).filter(|field| backup.is_some() && *field > present);
@@ -131,7 +134,7 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
                 copy_bottom_when_due(&gp, &state, backup).await;
             }
             Event::Retrace(field) => {
-                // Request the field for the next period early; a later request replaces this one.
+                // Request the field for the next period early. A later request can replace this request.
                 present = field;
                 if let Some(backup) = backup {
                     backup.ask(&gp, &state, field.next()).await;
@@ -142,10 +145,10 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
 }
 
 impl Backup {
-    /// Records that all top regions of a field are copied. If the field is due at the next retrace, requests its
-    /// display.
+    /// Records that all top regions of a field are copied. If the field is due at the next retrace, the function
+    /// requests its display.
     ///
-    /// The copies of the bottom regions follow. They are faster than the beam.
+    /// The copies of the bottom regions follow. These copies are faster than the beam.
     async fn show_next(self, gp: &Gp, state: &SharedState, field: PeriodNumber) {
         {
             let state = &mut *state.borrow_mut();
@@ -157,10 +160,10 @@ impl Backup {
         }
     }
 
-    /// Requests that the frame buffers show, from the start of `period` on, the last complete field of the lines of
-    /// this period. Requests nothing if the period has already begun.
+    /// Requests a field that the frame buffers show from the start of `period` on. The field is the last complete field
+    /// with the lines of this period. If the period has already begun, the function requests nothing.
     ///
-    /// A later request replaces an earlier one.
+    /// A later request replaces an earlier request.
     async fn ask(self, gp: &Gp, state: &SharedState, period: PeriodNumber) {
         let buffer = state.borrow().complete[FieldParity::of_field(period) as usize];
         let requests = self.frame_buffers.map(|node| (node, 2, Body::Words(swap_request(buffer))));
@@ -171,12 +174,14 @@ impl Backup {
     }
 }
 
-/// Starts the copies of a field's bottom regions when all its top regions are copied and the beam has left the lines.
+/// Starts the copies of a field's bottom regions when two conditions hold: all top regions of the field are copied, and
+/// the beam has left the lines.
 ///
-/// With a backup buffer the display of the field is requested first, since the copies will occupy the ports of the
-/// frame buffers.
+/// With a backup buffer, the function first requests the display of the field, because the copies then occupy the ports
+/// of the frame buffers.
 async fn copy_bottom_when_due(gp: &Gp, state: &SharedState, backup: Option<Backup>) {
-    // Decide within one borrow, and mark the chain as taken, since the steps below may suspend.
+    // Decide within one borrow, and mark the chain as taken. In the steps below, the program can wait while the other
+    // program runs.
     let due = {
         let state = &mut *state.borrow_mut();
         let copied = state.copied;
@@ -241,7 +246,8 @@ impl SlatsProcessor {
         if self.index == 0 { self.lead().await } else { self.follow().await }
     }
 
-    /// Runs the leading GP's program: at each retrace it begins a new field if the previous field is finished.
+    /// Runs the leading GP's program. At each retrace, the program begins a new field if the previous field is
+    /// finished.
     async fn lead(self) -> Result<(), Fault> {
         self.gp.until("the first view from the host", || self.state.borrow().newest.as_ref().map(|_| ())).await;
         let mut begin_at = self.gp.field().next();
@@ -274,7 +280,7 @@ impl SlatsProcessor {
             if self.config.copy.is_split() {
                 // Prepare the chain for the bottom regions before it is due.
                 let chain = self.gp.prepare(self.copies(field, false)).await;
-                // With a backup the beam scans the other buffer, so the copy need not wait for the period.
+                // With a backup buffer, the beam scans the other buffer, so the copy need not wait for the period.
                 let not_before = if self.config.copy == CopySchedule::Backup { PeriodNumber::FIRST } else { field };
                 let bottom = Bottom { chain, field, not_before, copiers, is_taken: false };
                 self.state.borrow_mut().bottom = Some(bottom);
@@ -284,15 +290,15 @@ impl SlatsProcessor {
         }
     }
 
-    /// Waits until the copies of the previous field's bottom regions have started, since the next messages clear these
+    /// Waits until the copies of the previous field's bottom regions have started. The next messages clear these
     /// regions.
     async fn bottom_started(&self) {
         self.gp.until("the copies of the top regions", || self.state.borrow().bottom.is_none().then_some(())).await;
     }
 
-    /// Returns the field that is drawn next: the one that begins at the next retrace.
+    /// Returns the next field to draw, which is the field that begins at the next retrace.
     ///
-    /// With a backup buffer even and odd fields alternate even if fields are late, so that both kinds of lines are
+    /// With a backup buffer, even and odd fields alternate even if fields are late, so that both kinds of lines are
     /// renewed.
     fn next_field(&self, now: PeriodNumber, last: Option<PeriodNumber>) -> PeriodNumber {
         let field = now.next();
@@ -300,19 +306,19 @@ impl SlatsProcessor {
         if self.config.copy == CopySchedule::Backup && same_lines { field.next() } else { field }
     }
 
-    /// Returns the index of the frame buffer's half that a field is written to.
+    /// Returns the index of the buffer into which a field is written.
     fn buffer(&self, field: PeriodNumber) -> u8 {
         let complete = self.state.borrow().complete[FieldParity::of_field(field) as usize];
         if self.config.copy == CopySchedule::Backup { 1 - complete } else { 0 }
     }
 
-    /// Runs the program of the other GPs: it draws this GP's share of every field that the leading GP begins.
+    /// Runs the program of the other GPs. The program draws this GP's share of every field that the leading GP begins.
     async fn follow(self) -> Result<(), Fault> {
         loop {
             let (field, view) =
                 self.gp.until("the leading processor", || self.state.borrow_mut().begun.pop_front()).await;
             self.field(field, &view).await?;
-            // The message is queued behind the clumps, so it arrives after they have been accepted.
+            // The message waits in the queue behind the clumps, so it arrives after the acceptance of the clumps.
             let [low, high] = field.to_words();
             let words = [CLUMPS_ACCEPTED, low, high];
             self.gp.send(self.config.processors[0], 3, Body::Words(words.into())).await;
@@ -343,7 +349,7 @@ impl SlatsProcessor {
         self.gp.send_batch(messages.collect()).await;
     }
 
-    /// Draws this GP's share of a field, which is shown from the retrace of `field` on.
+    /// Draws this GP's share of a field. The field is shown from the retrace of `field` on.
     async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);
@@ -365,7 +371,7 @@ impl SlatsProcessor {
                 self.gp.begin(Stage::Render, number, None);
             }
             let sent = self.send(&passes, i == 0 && self.is_alone()).await;
-            // There is no second buffer: the next clump is made in this buffer while it is being emptied.
+            // There is no second buffer. The next clump is made in this buffer while the DMA empties the buffer.
             if let Some(ticket) = sent.filter(|_| i < last) {
                 self.gp.draining(ticket).await;
             }
@@ -390,8 +396,8 @@ impl SlatsProcessor {
         (self.config.renderers[renderer], list.words(), Body::Commands(list))
     }
 
-    /// Returns the copy commands of the top regions if `top` is true, otherwise those of the bottom regions. If copies
-    /// are not split, the commands for the top regions include the bottom regions.
+    /// Returns the copy commands of the top regions if `top` is true, and of the bottom regions if `top` is false. If
+    /// copies are not split, the commands for the top regions include the bottom regions.
     fn copies(&self, field: PeriodNumber, top: bool) -> Vec<(NodeId, u32, Body)> {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);

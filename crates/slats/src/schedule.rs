@@ -7,15 +7,15 @@ pub enum CopySchedule {
     Whole,
     /// Copies the top regions before the retrace and the bottom regions right after it (the COPY optimization).
     Split,
-    /// Copies top regions, then bottom regions. They go into the buffer that does not hold the last complete field of
-    /// the same lines.
+    /// Copies top regions, then bottom regions. The regions go into the buffer without the last complete field of the
+    /// same lines.
     ///
     /// A field is shown at its retrace if its top regions are ready. Otherwise the last complete field is shown again,
     /// and the late field appears at the next retrace of its lines.
     ///
-    /// This schedule is not in the prototype. TR94 proposes a backup field as future work; spare bandwidth of the frame
-    /// buffers would fill it. With two alternating buffers no such copy is needed, since the last complete field stays
-    /// where it is.
+    /// This schedule is not in the prototype. TR94 proposes a backup field as future work, with a copy that uses the
+    /// spare bandwidth of the frame buffers. With two alternating buffers no such copy is needed, because the last
+    /// complete field stays in its buffer.
     Backup,
 }
 

@@ -3,12 +3,12 @@
 //!
 //! The code of a vertex has one bit per plane, which is set on the positive side. The `and` of a primitive's codes
 //! gives the planes with the whole primitive on their positive side. The complement of the `or` gives the planes with
-//! the whole primitive on their negative side. A region of space is defined by the signs of its points. A primitive
-//! cannot touch a region if one plane separates the primitive from the region.
+//! the whole primitive on their negative side. A region of space is defined by the signs of the plane equations at its
+//! points. A primitive cannot touch a region if one plane separates the primitive from the region.
 
 use serde::{Deserialize, Serialize};
 
-/// A convex region bounded by planes. It is described by the signs that plane equations have at its points.
+/// A convex region bounded by planes. The region is described by the signs that plane equations have at its points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BinRegion {
     /// Signs of the plane equations in the region: bit i is set if the region lies on the positive side of plane i.
@@ -30,16 +30,16 @@ pub struct BinLayout {
     pub tolerance: f64,
 }
 
-/// The choice of the planes that decide which bins a primitive is in.
+/// The choice of the planes with which the test for each bin decides if a primitive belongs to the bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
-    /// The test uses only the planes that bound a region, so a primitive gets into more bins. This is the first version
-    /// in the paper.
+    /// The test of a region uses only the two planes that bound the region, so a primitive gets into more bins than
+    /// with all planes. This is the first version in the paper.
     TwoPlanes,
-    /// All planes of the layout decide for each region.
+    /// The test of each region uses all planes of the layout.
     #[default]
     AllPlanes,
 }
@@ -111,8 +111,8 @@ impl BinLayout {
         touched.fold(0, |groups, region| groups | 1 << region.group)
     }
 
-    /// Returns the regions, one bit each in the layout's order, that a primitive with these corners may touch. All
-    /// planes of the layout decide.
+    /// Returns the regions, one bit each in the layout's order, that a primitive with these corners may touch. The test
+    /// uses all planes of the layout.
     #[must_use]
     pub fn touched_regions(&self, corners: &[[f64; 3]], tolerance: BinTolerance) -> u64 {
         let codes = Codes::of(self, corners, tolerance, 0.0);
@@ -124,11 +124,11 @@ impl BinLayout {
 /// Signs of the plane equations in each sector, from +x to +z. The highest of the four binary digits is bit 3 (x + z).
 const SECTOR_SIGNS: [u32; 8] = [0b1111, 0b1011, 0b1001, 0b0001, 0b0000, 0b0100, 0b0110, 0b1110];
 
-/// Planes that bound each sector. Each of its two planes has one bit.
+/// Planes that bound each sector. Each of the sector's two planes has one bit.
 const SECTOR_BOUNDS: [u32; 8] = [0b0101, 0b0110, 0b1010, 0b1001, 0b0101, 0b0110, 0b1010, 0b1001];
 
-/// The combined codes of a primitive. A bit of `and` is set if the whole primitive lies on the positive side of the
-/// plane. A bit of `or` is set if any part of it does.
+/// The combined codes of a primitive, with one bit per plane. A bit of `and` is set if the whole primitive lies on the
+/// positive side of the bit's plane. A bit of `or` is set if any part of the primitive lies on this side.
 struct Codes {
     and: u32,
     or: u32,
@@ -161,7 +161,7 @@ impl Codes {
 }
 
 /// Returns two booleans for one plane. The first is true if all of a primitive lies on the plane's positive side. The
-/// second is true if any part of it does.
+/// second is true if any part of the primitive lies on this side.
 ///
 /// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
 /// plane is therefore drawn by the slices on both sides, because the half-open rule may assign it to either side.

@@ -9,16 +9,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SliceClip {
-    /// Only the near and far planes of an orthographic projection clip. The volume is a prism as thick as the exact
-    /// slice at the rim.
+    /// Clipping uses only the near and far planes of an orthographic projection. The volume is a prism as thick as the
+    /// exact slice at the rim.
     Prism,
-    /// Two user clip planes clip in each pass. Each lobe of the double wedge has its own pass.
+    /// Each pass clips with two user clip planes. Each lobe (half) of the double wedge has its own pass.
     UserPlanes,
-    /// The fragment program tests the product of the interpolated distances from both planes. This gives the exact
-    /// volume in one pass.
+    /// The fragment program tests the product of the interpolated distances from both boundary planes of the slice.
+    /// This gives the exact volume in one pass.
     ShaderPlanes,
-    /// Planes whose distance from the slice grows from q pixels at the axis to the exact half thickness at the rim.
-    /// Each side of the axis has its own pass.
+    /// Clip planes whose distance from the slice grows from q pixels at the axis to the exact half thickness at the
+    /// rim. Each side of the axis has its own pass.
     Tapered(
         /// Half thickness q of the volume at the axis, in pixels.
         f64,
@@ -35,11 +35,11 @@ pub enum SliceClip {
     ),
 }
 
-/// Offset of the parallel and the tapered clip, in pixels. It is assumed, 0 to 2. With half a pixel, no slab is thinner
-/// than one pixel.
+/// Offset of the parallel and the tapered clip, in pixels. The offset is assumed (0 to 2). With half a pixel, the
+/// volume of a slice is at least one pixel thick everywhere.
 pub const DEFAULT_OFFSET_PX: f64 = 0.5;
 
-/// Bias of the hyperbolic clip, in square pixels. It is assumed, 0 to 4, as the square of [`DEFAULT_OFFSET_PX`].
+/// Bias of the hyperbolic clip, in square pixels. The bias is assumed (0 to 4) as the square of [`DEFAULT_OFFSET_PX`].
 pub const DEFAULT_HYPERBOLIC_BIAS_PX2: f64 = 0.25;
 
 /// Half of the wedge that one slice represents: sine, cosine and tangent of d/2, where d is the angle between slices.

@@ -58,7 +58,7 @@ impl Primitive {
     }
 }
 
-/// An immutable recording of draw calls. It is replayed for every slice and every pass, on any display.
+/// An immutable recording of draw calls. The recording is replayed for every slice and every pass, on any display.
 ///
 /// Vertices are in world coordinates, and their colours include the lighting. Each vertex was transformed once, during
 /// recording.

@@ -1,4 +1,5 @@
-//! The programming interface: drawing state as in GL, vertices, and drawing. It does not depend on any display.
+//! The programming interface: drawing state as in GL, vertices, and drawing. The interface does not depend on any
+//! display.
 
 use crate::command::{Combine, CommandBuffer, Primitive, Shape};
 use crate::error::{SpatialError, require};
@@ -9,9 +10,9 @@ use std::ops::Range;
 /// A vertex, in the coordinates of its object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
-    /// Position in the object's coordinates. They are pixels if the model-view matrix is the identity.
+    /// Position in the object's coordinates. The unit is the pixel if the model-view matrix is the identity.
     pub position: DVec3,
-    /// Normal of the surface, of any length. It matters only with lighting.
+    /// Normal of the surface, of any length. The normal matters only with lighting.
     pub normal: DVec3,
     pub colour: [u8; 3],
 }
@@ -72,7 +73,7 @@ pub enum Topology {
     Triangles,
     /// Each vertex from the third on forms a triangle with the two vertices before it.
     TriangleStrip,
-    /// Each vertex from the third on forms a triangle with the first vertex and the previous one.
+    /// Each vertex from the third on forms a triangle with the first vertex and the previous vertex.
     TriangleFan,
 }
 
@@ -91,7 +92,7 @@ pub struct Light {
 /// new one. The drawing state does not change.
 #[derive(Clone, Debug)]
 pub struct Context {
-    /// Matrix from object to world coordinates. It must scale uniformly if there is a light.
+    /// Matrix from object to world coordinates. The matrix must scale uniformly if there is a light.
     pub model_view: DMat4,
     /// Side of the square that represents a point, in pixels of the slice.
     pub point_size: f64,
@@ -127,8 +128,8 @@ impl Context {
     ///
     /// # Errors
     ///
-    /// Returns [`SpatialError::Range`] if the range exceeds the buffer. [`SpatialError::Setting`] if a point size or
-    /// line width is not above zero, or if the matrix is not finite.
+    /// Returns [`SpatialError::Range`] if the range exceeds the buffer. Returns [`SpatialError::Setting`] if a point
+    /// size or line width is not above zero, or if the matrix is not finite.
     pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SpatialError> {
         let vertices = buffer.len();
         let Some(run) = buffer.vertices.get(range.clone()) else {
@@ -144,7 +145,7 @@ impl Context {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Index`] names the first index beyond the buffer. Other errors are those of [`Self::draw`].
+    /// [`SpatialError::Index`] names the first index beyond the buffer. All errors of [`Self::draw`] can also occur.
     pub fn draw_indexed(
         &mut self,
         buffer: &VertexBuffer,

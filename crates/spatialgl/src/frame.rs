@@ -1,4 +1,4 @@
-//! A finished volume: the bits of all slices, and the counts of drawing them.
+//! A finished volume: the bits of all slices, and counts of the work to draw them.
 
 use crate::pack::pixel_of_word;
 use crate::projection::Size;
@@ -65,7 +65,7 @@ impl BitPlanes {
         self.words.iter().map(|word| u64::from((word | word >> 8 | word >> 16).to_le_bytes()[0].count_ones())).sum()
     }
 
-    /// Returns a hash of all bits. It does not depend on threads, tiles or the order of drawing.
+    /// Returns a hash of all bits. The hash does not depend on threads, tiles or the order of drawing.
     #[must_use]
     pub fn hash(&self) -> u64 {
         let lit = (0u64..).zip(&self.words).filter(|(_, word)| **word != 0);

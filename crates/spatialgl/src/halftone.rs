@@ -5,9 +5,9 @@ use crate::error::{SpatialError, require};
 
 /// Thresholds of an ordered dither, the same for all channels and slices.
 ///
-/// It is assumed that the matrix is 8 x 8 (2, 4 and 16 are allowed). The threshold of a matrix element M is
+/// The size of the matrix, 8 x 8, is assumed (2, 4 and 16 are allowed). The threshold of a matrix element M is
 /// `floor((2 M + 1) 255 / (2 n^2))`. A bit is set if the channel exceeds the threshold. The value 0 lights no pixels,
-/// and 255 lights all. The value c lights `round(n^2 c / 255)` of `n^2` pixels.
+/// and 255 lights all pixels. The value c lights `round(n^2 c / 255)` of `n^2` pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Halftone {
     size: u32,
@@ -54,8 +54,8 @@ impl Halftone {
     }
 }
 
-/// Returns the element in column i and row j of Bayer's matrix. It interleaves the bits of i xor j and of j, starting
-/// from the lowest.
+/// Returns the element in column i and row j of Bayer's matrix. The element interleaves the bits of i xor j and of j,
+/// starting from the lowest.
 fn bayer(size: u32, i: u32, j: u32) -> u32 {
     let levels = size.trailing_zeros();
     let digit = |bit: u32| ((i ^ j) >> bit & 1) << 1 | (j >> bit & 1);

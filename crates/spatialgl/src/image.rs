@@ -1,4 +1,4 @@
-//! The target image of one slice: eight-bit colours, the stencil, and depth if nearer surfaces hide farther ones.
+//! The target image of one slice: eight-bit colours, the stencil, and depth if nearer surfaces hide farther surfaces.
 
 use crate::command::Combine;
 use crate::projection::Size;
@@ -75,8 +75,8 @@ impl SliceImage {
         }
     }
 
-    /// Returns eight values of each channel, from pixel index `at` on. The leftmost pixel is in the lowest byte. `at`
-    /// is a multiple of 8.
+    /// Returns the red, green and blue values of eight successive pixels, from pixel index `at` on. The leftmost pixel
+    /// is in the lowest byte. `at` is a multiple of 8.
     #[inline(always)]
     pub(crate) fn eight(&self, at: usize) -> [u64; 3] {
         [0, 1, 2].map(|c| {

@@ -20,7 +20,8 @@
 //!   display, and a recording of draw calls does not depend on the display. [`SweptDisplay`] is the spinning screen of
 //!   the paper. [`PlaneStack`] and [`FlatDisplay`] show the same recordings.
 //! - The boundary planes of swept slices come from one table in which opposite planes are exact negatives. Neighbouring
-//!   slices therefore compute the same number for a point between them. [`TieRule`] assigns the point to one of them.
+//!   slices therefore compute the same number for a point between them. [`TieRule`] assigns the point to one of the two
+//!   slices.
 //! - Samples are at pixel centres, with the top-left rule on edges. There is no culling, and only the flat screen has a
 //!   depth test. Edges, near and far plane and slice volume are linear or quadratic in homogeneous window coordinates.
 //!   The pipeline therefore needs neither geometric clipping nor a division before a fragment is accepted.

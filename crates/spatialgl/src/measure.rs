@@ -13,7 +13,7 @@ use serde::Serialize;
 pub struct Connected {
     /// Number of samples inside the image. Neighbouring samples are at most a pixel apart.
     pub samples: u64,
-    /// Number of samples with a drawn pixel among the nine pixels around them.
+    /// Number of shown samples. A sample is shown if its pixel, or one of the eight neighbouring pixels, is drawn.
     pub shown: u64,
 }
 
@@ -26,8 +26,8 @@ impl Connected {
 }
 
 /// Measures how connected the surfaces of a mesh appear on a swept display. Returns `None` if the frame was made
-/// without its colours ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)), because the gaps of the
-/// dither would count.
+/// without its colours ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)), because gaps that the
+/// dither makes would then count as gaps in surfaces.
 #[must_use]
 pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<Connected> {
     let colours = frame.colours.as_ref()?;
@@ -189,8 +189,8 @@ pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
 /// Returns the radius in pixels of the display's dead zone around the axis. In the dead zone, no slice can show any
 /// point of any scene.
 ///
-/// A column of pixels is tested at its centre, at half of the volume's height, on both sides of the axis. It belongs to
-/// the dead zone if no slice accepts this point. Returns `None` if no slice accepts any column.
+/// A column of pixels is tested at its centre, at half of the volume's height, on both sides of the axis. The column
+/// belongs to the dead zone if no slice accepts this point. Returns `None` if no slice accepts any column.
 #[must_use]
 pub fn dead_zone_radius(display: &dyn SpatialDisplay) -> Option<u32> {
     let to_world: Vec<_> = display.views().iter().map(|view| view.view.inverse()).collect();

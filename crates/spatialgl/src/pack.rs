@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Number of three-bit pixels in one word of [`pack_dense`] (P10: 32 / 3).
+/// Number of three-bit pixels in one word of [`pack_dense`] (number P10 of the specification): 32 / 3, rounded down.
 pub const DENSE_PIXELS: usize = 10;
 
-/// Number of pixels in one word as published (P9).
+/// Number of pixels in one word as published (number P9 of the specification).
 pub const PIXELS_PER_WORD: u32 = 8;
 
 /// The order of the eight pixels in a byte.

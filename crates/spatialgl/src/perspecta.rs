@@ -1,5 +1,5 @@
-//! Perspecta: a diffuse screen that rotates about its vertical axis, and a projector that strobes a picture at each of
-//! 396 angles of a revolution. Each pixel has one bit per colour.
+//! Perspecta: a diffuse screen that rotates about its vertical axis, and a projector that flashes (strobes) a picture
+//! at each of 396 angles of a revolution. Each pixel has one bit per colour.
 //!
 //! ```text
 //!  ring --map, tiles--> [ frame store 0 | frame store 1 ] --strobe k--> screen at k d --> [ viewer ] --> picture
@@ -9,24 +9,25 @@
 //! # Behaviour
 //!
 //! - A volume is N slices with one bit each for red, green and blue. A volume arrives as maps and tiles
-//!   ([`volume_messages`]) in the frame store that is not shown. A map makes all tiles dark that will not be sent. A swap
-//!   request takes effect at the first later strobe 0 at which all announced tiles have arrived. A partly written slice
-//!   is therefore never shown.
-//! - Strobe k of revolution n lights at (n + k / N) / f. In terms of [`Display`](pxpl5_wire::display::Display), a period is a
-//!   revolution and a surface is a slice. Each pixel of a slice lights when its strobe begins.
+//!   ([`volume_messages`]) in the frame store that is not shown. A map makes those tiles dark that will not be sent. A
+//!   swap request takes effect at the first later strobe 0 at which all announced tiles have arrived. A partly written
+//!   slice is therefore never shown.
+//! - Strobe k of revolution n lights at the time (n + k / N) / f, for f revolutions per second. In terms of
+//!   [`Display`](pxpl5_wire::display::Display), a period is a revolution and a surface is a slice. Each pixel of a
+//!   slice lights when its strobe begins.
 //! - Strobes k and k + N/2 show the same plane from opposite sides, so a volume appears twice per revolution.
 //! - The viewer adds the light of all lit pixels of one revolution, each as a point at its voxel. The sums are
-//!   integers. No voxel hides another one.
+//!   integers. No voxel hides another voxel.
 //!
 //! # Numbers
 //!
-//! [`PerspectaConfig`] has the numbers of the paper. Where the paper gives no number, it has assumed values with
-//! ranges. [`figures`] compares the paper's figures with this model.
+//! [`PerspectaConfig`] has the numbers of the paper. Where the paper gives no number, the table has an assumed value
+//! with a range. [`figures`] compares the paper's figures with this model.
 //!
 //! # Not modelled
 //!
-//! Optics and keystone of the projector, the motor, the colours of its lamps, and the relay optics that turn with the
-//! screen. Pixels outside the screen's circle are as bright as pixels inside it.
+//! Optics and keystone of the projector, the motor, the colours of the projector's lamps, and the relay optics that
+//! turn with the screen. Pixels outside the screen's circle are as bright as pixels inside it.
 //!
 //! # Sources
 //!

@@ -29,11 +29,11 @@ pub enum Projection {
     Jittered(Jitter),
 }
 
-/// The random eye and shear of each slice. They depend only on the seed and the index of the slice.
+/// The random eye and shear of each slice. Eye and shear depend only on the seed and the index of the slice.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Jitter {
-    /// Seed of the random sequence. It is the same in all passes and volumes.
+    /// Seed of the random sequence. The seed is the same in all passes and volumes.
     pub seed: u64,
     /// Distance of the eye from the slice in radii of the display. Assumed 4, 2 to 16.
     pub eye_distance: f64,
@@ -144,8 +144,8 @@ impl SliceEye {
     /// Returns the matrix rows from (u, v, s, 1) to homogeneous window coordinates: x to the right and y down in
     /// pixels, depth, w.
     ///
-    /// The result equals [`Self::clip_matrix`] followed by the viewport. It avoids the rounding of a division by R and
-    /// a multiplication by R.
+    /// The result equals [`Self::clip_matrix`] followed by the viewport. This function avoids the rounding of a
+    /// division by half the image's size and of a multiplication by the same number.
     #[must_use]
     pub fn window_rows(&self, size: Size, reach: f64) -> [[f64; 4]; 4] {
         let middle = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];

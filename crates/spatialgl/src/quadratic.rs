@@ -6,9 +6,10 @@ use crate::clip::HalfWedge;
 /// The quadratic Q(u, v) = uu u^2 + uv u v + vv v^2 + u u + v v + one. The slice contains the samples at which Q is not
 /// negative.
 ///
-/// Q is A B + b, with A B = u^2 S^2 - s^2 C^2 on the triangle's plane s = a u + c v + d. Coordinates are pixels of the
-/// slice, and values are square pixels. The projection is orthographic. A shear maps (u, v) affinely, and a perspective
-/// eye divides by w^2. Both also give quadratics.
+/// Q is A B + b, with A B = u^2 S^2 - s^2 C^2 on the triangle's plane s = a u + c v + d. S and C are the sine and the
+/// cosine of half the angle between slices. Coordinates are pixels of the slice, and values are square pixels. The
+/// projection is orthographic. A shear maps (u, v) affinely, and a perspective eye divides by w^2. Both projections
+/// also give quadratics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipQuadratic {
     /// Coefficient of u^2, dimensionless.
@@ -90,8 +91,9 @@ mod tests {
         }
     }
 
-    /// Checks the number of fraction bits. With the 16 fraction bits of the renderers' format, S^2 would be only 4
-    /// units. With 26 bits it has 12 significant bits, and Q fits into 48 bits.
+    /// Checks the number of fraction bits. S is the sine of half the angle between slices. With the 16 fraction bits of
+    /// the renderers' format, S^2 would be only 4 units. With 26 bits it has 12 significant bits, and Q fits into 48
+    /// bits.
     #[test]
     fn its_scale_fits_the_renderers_words() {
         let square = WEDGE().sin * WEDGE().sin;

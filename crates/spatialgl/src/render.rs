@@ -26,8 +26,8 @@ pub enum Strobes {
     /// Each slice of the turn is drawn.
     #[default]
     Each,
-    /// The slices of the first half turn are drawn. Those of the second half are their mirror images, including the
-    /// jitter. **Beyond the paper.**
+    /// The slices of the first half turn are drawn. The slices of the second half turn are mirror images of these
+    /// slices, including the jitter. **Beyond the paper.**
     Mirror,
 }
 

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// The rule for a point exactly on a boundary plane of a wedge. The paper's rule "signs equal" is ambiguous there.
 ///
-/// The values `a` and `b` are the signed distances from the two boundary planes. Both are positive in the + lobe, which
-/// lies on the +u side.
+/// The values `a` and `b` are the signed distances from the two boundary planes. Both are positive in the + lobe: the
+/// half of the double wedge on the +u side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
@@ -17,9 +17,10 @@ pub enum TieRule {
     /// planes or the axis.
     ProductPositive,
     /// The rule as printed in the paper: the signs are equal, and zero counts as positive. A slice contains both planes
-    /// of the positive lobe, no plane of the negative lobe, and the axis.
+    /// of the positive lobe (half of the double wedge), no plane of the negative lobe, and the axis.
     SameSign,
-    /// Both planes belong to both lobes, as with user clip planes: the product of the distances is not negative.
+    /// Both planes belong to both lobes (halves of the double wedge), as with user clip planes. The product of the
+    /// distances is not negative.
     Closed,
 }
 
@@ -59,7 +60,7 @@ impl TieRule {
 /// z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WedgePlanes {
-    /// Coefficients of x and z of plane A. The plane's positive side contains the + lobe.
+    /// Coefficients of x and z of plane A. The plane's positive side contains the + lobe (half of the double wedge).
     pub a: [f64; 2],
     /// Coefficients of x and z of plane B. The plane's positive side contains the + lobe.
     pub b: [f64; 2],
@@ -67,17 +68,18 @@ pub struct WedgePlanes {
     pub fraction_bits: Option<u32>,
 }
 
-/// The test whether a point is in a wedge, given its distances from the two boundary planes.
+/// The test that decides if a point is in a wedge, given the point's distances from the two boundary planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WedgeTest {
-    /// Two user clip planes for each lobe, with one drawing pass per lobe. Fragments outside the planes are not
-    /// generated.
+    /// Two user clip planes for each lobe (half of the double wedge), with one drawing pass per lobe. Fragments outside
+    /// the planes are not generated.
     UserPlanes(TieRule),
     /// Both distances are interpolated, and one test compares their signs.
     Shader(TieRule),
     /// Both planes are moved outwards by this number of pixels before the product of the distances is tested.
     Parallel(f64),
-    /// This number of square pixels is added to the product of the distances.
+    /// This number of square pixels is added to the product of the distances from both planes before the sign is
+    /// tested.
     Hyperbolic(f64),
 }
 

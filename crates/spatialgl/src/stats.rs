@@ -13,7 +13,7 @@ pub struct VolumeStats {
     pub outside_volume: u64,
     /// Number of slices drawn. If slices are mirrored, more slices are shown than drawn.
     pub slices_rendered: u64,
-    /// Number of times that the recorded commands are replayed for a slice.
+    /// Number of drawing passes per slice, each of which replays the recorded commands.
     pub passes: u64,
     /// Number of samples per pixel of a slice.
     pub samples: u64,
@@ -21,7 +21,7 @@ pub struct VolumeStats {
     pub draws: u64,
     /// Number of primitives that would be drawn without bins.
     pub draws_unbinned: u64,
-    /// Number of entries in all bins. A primitive in several bins counts in each of them.
+    /// Number of entries in all bins. A primitive in several bins counts in each of these bins.
     pub bin_memberships: u64,
     /// Number of fragments that reached the fragment program.
     pub fragments_generated: u64,

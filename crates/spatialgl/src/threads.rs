@@ -11,7 +11,7 @@ use std::thread;
 pub struct Threads(pub NonZero<usize>);
 
 impl Threads {
-    /// Returns as many threads as the host can execute in parallel.
+    /// Returns the number of threads that the host can execute in parallel.
     #[must_use]
     pub fn all() -> Self {
         Self(thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN))

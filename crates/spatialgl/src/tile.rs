@@ -16,7 +16,8 @@ pub struct Tiling {
 }
 
 impl Tiling {
-    /// Tiles of 32 x 32 pixels (published, P16), with queries after every 4 slices (published, P18).
+    /// Tiles of 32 x 32 pixels (number P16 of the specification, published), with queries after every 4 slices (P18,
+    /// published).
     pub const PAPER: Self = Self { tile: Some(32), batch: 4 };
 
     /// Setting without tiles: every pixel of every slice is packed and sent.

@@ -6,7 +6,8 @@ use crate::slice_volume::SliceVolume;
 use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// One slice: its position, the projection of the scene onto it, and the part of space that it represents.
+/// One slice: its position, the projection of the scene onto the slice, and the part of space that the slice
+/// represents.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SliceView {
     /// Matrix from the world to (u, v, s), all in pixels: horizontal position in the slice, vertical position, and
@@ -23,7 +24,7 @@ pub struct SliceView {
     pub(crate) window: [[f64; 4]; 4],
     /// Slightly enlarged range of s in which anything can be drawn, or `None` if the range is unknown.
     pub(crate) reach: Option<[f64; 2]>,
-    /// Number of samples along a side of a pixel. It exceeds 1 while a supersampled image is drawn.
+    /// Number of samples along a side of a pixel. The number exceeds 1 while a supersampled image is drawn.
     pub(crate) magnification: f64,
 }
 
@@ -72,8 +73,8 @@ pub enum PixelFormat {
     Rgb8,
 }
 
-/// A volumetric or flat display, as the pipeline sees it. A display does not depend on triangles, and the pipeline uses
-/// no other property of a display.
+/// A volumetric or flat display, in the form that the pipeline uses. A display does not depend on triangles, and the
+/// pipeline uses no other property of a display.
 pub trait SpatialDisplay: Send + Sync {
     /// Returns the slices, in the order in which they are shown.
     fn views(&self) -> &[SliceView];
@@ -92,7 +93,7 @@ pub trait SpatialDisplay: Send + Sync {
     /// Returns true if any slice can show this point of the world.
     fn shows(&self, point: DVec3) -> bool;
 
-    /// Returns true if the slice with index `view` shows this point of the world.
+    /// Returns true if the slice with index `view` (among [`Self::views`]) shows this point of the world.
     fn accepts(&self, view: usize, point: DVec3) -> bool {
         self.views().get(view).is_some_and(|view| view.accepts(point))
     }

@@ -84,7 +84,7 @@ fn the_second_half_turn_shows_the_same_voxels() {
 #[test]
 fn a_cutaway_leaves_out_a_range_of_angles() {
     let camera = case_8(10.0, 20.0);
-    // The voxel of case 8 is at 30 degrees from +x to +z; that of the mirrored pixel at 210.
+    // The voxel of case 8 is at 30 degrees from +x to +z; the voxel of the mirrored pixel is at 210.
     let total = |x: u32, cut: [f64; 2]| {
         let options = ViewOptions { cut_deg: Some(cut), ..PLAIN };
         view_planes(&one_pixel(33, x, 283), &camera, options, &OneThread).expect("valid").total()[0]

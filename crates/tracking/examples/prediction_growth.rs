@@ -1,5 +1,5 @@
-//! Growth of prediction errors with the interval, on synthetic motion behind the optical ceiling tracker. Several noise
-//! levels are compared, which supports the noise of the tracker's preset.
+//! Growth of prediction errors with the interval, on synthetic motion behind the optical ceiling tracker. The example
+//! compares several noise levels. The comparison supports the noise that the preset of this tracker assumes.
 //!
 //! Published values (Azuma and Bishop 1995, on this tracker): below 80 ms the error is 2 to 3 times smaller than
 //! without prediction. At 100 and 200 ms the error is 2.3 and 9 times the error at 50 ms.

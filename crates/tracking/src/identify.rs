@@ -42,7 +42,8 @@ impl TrackerConfig {
         if let Some(SerialLine { record_bytes, baud, byte_bits }) = serial {
             settings("tracker.serial.record_bytes", record_bytes);
             settings("tracker.serial.baud", baud);
-            // Ten bits were once fixed. An experiment with this usual value keeps its old name, so the key is left out.
+            // Earlier versions always used ten bits. An experiment with this usual value keeps its old name, so the key
+            // is left out.
             if u64::from(*byte_bits) != HostPort::PAPERS.byte_bits {
                 settings("tracker.serial.byte_bits", byte_bits);
             }
@@ -115,8 +116,8 @@ impl PredictorConfig {
     }
 }
 
-/// Writes a number only if it differs from the papers' value. Thus an experiment with the papers' values keeps the name
-/// that it had before the number became a setting.
+/// Writes the value of a parameter only if the value differs from the papers' value. Thus an experiment with the
+/// papers' values keeps the name that it had before the parameter became a setting.
 fn write_unusual(settings: &mut SettingSink, of: &str, entry: &Entry) {
     if entry.value != entry.info.papers {
         settings(&format!("{of}.{}", entry.info.name), &entry.value);

@@ -12,21 +12,21 @@
 //! # Modules, in the order of the signal
 //!
 //! 1. [`motion`]: the pose of the head as a pure function of simulated time. A head can stand still, pan, swing as a
-//!    pendulum or walk. It can also move at random with the statistics of recorded headset use, or replay a recorded
-//!    file.
-//! 2. [`tracker`]: the tracker measures poses at its own rate. It adds noise, metal distortion and filter delay. The
-//!    serial cable carries one record at a time, so the tracker drops measurements if a transfer takes longer than its
-//!    period. The host's kernel polls the serial port. Experiments can inject faults.
+//!    pendulum or walk. A head can also move at random with the statistics of recorded headset use, or replay a
+//!    recorded file.
+//! 2. [`tracker`]: the tracker measures poses at its own rate. The model adds noise, metal distortion and filter delay.
+//!    The serial cable carries one record at a time, so the tracker drops measurements if a transfer takes longer than
+//!    its period. The host's kernel polls the serial port. Experiments can inject faults.
 //! 3. [`predict`]: a check rejects and counts impossible reports. A filter then predicts the pose at an exact instant.
-//! 4. [`view`]: converts a pose error into pixels. It also has the formulas of the dual display list, of the raster
-//!    offset and of frameless rendering.
+//! 4. [`view`]: converts a pose error into pixels. This module also has the formulas of the dual display list, of the
+//!    raster offset and of frameless rendering.
 //! 5. [`rig`]: a pendulum that measures tracking latency and rendering latency from outside the machine.
 //!
 //! # Units and conventions
 //!
-//! Instants and spans are picoseconds of simulated time in `u64` (suffix `_ps`). Only differences become floating
-//! point. Lengths are metres. Angles are degrees in settings and radians in vectors. Axes are right-handed with y up,
-//! and a head looks along its own -z axis. A quaternion rotates head axes into world axes.
+//! Instants and spans are picoseconds of simulated time in `u64` (suffix `_ps`). Only differences of instants are
+//! converted to floating point. Lengths are metres. Angles are degrees in settings and radians in vectors. Axes are
+//! right-handed with y up, and a head looks along its own -z axis. A quaternion rotates head axes into world axes.
 //!
 //! The same seed gives the same numbers on every host. All transcendental functions come from `libm`, and each random
 //! number is a function of (seed, index). The tables of [`config`] hold every number that describes hardware or people,
@@ -54,7 +54,8 @@
 //! - The sight lines of the optical tracker.
 //! - Coloured noise. All noise is white, so the tracker's filter performs better than a real one, and slow drift is
 //!   missing.
-//! - The contents of other receivers' records. They only take time on the cable, and the head's record goes first.
+//! - The contents of other receivers' records. These records only take time on the cable, and the head's record goes
+//!   first.
 //! - Clock drift between tracker and host. Only the phase of the host's polling is random.
 //! - Inertial sensors.
 //! - The statistical correlation between translation and rotation in the random motion.
@@ -65,8 +66,8 @@
 //!
 //! [`config`] lists the sources of all numbers. Prediction is by Azuma and Bishop 1995, just-in-time pixels by Mine and
 //! Bishop, UNC TR93-005. The raster offset is by Breglia 1981, and frameless rendering by Bishop, Fuchs, McMillan and
-//! Scher Zagier 1994. The rig is by Cohen and Olano, UNC TR94-028. Elliptic functions follow Abramowitz and Stegun,
-//! chapters 16 and 17.
+//! Scher Zagier 1994. The pendulum rig is by Cohen and Olano, UNC TR94-028. Elliptic functions follow Abramowitz and
+//! Stegun, chapters 16 and 17.
 
 #![warn(missing_docs)]
 

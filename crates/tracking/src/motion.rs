@@ -42,8 +42,8 @@ const HALF_STEP_PS: u64 = 50_000_000;
 const SAMPLE_PS: u64 = PS_PER_S / 8;
 const SAMPLES: u64 = 512;
 
-/// The motion of a head as a pure function of simulated time. The pendulum of the latency rig, which carries a tracker,
-/// is described in the same way.
+/// The motion of a head as a pure function of simulated time. The trait also describes the pendulum of the latency rig,
+/// because this pendulum carries a tracker.
 pub trait Motion: Debug {
     /// Returns the pose of the head in the world at `t_ps` (ps of simulated time).
     fn pose(&self, t_ps: u64) -> Pose;
@@ -91,8 +91,8 @@ pub trait Motion: Debug {
     }
 
     /// Returns another motion of the same kind with different random numbers. Returns `None` if the motion has no
-    /// random numbers. Prediction filters are tuned on this other motion, so they do not know the motion on which they
-    /// are evaluated.
+    /// random numbers. Prediction filters are tuned on this other motion, so the evaluated motion has no influence on
+    /// the tuning.
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
         None
     }
@@ -155,7 +155,7 @@ macro_rules! forward {
 
 forward!(&M, Box<M>, Arc<M>);
 
-/// Compares the motion's velocity and angular velocity with differences of its poses.
+/// Compares the motion's velocity and angular velocity with differences of the motion's poses, for tests of a motion.
 #[cfg(test)]
 fn assert_rates_agree_with_poses(motion: &impl Motion, t_ps: u64, tolerance: f64) {
     #[derive(Debug)]

@@ -1,6 +1,8 @@
-//! Random numbers as pure functions of (seed, index). They can be drawn in any order and are the same on every host.
+//! Random numbers as pure functions of (seed, index). The numbers can be computed in any order and are the same on
+//! every host.
 //!
-//! The generator is SplitMix64 (Steele, Lea and Flood 2014). Its step is [`pxpl5_sim::mix`] of the simulation kernel.
+//! The generator is SplitMix64 (Steele, Lea and Flood 2014). The function [`pxpl5_sim::mix`] of the simulation kernel
+//! computes one step of the generator.
 
 use pxpl5_sim::mix;
 
@@ -39,9 +41,9 @@ pub(crate) fn normal_pair(seed: u64, index: u64) -> (f64, f64) {
     (radius * cos, radius * sin)
 }
 
-/// Converts random bits to a bell-shaped deviate of mean 0 and variance 1, within [-2 sqrt 3, 2 sqrt 3]. It is the sum
-/// of four 16-bit uniform numbers (Irwin-Hall). The function is much cheaper than [`normal_pair`], because it uses no
-/// transcendental functions.
+/// Converts random bits to a bell-shaped deviate of mean 0 and variance 1, within [-2 sqrt 3, 2 sqrt 3]. The deviate is
+/// computed from the sum of four 16-bit uniform numbers (Irwin-Hall). The function is much cheaper than
+/// [`normal_pair`], because it uses no transcendental functions.
 pub(crate) fn bell(bits: u64) -> f64 {
     let sum = (bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48);
     (sum as f64 / 65_535.0 - 2.0) * SQRT_3

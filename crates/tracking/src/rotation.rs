@@ -6,8 +6,8 @@
 
 use glam::{DQuat, DVec3};
 
-/// Squared half angle below which [`exp`] and [`log`] use a series. Its next term is below 1e-18, so the result is
-/// exact to the last bit.
+/// Squared half angle below which [`exp`] and [`log`] use a series. The first omitted term of the series is below
+/// 1e-18, so the result is exact to the last bit.
 const SERIES_BELOW: f64 = 1e-6;
 
 /// Returns the rotation by the vector `r` (rad). Any length is allowed.
@@ -24,8 +24,8 @@ pub fn exp(r: DVec3) -> DQuat {
     DQuat::from_xyzw(v.x, v.y, v.z, cos)
 }
 
-/// Returns the shortest rotation vector (rad, length at most pi) of the unit quaternion `q`. The quaternions `q` and
-/// `-q` give the same vector.
+/// Returns the shortest rotation vector (rad, length at most pi) that gives the rotation of the unit quaternion `q`.
+/// The quaternions `q` and `-q` give the same vector.
 pub fn log(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let v = DVec3::new(q.x, q.y, q.z);

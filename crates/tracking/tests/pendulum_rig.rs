@@ -191,7 +191,7 @@ fn an_error_of_one_side_is_found_by_the_other() {
     assert!(!agree(&scope, shifted(-(NTSC_FIELD_PS as i64))));
     let late_stamp = |pass: &InsidePass| InsidePass { started_ps: pass.started_ps + 20 * PS_PER_MS, ..*pass };
     assert!(!agree(&scope, truth.iter().map(late_stamp).collect()));
-    // The photodiode hangs a field late, or the light is that of the frame before.
+    // The photodiode hangs a field late, or the light comes from the frame before.
     let late = truth.iter().map(|pass| pass.shown_ps + place_ps(&rig) + NTSC_FIELD_PS);
     let late = Oscilloscope { screen: ScopeTrace::toggling("screen", late.collect()), ..scope };
     assert!(!agree(&late, truth.clone()));

@@ -95,11 +95,11 @@ fn a_filter_is_never_tuned_on_the_noise_on_which_it_is_evaluated() {
     let tracker = model(TrackerConfig::fastrak());
     let base = PredictorConfig::for_tracker(PredictorKind::Kalman, tracker.config());
     let usual = training_seed(0);
-    for judged in [0, 1, usual, usual + 1, u64::MAX] {
-        assert_ne!(training_seed(judged), judged);
-        let tuned = tune(&Pan::at(50.0), &tracker, 50 * PS_PER_MS, &base, judged).unwrap();
+    for evaluated_seed in [0, 1, usual, usual + 1, u64::MAX] {
+        assert_ne!(training_seed(evaluated_seed), evaluated_seed);
+        let tuned = tune(&Pan::at(50.0), &tracker, 50 * PS_PER_MS, &base, evaluated_seed).unwrap();
         let training = tuned.training.unwrap();
-        assert_eq!((training.seed, training.sibling), (training_seed(judged), false));
+        assert_eq!((training.seed, training.sibling), (training_seed(evaluated_seed), false));
     }
     let of_synthetic = tune(&Synthetic::recorded_use(1), &tracker, 50 * PS_PER_MS, &base, 1).unwrap();
     assert!(of_synthetic.training.unwrap().sibling, "nor on the same motion, where there are others of its kind");

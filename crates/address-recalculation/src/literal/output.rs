@@ -36,8 +36,8 @@ fn candidate(memory: &BankedMemory, texels: &[Option<TexelAddress>; 4], behind: 
     read
 }
 
-/// Simulates one level of the comparator tree. Of two neighbouring candidates the nearer one stays. At equal depth, the
-/// first one stays.
+/// Simulates one level of the comparator tree. Of two neighbouring candidates the nearer candidate stays. At equal
+/// depth, the first candidate stays.
 ///
 /// A candidate without a neighbour passes unchanged.
 pub(super) fn compare(registers: &mut Registers) {

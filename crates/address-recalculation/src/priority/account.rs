@@ -1,7 +1,8 @@
-//! Cost of updates: drawn segments per second, and the saving compared with drawing all segments in every frame.
+//! Cost of updates: drawn segments (parts of objects) per second, and the saving compared with drawing all segments in
+//! every frame.
 
-/// Returns the number of segments drawn per second. For each memory, `rates_hz` holds its updates per second, and
-/// `segments` its number of segments.
+/// Returns the number of segments (parts of objects) drawn per second. For each memory, `rates_hz` holds its updates
+/// per second, and `segments` its number of segments.
 #[must_use]
 pub fn draws_per_s(rates_hz: &[f64], segments: &[u64]) -> f64 {
     rates_hz.iter().zip(segments).map(|(rate, segments)| rate * *segments as f64).sum()

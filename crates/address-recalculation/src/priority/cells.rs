@@ -38,8 +38,8 @@ pub(crate) fn border(number: i64, side_m: f64) -> f64 {
     number as f64 * side_m
 }
 
-/// Returns the index of the column of cells that contains a coordinate. It is the last column that begins at or before
-/// the coordinate.
+/// Returns the index of the column of cells that contains a coordinate. The result is the last column that begins at or
+/// before the coordinate.
 ///
 /// Comparisons correct the rounding errors of the division.
 pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
@@ -54,7 +54,7 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
 pub struct CellAssignment {
     /// The home cell, which is the centre of all rings.
     pub home: Cell,
-    /// Side of a cell in metres.
+    /// Side of a cell (square of the floor) in metres.
     pub side_m: f64,
     /// Number of rings around the home cell that memory 0 holds.
     pub inner_rings: u64,
@@ -66,15 +66,15 @@ pub struct CellAssignment {
 }
 
 impl CellAssignment {
-    /// Returns the index of the memory that holds a cell.
+    /// Returns the index of the memory that holds a cell (square of the floor).
     #[must_use]
     pub fn memory(&self, cell: Cell) -> usize {
         let ring = self.home.ring(cell);
         (0..self.memories - 1).find(|memory| ring <= self.last_ring(*memory)).unwrap_or(self.memories - 1)
     }
 
-    /// Returns the number of the outermost ring that memory k holds. The value does not apply to the slowest memory,
-    /// which has no outer limit.
+    /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The value does not apply to
+    /// the slowest memory, which has no outer limit.
     ///
     /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`CellAssignment::ring_growth`].
     #[must_use]
@@ -85,16 +85,17 @@ impl CellAssignment {
         (0..memory).fold((self.inner_rings, 1), |rings, _| next(rings)).0
     }
 
-    /// Returns the distance, in metres, between a position and the border at which memory k begins.
+    /// Returns the distance, in metres, between a position and the border at which memory k = `memory` begins.
     ///
-    /// The distance is 0 on the border and outside of it. For memory 0, which begins at the eye, it is always 0.
+    /// The distance is 0 on the border and outside of the border. For memory 0, which begins at the eye, the distance
+    /// is always 0.
     #[must_use]
     pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }
 
-    /// Returns the horizontal distance, in metres, between a position and the border of memory k to memory k + 1. The
-    /// distance is 0 outside the border.
+    /// Returns the horizontal distance, in metres, between a position and the border of memory k = `memory` to the
+    /// slower memory k + 1. The distance is 0 outside the border.
     ///
     /// Returns `None` for the slowest memory, which has no such border.
     #[must_use]
@@ -138,7 +139,7 @@ impl Cells {
     /// Creates the policy for a world. `occupied` lists the cells that contain parts of the scene.
     ///
     /// With `has_cascade`, an update of a memory makes all faster memories due for an update as well. Warping requires
-    /// this.
+    /// such a cascade.
     #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
@@ -172,7 +173,7 @@ impl Cells {
         self.drawn_from.get(memory).copied().flatten()
     }
 
-    /// Returns a distance in metres: how far the eye may move from the position of a memory's last update before the
+    /// Returns the distance, in metres, that the eye may move from the position of a memory's last update before the
     /// memory is due.
     ///
     /// If distances are measured to occupied cells, the result is infinite for a memory without occupied cells.
@@ -181,7 +182,8 @@ impl Cells {
         self.threshold.way(self.distances(eye).get(memory).copied().unwrap_or(0.0))
     }
 
-    /// Returns, for each memory, the distance in metres from the eye to the nearest content that counts.
+    /// Returns, for each memory, the distance from the eye that determines when the memory is due, in metres. This
+    /// distance leads to the border of the memory's block of cells, or to the memory's nearest occupied cell.
     fn distances(&self, eye: DVec3) -> Vec<f64> {
         if !self.to_held_cells {
             return (0..self.dealing.memories).map(|memory| self.dealing.distance(eye, memory)).collect();

@@ -40,8 +40,9 @@ impl Objects {
     /// Computes the policy for frame number `frame`, counted from 0. `periods_s` holds the validity period of each
     /// object from now on, in seconds.
     ///
-    /// An object changes its memory only in a frame that draws both the old and the new memory. A memory is drawn in
-    /// its own frames. It is skipped if the images of all its objects stay right until its next frame.
+    /// An object changes its memory only in a frame that draws both the old and the new memory. Memory k can be drawn
+    /// in every 2^k-th frame. The memory is skipped if the images of all its objects stay right until its next such
+    /// frame.
     pub fn frame(&mut self, frame: u64, periods_s: &[f64]) -> Update {
         let mut together = vec![false; self.memories];
         // Move objects between memories first.

@@ -11,8 +11,8 @@ const FARTHEST_M: f64 = 1e6;
 /// Largest number of pieces that the triangles of one mesh may be cut into.
 const MOST_PIECES: f64 = 1e7;
 
-/// A vertex that a cut has created on the line between two other vertices. Each of these two can itself come from a
-/// cut.
+/// A vertex that a cut has created on the line between two other vertices. Each of these two vertices can itself come
+/// from a cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutVertex {
     /// Indices of the line's two end vertices, in ascending order.
@@ -32,7 +32,7 @@ pub struct Segmentation {
     /// Origin of each vertex that a cut has created, in the same order. The origin serves to interpolate colours and
     /// normals.
     pub cuts: Vec<CutVertex>,
-    /// The triangles in each cell. They have the orientation of the original triangles.
+    /// The triangles in each cell, with the orientation of the original triangles.
     pub segments: BTreeMap<Cell, Vec<[u32; 3]>>,
 }
 
@@ -96,7 +96,7 @@ fn most_pieces(corners: [DVec3; 3], side_m: f64) -> f64 {
     (size.x.ceil() + 1.0) * (size.z.ceil() + 1.0)
 }
 
-/// The axis perpendicular to a plane of cuts.
+/// The axis perpendicular to the planes at which a mesh is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Axis {
     X,

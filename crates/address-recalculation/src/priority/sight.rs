@@ -50,7 +50,7 @@ pub fn time_until_visible_s(view: DVec3, face: DVec3, half_diagonal: f64, fastes
 /// Returns the mean number of faces that a small round object touches. The mean is taken over all directions.
 ///
 /// `radius` is the object's angular radius in radians, at most 35 degrees. An update of the whole cube draws a small
-/// primitive this many times.
+/// primitive this number of times on average.
 #[must_use]
 pub fn mean_faces_touched(radius: f64) -> f64 {
     let edges = 6.0 / std::f64::consts::PI * libm::acos(1.0 / 3.0);

@@ -8,7 +8,8 @@ pub struct Update {
     /// For each memory: true if it exchanged content with another memory. All such memories must become visible
     /// together.
     pub together: Vec<bool>,
-    /// True if cells were assigned to memories anew, around another home cell.
+    /// True if cells (squares of the floor) were assigned to memories anew, around another home cell (the cell in the
+    /// centre of all rings).
     pub deals_anew: bool,
 }
 

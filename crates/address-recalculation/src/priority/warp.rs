@@ -11,12 +11,12 @@ use serde::{Deserialize, Serialize};
 pub enum Falloff {
     /// No displacement. The images of the two memories do not meet at the border.
     None,
-    /// Linear decrease to 0.
+    /// The displacement decreases linearly to 0.
     #[default]
     Linear,
-    /// Smooth decrease to 0, with slope 0 at both ends.
+    /// The displacement decreases smoothly to 0, with slope 0 at both ends.
     Smoothstep,
-    /// Full displacement within the length of the falloff, and none beyond.
+    /// Full displacement up to the length of the falloff from the border, and no displacement beyond.
     Step,
 }
 
@@ -27,8 +27,8 @@ impl Falloff {
     pub const ALL: [(&str, Self); 4] =
         [("none", Self::None), ("linear", Self::Linear), ("smoothstep", Self::Smoothstep), ("step", Self::Step)];
 
-    /// Returns the fraction of the displacement that applies at `distance_m` from the border. `length_m` is the length
-    /// of the falloff.
+    /// Returns the fraction of the displacement that applies at `distance_m` from the border. `length_m` is the
+    /// distance over which the displacement decreases.
     #[must_use]
     pub fn weight(self, distance_m: f64, length_m: f64) -> f64 {
         let left = (1.0 - distance_m / length_m).clamp(0.0, 1.0);
@@ -50,12 +50,12 @@ pub struct RegionWarp {
 }
 
 impl RegionWarp {
-    /// Creates the warp from two eye positions: one of the memory's own drawing, the other of its slower neighbour's
-    /// drawing.
+    /// Creates the warp of a memory. `drawn_from` is the eye position from which this memory was drawn, and
+    /// `slower_from` the eye position from which the next slower memory was drawn.
     ///
     /// # Errors
     ///
-    /// Returns [`PriorityError`] if the length of the falloff is not positive and finite.
+    /// Returns [`PriorityError`] if the distance over which the displacement decreases is not positive and finite.
     pub fn new(falloff: Falloff, length_m: f64, drawn_from: DVec3, slower_from: DVec3) -> Result<Self, PriorityError> {
         if !(length_m > 0.0 && length_m.is_finite()) {
             return Err(PriorityError(format!("priority.falloff_m: expected a length above 0, found {length_m}")));
@@ -66,8 +66,8 @@ impl RegionWarp {
     /// Returns the position at which a vertex is drawn. `to_slower_m` is the vertex's distance to the border of the
     /// slower memory, or `None` if there is no slower memory.
     ///
-    /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same as from the
-    /// eye position of the slower memory's drawing.
+    /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same in both
+    /// memories.
     #[must_use]
     pub fn moved(&self, vertex: DVec3, to_slower_m: Option<f64>) -> DVec3 {
         to_slower_m.map_or(vertex, |distance| vertex + self.displacement * self.falloff.weight(distance, self.length_m))

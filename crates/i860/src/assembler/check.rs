@@ -1,11 +1,11 @@
-//! Assembler rules for instructions and their neighbours. A program that breaks a rule has undefined results on the
-//! real chip.
+//! Assembler rules for instructions and their neighbours. On the real chip, a program that breaks a rule has undefined
+//! results.
 //!
 //! * A pair is a floating-point instruction, then a core instruction.
 //! * The halves of a pair write different registers, and only one half sets CC. `bc.t` or `bnc.t` is not paired with a
 //!   compare.
-//! * A delayed branch has no branch in its slot, and the slot of a `call` does not write r1.
-//! * `bla` has two different registers.
+//! * A delayed branch has no branch in its delay slot, and the delay slot of a `call` does not write r1.
+//! * The two source registers of `bla` are different.
 //!
 //! Some working programs break three more rules ([`Rule`]). The assembler reports these as warnings:
 //!
@@ -51,7 +51,7 @@ impl Rule {
 
 /// Returns all violations of rules that are errors. Each violation has the source line and the reason.
 pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
-    // Rules of single instructions first, then of slots, then of pairs.
+    // Check the rules of single instructions first, then of delay slots, then of pairs.
     let same = |i: &Instruction| i.op == Op::Bla && i.src1 == i.src2;
     let bla = program.iter().filter(|(.., i)| same(i));
     let mut faults: Vec<(usize, String)> =
@@ -114,7 +114,7 @@ impl PipeUse {
     }
 
     fn of_dual_operation(i: &Instruction) -> PipeUse {
-        // The destination receives the adder's result, or the multiplier's for pfmam and pfmsm.
+        // The destination receives the adder's result, or the multiplier's result for pfmam and pfmsm.
         let to_adder = i.has(Flags::PIPELINED);
         let route = &(if to_adder { &ROUTES } else { &MULTIPLIER_ROUTES })[(i.imm & 15) as usize];
         let uses = |source| route.multiplier.contains(&source) || route.adder.contains(&source);
@@ -136,7 +136,7 @@ fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, Stri
         }
         let used = PipeUse::of(i);
         let double = i.has(Flags::SOURCE_DOUBLE);
-        // A multiply of doubles uses two stages only, except `pfmul3`.
+        // A multiply of doubles uses only two stages, except `pfmul3`.
         for (unit, stages) in [(0, 3), (1, if double && i.op != Op::Fmul3 { 2 } else { 3 })] {
             if used.takes[unit] && pipes[unit].is_result_lost(stages) {
                 let name = ["adder", "multiplier"][unit];
@@ -175,11 +175,11 @@ fn alone(address: u32, i: &Instruction) -> Option<(Rule, &'static str)> {
 
 fn slot(two: &[Located]) -> Option<(usize, String)> {
     let [(at, _, branch), (next, line, i)] = two else { return None };
-    // Only the instruction right after a delayed branch is its slot.
+    // Only the instruction directly after a delayed branch is its delay slot.
     if *next != at.wrapping_add(4) || !branch.is_delayed_branch() || at % 8 == 4 && i.is_floating() {
         return None;
     }
-    // A call writes the return address to r1 before its slot executes.
+    // A call writes the return address to r1 before its delay slot executes.
     let call = matches!(branch.op, Op::Call | Op::Calli);
     match () {
         () if i.is_branch() => Some((*line, "a branch in the slot of a delayed branch".to_owned())),
@@ -225,7 +225,8 @@ fn pairs(program: &[Located]) -> Vec<(usize, String)> {
     while let Some((address, line, low)) = program.get(at) {
         let high = program.get(at + 1).filter(|(next, ..)| *next == address.wrapping_add(4));
         let d = low.is_floating() && low.has(Flags::DUAL);
-        // In single mode only a D bit at an aligned address matters: the pairs begin after the next instruction.
+        // In single-instruction mode, only a D bit at an aligned address matters. The pairs then begin after the next
+        // instruction.
         if !mode.is_dual() {
             let enters = d && address % 8 == 0;
             mode = if enters { Mode::DualOnce } else { Mode::Single };

@@ -9,18 +9,18 @@ use std::fmt;
 pub struct AssemblyError {
     /// File name as given to [`assemble`](crate::assemble).
     pub file: String,
-    /// Line number of the error, counted from 1. For text from a macro, the line of the macro call.
+    /// Line number of the error, counted from 1. For text from a macro, this is the line of the macro call.
     pub line: usize,
     /// Description of the error, with the expected and the found text.
     pub reason: String,
 }
 
-/// A warning: the program breaks a rule, perhaps on purpose.
+/// A warning that the program breaks a rule. The program can nevertheless be right.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AssemblyWarning {
     /// File name as given to [`assemble`](crate::assemble).
     pub file: String,
-    /// Line number of the warning, counted from 1. For text from a macro, the line of the macro call.
+    /// Line number of the warning, counted from 1. For text from a macro, this is the line of the macro call.
     pub line: usize,
     /// Rule that the program breaks.
     pub rule: Rule,

@@ -30,7 +30,7 @@ impl Program {
         let source: Vec<&str> = source.unwrap_or_default().lines().collect();
         let mut rows = Rows { text: String::new(), labels: &self.labels, source, line: 0 };
         let mut data = self.data.as_slice();
-        // Data that lie before an instruction are listed before it.
+        // Data before an instruction are listed before the instruction.
         for &(address, line) in &self.lines {
             while let Some((first, rest)) = data.split_first().filter(|(first, _)| first.address < address) {
                 rows.data(self, first);
@@ -59,7 +59,7 @@ struct Rows<'a> {
     /// Labels that are not listed yet, sorted by address.
     labels: &'a [(String, u32)],
     source: Vec<&'a str>,
-    /// Source line number of the previous row of the listing.
+    /// Number of the source line to which the previous row of the listing belongs.
     line: usize,
 }
 
@@ -74,7 +74,7 @@ impl Rows<'_> {
     fn row(&mut self, address: u32, bytes: &str, what: &str, line: usize) {
         self.labels_before(address.saturating_add(1));
         let _ = write!(self.text, "{address:08x}  {bytes:<8}  {what}");
-        // A source line that makes several rows is printed only beside the first.
+        // A source line with several rows is printed only beside the first row.
         if let Some(source) = self.source.get(line.wrapping_sub(1)).filter(|_| line != self.line) {
             let pad = TEXT_COLUMNS.saturating_sub(what.chars().count());
             let _ = write!(self.text, "{:pad$}  {line:>5}  {}", "", source.trim());
@@ -85,7 +85,7 @@ impl Rows<'_> {
 
     fn data(&mut self, program: &Program, data: &Data) {
         let end = data.address.wrapping_add(data.bytes);
-        // Data are listed by words, doubles by 8 bytes.
+        // Doubles are listed in rows of 8 bytes, and other data in rows of words.
         let step = match data.kind {
             DataKind::Gap => return self.row(data.address, "", &format!(".space {}", data.bytes), data.line),
             DataKind::Doubles => 8,

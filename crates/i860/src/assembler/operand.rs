@@ -151,7 +151,7 @@ impl Filler<'_> {
     }
 
     fn result(&self) -> u8 {
-        // A pipelined operation writes the result of an earlier one, which may have another precision.
+        // A pipelined operation writes the result of an earlier operation, which can have another precision.
         if self.i.op == Op::DualOp || self.i.has(Flags::PIPELINED) {
             return 4;
         }
@@ -182,7 +182,7 @@ impl Filler<'_> {
         }
         self.i.flags = self.i.flags.with(Flags::IMMEDIATE, true);
         self.i.src1 = 0;
-        // Logical operations take unsigned immediates, others signed ones.
+        // Logical operations have unsigned immediates, and other operations have signed immediates.
         let logical = self.i.op >= Op::And;
         self.i.imm =
             if logical { in_range(evaluate(a, self.symbols)?, 0, 0xFFFF)? } else { signed16(a, self.symbols)? };

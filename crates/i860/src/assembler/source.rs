@@ -1,4 +1,4 @@
-//! Preprocessor of assembler sources: removes comments, splits lines at `;`, and expands macros and repetitions.
+//! Preprocessor of assembler sources. It removes comments, splits lines at `;`, and expands macros and repetitions.
 
 use super::error::AssemblyError;
 use super::operand::split;
@@ -12,19 +12,20 @@ pub(super) struct Line {
 }
 
 /// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. The value is
-/// assumed; it allows a million repetitions of one line.
+/// assumed. It permits a million repetitions of one line.
 const MOST_STEPS: usize = 1 << 21;
-/// Greatest size of the expanded text, in bytes. The value is assumed: four bytes for each byte of the longest program.
+/// Greatest size of the expanded text, in bytes. The value is assumed. It permits four bytes for each byte of the
+/// longest program.
 const MOST_TEXT: usize = 64 << 20;
 /// Greatest nesting depth of macros and repetitions.
 const MOST_DEPTH: u32 = 32;
 
-/// The remaining budget of lines and bytes for macro expansion. The source line with the greatest use is also recorded,
-/// for the error message.
+/// The remaining budget of lines and bytes for macro expansion. For the error message, the budget also records the
+/// source line with the greatest use.
 struct Budget {
     steps: usize,
     text: usize,
-    /// Line number that is being expanded, and the remaining budget when its expansion began.
+    /// Number of the line that is being expanded, and the remaining budget at the start of this expansion.
     current: (usize, usize),
     /// Line number of the earlier line with the greatest use of the budget, and the amount that it used.
     largest_user: (usize, usize),
@@ -40,7 +41,7 @@ impl Budget {
         self.steps * (MOST_TEXT / MOST_STEPS) + self.text
     }
 
-    /// Starts to measure how much of the budget source line `line` uses.
+    /// Starts to measure the use of the budget by source line `line`.
     fn begin(&mut self, line: usize) {
         self.largest_user = self.largest_user();
         self.current = (line, self.left());
@@ -53,7 +54,7 @@ impl Budget {
     }
 
     fn take(&mut self, steps: usize, text: usize) -> Result<(), AssemblyFault> {
-        // Both limits count down; the first one that is exceeded stops the expansion.
+        // Both limits count down. The first limit that is exceeded stops the expansion.
         let enough = steps <= self.steps && text <= self.text;
         self.steps = self.steps.saturating_sub(steps);
         self.text = self.text.saturating_sub(text);
@@ -61,7 +62,7 @@ impl Budget {
     }
 }
 
-/// An error: the number of the source line, and a description.
+/// An error, as the number of the source line and a description.
 type AssemblyFault = (usize, String);
 
 fn spent() -> String {
@@ -118,7 +119,7 @@ impl Expander<'_> {
         let mut at = 0;
         while let Some(line) = lines.get(at) {
             match depth {
-                // Lines of the source itself are free; only expansion uses the budget.
+                // Lines of the source itself do not count. Only expansion uses the budget.
                 0 => self.budget.begin(line.number),
                 _ => self.take(1, line.text.len())?,
             }
@@ -166,7 +167,7 @@ impl Expander<'_> {
         if depth >= MOST_DEPTH {
             return Err(self.error(lines[0].number, format!("repetitions and macros nest deeper than {MOST_DEPTH}")));
         }
-        // An empty body needs no repetition, whatever its count.
+        // An empty body needs no repetition, for any count.
         let count = if len == 1 { 0 } else { count };
         for _ in 0..count {
             self.take(1, 0)?;
@@ -206,7 +207,7 @@ impl Expander<'_> {
         let mut body = Vec::with_capacity(called.body.len());
         for own in &called.body {
             let text = substitute(&own.text, &called.parameters, &arguments, &unique, self.budget.text);
-            // A line that was cut off costs the whole remaining budget and one byte more, so that it fails.
+            // A line that was cut off uses one byte more than the remaining budget, so that the expansion fails.
             let taken = text.as_ref().map_or(self.budget.text + 1, String::len);
             self.take(1, taken)?;
             body.extend(text.map(|text| Line { number: line, text }));

@@ -4,7 +4,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Adder,
-    /// The multiplier. Its pipe has two stages for double-precision sources, else three.
+    /// The multiplier. Its pipe has two stages for double-precision sources, and three stages for single-precision
+    /// sources.
     Multiplier {
         double: bool,
     },
@@ -42,7 +43,7 @@ impl Width {
     }
 }
 
-/// The properties of an operation that linear code refers to by a name.
+/// The properties of an operation that has a name in linear code.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Name {
     pub(super) unit: Unit,

@@ -1,4 +1,5 @@
-//! Parser of straight-line code that has no registers and no order, a *linear stretch* of an assembler source.
+//! Parser of *linear stretches* of an assembler source. A linear stretch is straight-line code without registers and
+//! without an order.
 
 use super::LinearError;
 use super::machine::{self, Name, Width};
@@ -8,8 +9,8 @@ use std::collections::HashMap;
 /// An operand in linear code: a value of an earlier line, or a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The value of an operation: index of the operation, and index of one register of the value. `None` means all of
-    /// its registers.
+    /// The value of an operation: index of the operation, and index of one register of the value. `None` means all
+    /// registers of the value.
     Value(usize, Option<u8>),
     /// A register or a constant, as the text in the source.
     Text(String),
@@ -22,7 +23,7 @@ pub(super) struct Operation {
     pub(super) sources: Vec<Source>,
     /// Offset and base register of a memory address.
     pub(super) address: Option<(String, Source)>,
-    /// Indices of the stores that must come before this operation.
+    /// Indices of the stores that must precede this operation.
     pub(super) after: Vec<usize>,
     /// Register in which later code expects the result, if any. No other line of the linear code reads this register.
     pub(super) register: Option<u8>,
@@ -50,7 +51,7 @@ pub(super) fn pool(line: usize, registers: &[&str]) -> Result<Vec<u8>, LinearErr
     found.map_or_else(|| error(line, format!("expected r1 to r31, found {registers:?}")), Ok)
 }
 
-/// Parses the parameters of a `.linear` line, the begin of linear code.
+/// Parses the parameters of a `.linear` line, the start of linear code.
 pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, LinearError> {
     let numbers: Option<Vec<u32>> = words.iter().map(|word| word.parse().ok()).collect();
     match numbers.as_deref() {
@@ -94,7 +95,7 @@ fn repeat(lines: &[(usize, String)]) -> Result<Vec<(usize, String)>, LinearError
         match words.as_slice() {
             [] => {}
             ["for", variable, values @ ..] => {
-                // Find the `endfor` of this loop, then write its body out for each value.
+                // Find the `endfor` of this loop, then repeat the body of the loop for each value.
                 let end = at
                     + matching_end(&lines[at..])
                         .ok_or_else(|| LinearError { line: *line, reason: "`for` without `endfor`".to_owned() })?;
@@ -176,7 +177,7 @@ impl Parser {
             return error(line, format!("expected {} sources, found {}", name.sources, operands.len()));
         }
         let sources = operands.iter().map(|text| self.source(line, text)).collect::<Result<_, _>>()?;
-        // Marks name earlier stores.
+        // Marks refer to earlier stores.
         let marked = |mark: &&str| match self.marks.get(*mark) {
             Some(n) => Ok(*n),
             None => error(line, format!("no store is marked `{mark}`")),

@@ -8,9 +8,10 @@ use super::settings::Settings;
 const STAGES: usize = 3;
 /// Number of stages of the multiplier's pipe for double-precision sources.
 const DOUBLE_STAGES: usize = 2;
-/// Number of clocks after a prefetch in which the scheduler places no memory access. A cache-line fill takes this long.
+/// Number of clocks after a prefetch in which the scheduler places no memory access. A cache-line fill takes this
+/// number of clocks.
 const PREFETCH: u32 = 18;
-/// Greatest number of stores that can wait for the bus. One store also occupies the bus for this number of clocks.
+/// Greatest number of stores that can wait for the bus. A store also occupies the bus for this number of clocks.
 const STORES: u32 = 2;
 const STORE: u32 = 3;
 /// Number of clocks without progress after which the scheduler fails.
@@ -32,7 +33,8 @@ pub(super) fn pairs_of(operations: &[Operation], pool: &[u8], settings: Settings
 enum Place {
     Nowhere,
     InPipe,
-    /// The value is in registers, from number `register` on. Operations can read the value from clock `at` on.
+    /// The value is in one or more registers. `register` is the number of the first register. Operations can read the
+    /// value from clock `at` on.
     Ready {
         at: u32,
         register: u8,
@@ -61,16 +63,16 @@ impl File {
         (0..32).filter(|n| self.is_free(*n, now)).count()
     }
 
-    /// Finds `count` consecutive free registers and returns the first. For one or two registers, a gap beside used
-    /// registers is preferred.
+    /// Finds `count` consecutive free registers and returns the first of them. For one or two registers, the function
+    /// prefers a gap beside used registers. The register `but` is not used.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
-        // Values of two and four registers begin at a multiple of their length.
+        // The first register of a value is a multiple of its number of registers.
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
         let mut starts = (0..32).step_by(count).filter(fits);
         let start = match count {
             1 => {
                 let all: Vec<usize> = starts.collect();
-                // Prefer a register whose neighbour is in use, to keep pairs free.
+                // Prefer a register whose neighbour is in use, so that whole pairs stay free.
                 let lonely = all.iter().copied().find(|n| !self.is_free(n ^ 1, now));
                 lonely.or_else(|| all.first().copied())
             }
@@ -107,7 +109,7 @@ struct Placer<'a> {
     /// Number of following multiplications that must stay single operations. A reciprocal approximation (`frcp`,
     /// `frsqr`) has destroyed the values in the multiplier's pipe, so a dual operation would read a wrong product.
     after_seed: usize,
-    /// Values in the adder's pipe, the oldest value first. `None` stands for a result that no operation reads.
+    /// Values in the adder's pipe, the oldest value first. `None` is a result that no operation reads.
     adder: Vec<Option<usize>>,
     multiplier: Vec<Option<usize>>,
     multiplies_double: bool,
@@ -126,7 +128,7 @@ struct Placer<'a> {
 impl<'a> Placer<'a> {
     fn new(operations: &'a [Operation], pool: &[u8], settings: Settings) -> Placer<'a> {
         let mut uses_left = vec![0; operations.len()];
-        // Count the reads of each value; its registers are free after the last one.
+        // Count the reads of each value. The registers of a value are free after the last read.
         operations.iter().flat_map(Operation::reads).for_each(|n| uses_left[n] += 1);
         Placer {
             operations,
@@ -200,7 +202,7 @@ impl<'a> Placer<'a> {
 
     fn can_issue(&self, n: usize, is_oldest: bool) -> bool {
         let operation = &self.operations[n];
-        // A load after a marked store waits two clocks for it.
+        // A load that must wait for a store is placed at least two clocks after the store.
         let awaited = operation.after.iter().all(|store| self.issued[*store].is_some_and(|at| at + 2 <= self.now));
         awaited
             && operation.reads().all(|value| self.is_ready(value))
@@ -215,7 +217,7 @@ impl<'a> Placer<'a> {
     fn unit_accepts(&self, n: usize) -> bool {
         let operation = &self.operations[n];
         let base_is_command = matches!(&operation.address, Some((_, Source::Text(base))) if base == "r18");
-        // A load right after a store would freeze (row 17).
+        // A load directly after a store would freeze (row 17).
         let follows_store = self.last_store.is_some_and(|at| at + 1 == self.now);
         match operation.name.unit {
             Unit::Adder => self.can_push(&self.adder, STAGES, None),
@@ -281,7 +283,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Returns true if enough registers are free for the result and for the values in the pipes. Only the oldest
-    /// operation can take the last free registers.
+    /// operation can use the last free registers.
     fn has_room(&self, n: usize, is_oldest: bool) -> bool {
         let Some(width) = self.operations[n].name.result else { return true };
         let count = width.registers();
@@ -292,7 +294,7 @@ impl<'a> Placer<'a> {
                 || self.integers.free(self.now) > spare;
         }
         let piped = matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. });
-        // Values in the pipes will need registers too.
+        // Values in the pipes will also need registers.
         let coming: usize =
             self.adder.iter().chain(&self.multiplier).flatten().map(|value| self.width(*value).registers()).sum();
         let free = self.floats.free(self.now);
@@ -320,12 +322,12 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns the adder or the multiplier, whichever pipe holds the most urgent value and can be pushed. The number is
-    /// the urgency in clocks.
+    /// Returns the unit (adder or multiplier) whose pipe holds the most urgent value, if this pipe can be pushed. The
+    /// number is the urgency in clocks.
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
-        // Compare both pipes; a pipe without values is not drained.
+        // Compare both pipes. A pipe without values is not drained.
         let adder = (self.urgency(&self.adder), Unit::Adder, self.can_push(&self.adder, STAGES, None));
         let free = self.multiplier_free <= self.now;
         let multiplier = (
@@ -363,7 +365,8 @@ impl<'a> Placer<'a> {
     fn issue_floating(&mut self, n: usize) -> String {
         let operation = &self.operations[n];
         let mnemonic = operation.name.mnemonic;
-        // Row 9 forbids the latest result as first source; multiplication is commutative.
+        // Row 9 would delay the latest result as first source. Multiplication is commutative, so the sources can be
+        // swapped.
         let swapped =
             matches!(operation.name.unit, Unit::Multiplier { .. }) && self.is_last_result(&operation.sources[0]);
         let mut texts: Vec<String> = operation.sources.iter().map(|source| self.floating_text(source)).collect();
@@ -401,7 +404,7 @@ impl<'a> Placer<'a> {
             "pfsub.ss" => "ra1s2.ss",
             _ => return mnemonic,
         };
-        // The push must move values and must not drop a result.
+        // The push must move values and must not lose a result.
         let waits = self.multiplier.iter().any(Option::is_some) && self.multiplier[0].is_none();
         if self.multiplies_double || !waits || self.multiplier_free > self.now {
             return mnemonic;
@@ -443,12 +446,12 @@ impl<'a> Placer<'a> {
         self.leave(leaving, None)
     }
 
-    /// Pushes an operation into the multiplier's pipe. A double-precision operation skips the first of the three
+    /// Pushes an operation into the multiplier's pipe. A double-precision operation does not use the first of the three
     /// stages.
     fn push_multiplier(&mut self, n: Option<usize>, double: bool, first_source: Option<u8>) -> String {
         let at = if double { STAGES - DOUBLE_STAGES } else { 0 };
         self.multiplies_double = double;
-        // The oldest value leaves, and the new one enters at the end.
+        // The oldest value leaves the pipe, and the new value enters at the end.
         let leaving = self.multiplier.remove(at);
         self.multiplier.push(n);
         if double {
@@ -482,7 +485,7 @@ impl<'a> Placer<'a> {
             texts.push(format!("{offset}({})", self.core_text(base)));
         }
         self.note_memory(n);
-        // The sources must be released before the result gets a register, so that the result can reuse one of them.
+        // Release the sources before the result gets a register, so that the result can reuse a register of a source.
         if operation.name.unit == Unit::Integer {
             self.release_integers(n);
         }
@@ -501,7 +504,8 @@ impl<'a> Placer<'a> {
             && read.any(|value| self.width(value) == Width::Integer && self.uses_left[value] == 1)
     }
 
-    /// Frees the integer registers whose last reader is this operation. The result of the operation can overwrite them.
+    /// Frees the integer registers whose last reader is this operation. The result of the operation can overwrite these
+    /// registers.
     fn release_integers(&mut self, n: usize) {
         let read: Vec<usize> = self.operations[n].reads().collect();
         for value in read {
@@ -580,13 +584,13 @@ impl<'a> Placer<'a> {
     }
 }
 
-/// Returns the longest path from each operation to the end, in clocks. If `shake` is not 0, pseudo-random noise is
-/// added, so that other schedules are tried.
+/// Returns the longest path from each operation to the end, in clocks. If `shake` is not 0, the function adds
+/// pseudo-random noise, which leads to other schedules.
 fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut heights = vec![0; operations.len()];
     let mut state = u64::from(shake);
     for n in (0..operations.len()).rev() {
-        // A fixed generator makes the noise, so that schedules are reproducible.
+        // The noise comes from a fixed generator, so that schedules are reproducible.
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let noise = if shake == 0 { 0 } else { (state >> 40) as u32 % (6 << (shake % 4)) };
         heights[n] += operations[n].name.latency + noise;

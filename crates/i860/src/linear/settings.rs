@@ -3,7 +3,7 @@
 /// Parameters of the scheduler for straight-line code.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
-    /// Number of lines from which the scheduler chooses, counted from the first line that was not issued yet.
+    /// Number of lines from which the scheduler chooses, counted from the first unissued line.
     pub(super) window: usize,
     /// Threshold in clocks. A pipe is drained if one of its values is more urgent than the best operation by more than
     /// this number of clocks.
@@ -11,9 +11,9 @@ pub(super) struct Settings {
     /// Number of registers in each file that only the first unissued line can use.
     pub(super) reserve: usize,
     /// Number of additional reserved registers for each 64 lines of distance from the first unissued line. Distant
-    /// lines thus wait when registers are scarce.
+    /// lines therefore wait if few registers are free.
     pub(super) slope: usize,
-    /// Seed of random changes to the priorities of operations. 0 means no changes.
+    /// Seed of random changes to the priorities of operations. With 0, the priorities stay unchanged.
     pub(super) shake: u32,
 }
 

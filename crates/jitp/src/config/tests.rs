@@ -1,5 +1,5 @@
-//! Compares strips, the times for which they are drawn, and lead times with formulas, for a beam with equal times for
-//! all lines.
+//! Compares strips, the times for which they are drawn, and lead times with formulas. The beam takes the same time for
+//! every line.
 
 use super::*;
 
@@ -113,7 +113,7 @@ fn blocks_come_in_the_order_that_was_said() {
 fn instants_of_strips_and_fields_are_those_of_their_pixels() {
     let config = strips(100);
     let field = PeriodNumber(3);
-    // Strip 1 has rows 100 to 199, strip 2 the rest, to row 239.
+    // Strip 1 has rows 100 to 199. Strip 2 has the remaining rows up to row 239.
     assert_eq!(config.deadline(field, 1), at(3, 100, 0));
     assert_eq!(config.ends(field), (at(3, 0, 0), at(3, 239, 639)));
     let middle = |first: Time, last: Time| Time((first.0 + last.0) / 2);
@@ -143,8 +143,8 @@ fn strips_are_ordered_a_strip_time_for_each_slave_ahead_and_never_over_what_is_s
     assert_eq!(lead(1, 10, true), Span(10 * ROW + margin));
     assert_eq!(lead(3, 10, true), Span(30 * ROW + margin));
     assert_eq!(lead(3, 10, false), Span(30 * ROW + margin + FIELD));
-    // The lines of strip 0 are free when its last pixel has been scanned, two fields before the next field of the same
-    // parity.
+    // The lines of strip 0 are free after the beam has scanned its last pixel, two fields before the next field of the
+    // same parity.
     let scanned = |strip_rows: u64| (strip_rows - 1) * ROW + 639 * PIXEL;
     assert_eq!(lead(9, 128, false), Span(2 * FIELD - scanned(128)));
     assert_eq!(lead(9, 64, true), Span(9 * 64 * ROW + margin).min(Span(2 * FIELD - scanned(64))));

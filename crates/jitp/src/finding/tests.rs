@@ -1,5 +1,5 @@
-//! Tests of the search by i860 code. Its primitives and messages must equal those of the native firmware, for any scene
-//! and windows.
+//! Tests of the search by i860 code. For any scene and windows, the code must give the primitives and messages of the
+//! native firmware.
 
 use crate::config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends, Window, interpolated};
@@ -21,7 +21,7 @@ use pxpl5_wire::{NodeId, PeriodNumber, PictureNumber, RegionId, ViewNumber, Word
 use std::sync::Arc;
 
 const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
-/// Half the picture's height at distance 1 from the eye.
+/// Half of the picture's height at a distance of 1 from the eye.
 const TANGENT: f32 = 0.5;
 
 struct Numbers(SplitMix64);
@@ -46,11 +46,11 @@ impl Numbers {
         Vec3::new(across, (1.0 - y / 240.0) * TANGENT, -1.0) * distance
     }
 
-    /// Returns the corners of a random triangle. It can be small, a sliver, large, or beside the eye. Small triangles
-    /// are anywhere in the picture, or where four regions meet.
+    /// Returns the corners of a random triangle. The triangle can be small, a sliver, large, or beside the eye. Small
+    /// triangles are anywhere in the picture, or where four regions meet.
     ///
-    /// No sliver extends so far in depth that its depth plane would be flattened, since kernels flatten only the planes
-    /// of clipped pieces.
+    /// No sliver extends so far in depth that its depth plane would be flattened, because kernels flatten only the
+    /// planes of clipped pieces.
     fn triangle(&mut self) -> [Vec3; 3] {
         let [x, y] = match self.below(4) {
             0 => [128.0 * (1 + self.below(4)) as f32, 120.0 * (1 + self.below(3)) as f32],
@@ -128,7 +128,8 @@ fn strips(strip_rows: u32) -> JitpConfig {
     config(DrawingSchedule::Beam { viewpoint: Viewpoint::Field, racing: false, strip_rows })
 }
 
-/// Returns two views. The second view is rotated by about `turn` radians, and a structure in it is rotated, too.
+/// Returns two views. In the second view, the eye is rotated by about `turn` radians, and a structure is rotated as
+/// well.
 fn two_views(numbers: &mut Numbers, turn: f32) -> [FrameView; 2] {
     [0.0, turn].map(|turn| {
         let mut view = view(numbers);
@@ -143,7 +144,7 @@ fn blocks(block: u32) -> JitpConfig {
     config(DrawingSchedule::Roam { block, batch: 16, order: BlockOrder::new(|step| RegionId(step as u16)) })
 }
 
-/// A board, a scene, and the stored picture of the scene in the board's memory.
+/// A board and a scene whose picture is stored in the board's memory.
 struct Scene {
     processor: Processor,
     share: Share,
@@ -243,7 +244,7 @@ impl Scene {
         output
     }
 
-    /// Compares all words of a message, except the commands of the region's envelope, which are not in memory.
+    /// Compares all words of a message. The commands of the region's envelope are not in memory and are left out.
     fn assert_words(&self, pieces: &[[Word; 2]], native: &[Word], region: RegionId) {
         let mut native = native;
         for [address, length] in pieces {
@@ -297,7 +298,7 @@ fn what_code_finds_in_blocks_is_what_the_native_firmware_draws() {
     }
 }
 
-/// Tests more windows than fit in the tables at once, and a region with many messages.
+/// Tests a number of windows that exceeds the size of the tables, and a region with many messages.
 #[test]
 fn many_windows_are_searched_for_in_several_passes_and_many_entries_make_several_messages() {
     let mut scene = Scene::new(&blocks(128), CodeVersion::Compiled, 5, [3_000, 100]);
@@ -320,8 +321,8 @@ fn a_list_of_nothing_or_of_one_kind_is_searched_too() {
     }
 }
 
-/// Tests small and large rotations, in which corners move on curved paths on the screen. Some positions are before the
-/// first view.
+/// Tests small and large rotations, in which corners move on curved paths on the screen. Some of the times are before
+/// the first view.
 #[test]
 fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draws() {
     for (seed, (rows, turn)) in (40..).zip([(1, 0.05), (8, 0.05), (7, 0.8), (1, 1.5)]) {
@@ -339,8 +340,8 @@ fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draw
     }
 }
 
-/// A structure and the view rotate together. The corners' paths on the screen curve so much that they leave the lines
-/// that count as near a strip.
+/// A structure and the view rotate together. The corners' paths on the screen have such strong curvature that they
+/// leave the range of lines near a strip.
 #[test]
 fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
     let config = strips(1);
@@ -360,7 +361,7 @@ fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
     }
 }
 
-/// A board spends time for two steps of a strip between two views: the interpolation, then the search.
+/// A strip between two views takes the time of two steps: the interpolation and the search.
 #[test]
 fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
     let spans = [false, true].map(|is_one_work| {

@@ -8,7 +8,7 @@ use pxpl5_gp::{CodeVersion, GpBoard};
 #[test]
 fn an_order_lasts_as_long_as_the_slaves_last_one_and_its_blocks_stand_for_a_pass() {
     let mut flight = OrderTimes::new(2, 3);
-    // A pass has three orders. The pairs give the slave and the time of each order.
+    // A pass has three orders. Each pair has the slave and the time of an order.
     let orders = [(0, 100), (1, 130), (1, 190), (0, 260), (0, 400), (1, 430)];
     let expected = [(0, 0), (0, 0), (60, 0), (160, 160), (140, 270), (240, 240)];
     for ((slave, now), (drawing, standing)) in orders.into_iter().zip(expected) {
@@ -23,7 +23,7 @@ fn nothing_is_before_time_begins() {
     assert_eq!(before(Time(3), Span(5)), Time::ZERO);
 }
 
-/// Returns a board with a master that orders strips of 120 rows, racing the beam.
+/// Returns a board with a master that orders strips of 120 rows. The strips race the beam.
 fn master_of(viewpoint: Viewpoint, margin_ns: u64, code: Option<CodeVersion>, beam: Option<Beam>) -> Rig {
     let mut config = config(DrawingSchedule::Beam { viewpoint, racing: true, strip_rows: 120 });
     config.timing.margin_ns = margin_ns;
@@ -42,7 +42,7 @@ fn ordered(rig: &Rig) -> Vec<(Time, DrawingOrder)> {
     sent.map(|(time, received)| (time, DrawingOrder::read(&received, SLAVE).expect("an order"))).collect()
 }
 
-/// A field has two strips of 120 rows. The only slave has the time of one strip and a margin for each strip. If the
+/// A field has two strips of 120 rows. The only slave has the time of one strip plus a margin for each strip. If the
 /// boards run i860 code, the order for a field is sent one field earlier.
 #[test]
 fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {

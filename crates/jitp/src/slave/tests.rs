@@ -78,8 +78,8 @@ fn the_last_three_fields_stay_transformed() {
     }
 }
 
-/// Each stored field and the next field have their own parts of memory. If strips are interpolated between two views,
-/// the last part is for these strips.
+/// Each stored field and the next field have their own parts of memory. These parts do not overlap. If strips are
+/// interpolated between two views, the last part is for these strips.
 #[test]
 fn fields_that_stay_transformed_lie_apart() {
     assert_eq!(OF_STRIP, MemoryPart::of(4, 5));
@@ -97,7 +97,7 @@ fn fields_that_stay_transformed_lie_apart() {
     }
 }
 
-/// Strips are normally interpolated between two views. If an order has only one view, this view must be used.
+/// Strips are normally interpolated between two views. If an order has only one view, the slave must use this view.
 #[test]
 fn a_field_of_one_view_is_drawn_from_it() {
     let messages = [Viewpoint::Field, DUAL].map(|viewpoint| {

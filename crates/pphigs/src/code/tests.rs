@@ -7,7 +7,7 @@ use pxpl5_geometry::kernel::{KernelList, KernelPicture};
 
 const SURFACES: [KernelSurface; 3] = [KernelSurface::Gouraud, KernelSurface::Precomputed, KernelSurface::Phong];
 const BOTH: [bool; 2] = [false, true];
-/// Combinations of two properties of a kernel: it fills bins, and it stores bounding boxes.
+/// Combinations of two properties: the kernel fills bins, and the kernel stores bounding boxes.
 const BINS: [(bool, bool); 3] = [(true, false), (false, false), (false, true)];
 const PICTURES: [KernelPicture; 3] = [KernelPicture::Frame, KernelPicture::Field, KernelPicture::Grid];
 

@@ -1,4 +1,5 @@
-//! Ideal pictures: colours and depths of pixels, and the pixels at which several primitives are equally near.
+//! Ideal pictures: colours and depths of pixels, and the pixels at which several primitives have the same smallest
+//! depth.
 
 use crate::oracle::shade::Paint;
 use image::{Rgb, RgbImage};
@@ -23,7 +24,7 @@ pub struct Tie<'a> {
     pub x: u32,
     /// Row of the picture, counted from the top.
     pub y: u32,
-    /// Red, green and blue of each of these primitives, in the order of the display list.
+    /// Red, green and blue of each primitive with this smallest depth, in the order of the display list.
     pub colours: &'a [[u8; 3]],
 }
 
@@ -41,14 +42,14 @@ impl IdealPicture {
         &self.depths
     }
 
-    /// Returns the pixels with a tie, row by row. On the machine, the order in which commands arrive determines their
-    /// colours.
+    /// Returns the pixels with a tie, row by row. On the machine, the order in which commands arrive determines the
+    /// colours of these pixels.
     pub fn ties(&self) -> impl ExactSizeIterator<Item = Tie<'_>> {
         self.ties.iter().map(|([y, x], colours)| Tie { x: *x, y: *y, colours })
     }
 
-    /// Returns the pixels (x, y) of another image whose colour is wrong, row by row. At a tie, the colour of each of
-    /// the nearest primitives is right.
+    /// Returns the pixels (x, y) of another image whose colour is wrong, row by row. At a tie, the colour of every
+    /// nearest primitive is right.
     ///
     /// If `other` has a different size, all its pixels are returned.
     #[must_use]
@@ -65,7 +66,7 @@ impl IdealPicture {
     }
 }
 
-/// The nearest primitive at a pixel: its depth, index and colour or surface.
+/// The nearest primitive at a pixel, with its depth, its index, and its colour or surface.
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
     depth: u32,
@@ -79,7 +80,7 @@ pub(crate) struct DepthBuffer {
     width: u32,
     far: u32,
     nearest: Vec<Option<Nearest>>,
-    /// Colours or surfaces of further primitives with the same depth as the nearest one, by row and column.
+    /// Colours or surfaces of further primitives with the same depth as the nearest primitive, by row and column.
     tied: BTreeMap<[u32; 2], Vec<Paint>>,
 }
 
@@ -91,7 +92,8 @@ impl DepthBuffer {
 
     /// Draws one pixel of a primitive. `primitive` is the index of the primitive in the order of drawing.
     ///
-    /// `paint` is called only if the primitive is nearer than the pixel's nearest primitive so far, or equally near.
+    /// The function calls `paint` only if the primitive is nearer than the pixel's nearest primitive so far, or has the
+    /// same depth.
     pub(crate) fn draw(&mut self, pixel: [i32; 2], primitive: usize, depth: u32, paint: impl FnOnce() -> Paint) {
         let [x, y] = pixel.map(i32::cast_unsigned);
         let place = &mut self.nearest[(y * self.width + x) as usize];

@@ -13,8 +13,8 @@ use std::ops::Range;
 /// Returns the ideal picture of a display list for one eye of a view. `eye` is 0 for a single or left eye, 1 for a
 /// right eye.
 ///
-/// `picture` defines the lines, the shading and the layout of pixel memory. Its fields `binning` and `pixels` are
-/// ignored.
+/// `picture` defines the lines, the shading and the layout of pixel memory. The fields `binning` and `pixels` of
+/// `picture` have no effect.
 ///
 /// # Panics
 ///
@@ -24,8 +24,8 @@ pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: 
     ideal_picture_of(list, |_| true, view, eye, picture)
 }
 
-/// Returns the ideal picture of the chosen structures only. `chosen` gets a structure's index in the list, and returns
-/// true to draw it.
+/// Returns the ideal picture of only the chosen structures. `chosen` gets a structure's index in the list, and returns
+/// true if the structure is drawn.
 ///
 /// # Panics
 ///
@@ -43,14 +43,14 @@ pub fn ideal_picture_of(
     let raster = Raster { list, picture, widths };
     let grid = picture.viewport.grid();
     let mut buffer = DepthBuffer::new(grid.width, grid.height, widths.stored_depth(u32::MAX));
-    // Primitives in the order of the display list; the buffer keeps the nearest one.
+    // Draw the primitives in the order of the display list. The buffer keeps the nearest primitive of each pixel.
     for (_, place) in placed.iter().enumerate().filter(|(number, _)| chosen(*number)) {
         let Some(transform) = &place.transform else { continue };
         let placed = Placed { place, transform };
         place.structure.triangles.clone().for_each(|number| raster.triangle(&placed, number, &mut buffer));
         place.structure.spheres.clone().for_each(|number| raster.sphere(&placed, number, &mut buffer));
     }
-    // Phong surfaces are shaded at the end, like on the machine.
+    // Phong surfaces are shaded at the end, as on the machine.
     let shade = shade(placed.first().map(|first| &first.light), list.is_matte);
     buffer.finish(list.background, |paint| paint.colour(&shade), |stored| widths.sent_depth(stored))
 }
@@ -71,7 +71,8 @@ impl Raster<'_> {
     fn triangle(&self, Placed { place, transform }: &Placed<'_>, number: usize, buffer: &mut DepthBuffer) {
         let viewport = &self.picture.viewport;
         let triangle = self.list.triangle(number);
-        // The machine clips, drops and flattens the same primitives, so the counts are not needed.
+        // The counts of clipped, dropped and flattened primitives are the same as on the machine, so they are not
+        // needed here.
         let mut stats = SetupStats::default();
         let light = place.light_of_corners(self.picture.shading);
         match self.picture.shading {
@@ -155,8 +156,8 @@ impl Raster<'_> {
 
 /// Returns the range of columns or rows that a triangle can cover, with one additional column or row at each end.
 ///
-/// `corners` are the positions of the triangle's corners in subpixels. Row r is line `first + r * step` of the frame;
-/// there are `count` rows.
+/// `corners` are the positions of the triangle's corners in subpixels. Row r is line `first + r * step` of the frame.
+/// The picture has `count` rows.
 fn between(corners: &[i32; 3], [first, step]: [i32; 2], count: u32) -> Range<i32> {
     let low = corners.iter().copied().fold(i32::MAX, i32::min) >> SUBPIXEL_BITS;
     let high = corners.iter().copied().fold(i32::MIN, i32::max) >> SUBPIXEL_BITS;

@@ -31,7 +31,7 @@ impl Paint {
     }
 }
 
-/// Largest value of a cosine, a number of 10 bits. The cosine 1.0 would be 1024.
+/// Largest value of a cosine, which is a number of 10 bits. The value 1024 would stand for 1.0.
 const COSINE_MAX: i32 = 1023;
 
 /// Number of times that the cosine of a highlight is squared. This makes the highlight small.
@@ -48,7 +48,7 @@ pub(crate) fn normal(plane: &Linear, x: i32, y: i32) -> i32 {
     two_s_complement(plane.at(x, y) >> NORMAL_FRACTION_BITS, NORMAL_BITS)
 }
 
-/// Returns the value of the lowest `bits` bits of a number, read in two's complement.
+/// Returns the value of the lowest `bits` bits of a number, as a number in two's complement.
 pub(crate) fn two_s_complement(value: i32, bits: u32) -> i32 {
     value << (32 - bits) >> (32 - bits)
 }
@@ -64,8 +64,8 @@ impl Surface {
         self.colour.map(|component| (((i32::from(component) * intensity) >> 8) + white).min(255) as u8)
     }
 
-    /// Returns the cosine of the angle between the normal and a vector, or 0 if the angle is obtuse. If the normal is
-    /// zero, returns the largest cosine.
+    /// Returns the cosine of the angle between the normal and a vector, or 0 if the angle is obtuse. Returns the
+    /// largest cosine if the normal is zero.
     fn cosine(&self, vector: [i16; 3]) -> i32 {
         let square: i32 = self.normal.iter().map(|n| n * n).sum();
         let length = square.isqrt();

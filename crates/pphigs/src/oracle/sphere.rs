@@ -34,8 +34,8 @@ impl SpherePoint {
         (self.root >> (self.root_bits - bits)) as i32
     }
 
-    /// Returns the colour at a pixel: limit(linear + (upper root x factor >> 8)). The sum in the outer parentheses has
-    /// 10 bits.
+    /// Returns the colour at a pixel: limit(linear + (upper root x factor >> 8)). Here, `limit` limits a sum of 10 bits
+    /// to 8 bits.
     pub(crate) fn colour(&self, sphere: &GouraudSphere, x: i32, y: i32) -> [u8; 3] {
         let root = self.upper_root(COLOUR_ROOT_BITS);
         std::array::from_fn(|i| {

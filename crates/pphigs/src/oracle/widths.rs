@@ -1,13 +1,14 @@
-//! Numbers of bits of a pixel's fields that depend on the layout of pixel memory.
+//! Widths of those parts of a pixel's memory that depend on the layout.
 
 use pxpl5_renderer::Layout;
 use pxpl5_wire::format::{Z_BITS, Z_FRACTION_BITS};
 
-/// Numbers of bits of a pixel's fields that depend on the layout of pixel memory.
+/// Numbers of bits of those values of a pixel that depend on the layout of pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Widths {
     z_bits: u32,
-    /// Bits of a sphere's square root, 10 to 12. A layout without a root cannot draw spheres; the value is then 12.
+    /// Bits of a sphere's square root, 10 to 12. A layout without a root cannot draw spheres. In this case, the value
+    /// is 12.
     pub(crate) root_bits: u32,
 }
 

@@ -126,14 +126,14 @@ impl Strip {
     }
 }
 
-/// Returns strips of the given numbers of triangles. Their vertices zigzag with steps of about `size` world units from
-/// a place near the middle of the picture.
+/// Returns strips of the given numbers of triangles. The vertices form a zigzag line that starts near the middle of the
+/// picture. Each step has about `size` world units.
 pub(crate) fn strips(lengths: &[usize], size: f32, seed: u64) -> Vec<Strip> {
     let mut numbers = Numbers(SplitMix64::new(seed));
     let strip = |length: &usize| {
         let mut along = numbers.vector(2.4);
         let mut vertex = |n: usize| {
-            // Turn round before the strip leaves the picture.
+            // Reverse the direction before the strip leaves the picture.
             let way = along.abs().max_element() > 2.4;
             along = if way { along * 0.9 } else { along + numbers.vector(0.5 * size) };
             let side = Vec3::new(size, size, 0.0) * if n.is_multiple_of(2) { 0.5 } else { -0.5 };
@@ -210,8 +210,8 @@ fn words(command: &Command) -> Vec<u32> {
     words
 }
 
-/// Returns the instruction words that all triangle commands share. They are read from an encoded command whose values
-/// are zero.
+/// Returns the instruction words that all triangle commands share. The function encodes a command whose values are
+/// zero, and reads the words from this command.
 fn heads(surface: KernelSurface) -> Heads {
     let blank = match surface {
         KernelSurface::Gouraud | KernelSurface::Precomputed => {

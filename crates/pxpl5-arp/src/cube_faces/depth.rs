@@ -57,7 +57,7 @@ impl DepthRange {
         (distance_m > 0.0 && (0.0..1.0).contains(&depth)).then_some((depth * f64::from(DEPTH_FARTHEST)) as u32)
     }
 
-    /// Returns the distance along the axis in metres that belongs to the 24-bit depth `word`. It is the distance for
+    /// Returns the distance along the axis in metres that belongs to the 24-bit depth `word`. The distance belongs to
     /// the middle of the depth step.
     #[must_use]
     pub fn distance_m(&self, word: u32) -> f64 {

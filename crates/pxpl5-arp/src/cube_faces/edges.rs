@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 
-/// A linear function a x + b y + c over a face. x points right and y points down. Both are tangents of angles from the
-/// face's middle.
+/// A linear function a x + b y + c over a face. x points right and y points down. Both coordinates are tangents of
+/// angles from the face's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Linear {
     pub(crate) x: f64,
@@ -33,7 +33,7 @@ impl Linear {
     }
 }
 
-/// A triangle on a face.
+/// The edge functions of a triangle on a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edges {
     /// Edge functions, positive inside the triangle. Function i belongs to the edge opposite to corner i.

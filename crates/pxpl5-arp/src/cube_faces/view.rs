@@ -58,7 +58,7 @@ struct FaceView {
 
 impl CubeView {
     /// Draws triangles as seen from an eye position. Each texel shows the nearest triangle. If two triangles are
-    /// equally near, the first one is visible.
+    /// equally near, the first triangle is visible.
     ///
     /// # Panics
     ///
@@ -113,8 +113,8 @@ impl FaceView {
         (!is_out && places.iter().all(|p| p.is_finite())).then_some(places)
     }
 
-    /// Returns the range of rows that a triangle can touch. It covers the triangle's part beyond the near plane, with
-    /// one additional row on each side.
+    /// Returns the range of rows that a triangle can touch. The range covers the triangle's part beyond the near plane,
+    /// with one additional row on each side.
     fn rows(&self, places: [DVec3; 3]) -> [i64; 2] {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for (i, place) in places.iter().enumerate() {

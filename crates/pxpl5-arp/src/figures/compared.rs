@@ -17,7 +17,7 @@ fn small(settings: &Settings) -> Settings {
     settings
 }
 
-/// Counts the texels in which the combined picture of all memories differs from that of a single memory.
+/// Counts the texels in which the combined picture of all memories differs from the picture of a single memory.
 ///
 /// All memories are drawn at once from one position. The single memory draws the same segments in the order of the
 /// memories.
@@ -46,7 +46,8 @@ pub(super) fn composite_differs(world: &World, settings: &Settings, eye: DVec3) 
 const FRAMES: u64 = 200;
 const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 
-/// Counts the pixels that differ between an ideal and a stalled renderer, while a head at a fixed position rotates.
+/// Counts the pixels that differ between the pictures of an ideal renderer and of a stalled renderer, while a head at a
+/// fixed position rotates.
 pub(super) fn turned_differ(world: &World, settings: &Settings, eye: DVec3) -> Result<u64, WalkError> {
     // Simulate both renderers with the eye at rest until the slow one has drawn all memories.
     let ideal = small(settings);

@@ -6,7 +6,8 @@ use address_recalculation::ArpTiming;
 use address_recalculation::priority::{draws_per_s, saved_percent};
 use serde::Serialize;
 
-/// Number of segments in each display memory, with and without cutting objects at the borders of cells (table 2).
+/// Number of segments (parts of objects) in each display memory, with and without cutting objects at the borders of
+/// cells (table 2).
 pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
 
 /// A number computed from printed numbers.

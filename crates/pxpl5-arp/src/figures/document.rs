@@ -4,7 +4,7 @@ use super::definitions::{SEGMENTS, definitions};
 use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, NamedWalk, SizeLimit, SlowRendererResult};
 use super::fit::RATES_HZ;
 use super::interpretations::{Interpretations, LeftOutRate, RankedRules, Situation, ThresholdRow, Trial};
-use super::row::{Row, Standing};
+use super::row::{Provenance, Row};
 use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
 use std::fmt::Write as _;
@@ -62,9 +62,9 @@ fn pictures(text: &mut String) {
 }
 
 fn head(text: &mut String, rows: &[Row]) {
-    let numbers = rows.iter().filter(|row| row.standing != Standing::Shape);
+    let numbers = rows.iter().filter(|row| row.provenance != Provenance::Shape);
     let met = numbers.clone().filter(|row| row.is_met).count();
-    let shapes = rows.iter().filter(|row| row.standing == Standing::Shape);
+    let shapes = rows.iter().filter(|row| row.provenance == Provenance::Shape);
     let shown = shapes.clone().filter(|row| row.is_met).count();
     let _ = write!(
         text,
@@ -109,11 +109,11 @@ fn line(text: &mut String, row: &Row) {
         number(row.published),
         number(row.ours),
         row.unit,
-        row.standing.text()
+        row.provenance.text()
     );
 }
 
-/// Returns as a Markdown list the rows whose simulated numbers miss the published ones, with their known causes.
+/// Returns as a Markdown list the rows whose simulated numbers miss the published numbers, with their known causes.
 #[must_use]
 pub fn missed(rows: &[Row]) -> String {
     let mut text = String::new();
@@ -358,7 +358,8 @@ fn walk_line(text: &mut String, walked: &NamedWalk) {
     );
 }
 
-/// Formats the width of a tear in texels. Widths below a millionth of a texel are rounding errors and count as 0.
+/// Formats the width of a tear (gap between two memories) in texels. Widths below a millionth of a texel are rounding
+/// errors and count as 0.
 fn texels(width: f64) -> String {
     if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") }
 }

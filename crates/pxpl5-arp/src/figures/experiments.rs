@@ -1,4 +1,4 @@
-//! The experiments E2 to E9 with an ideal renderer. They are run once for all rows of the comparison.
+//! The experiments E2 to E9 with an ideal renderer. The experiments are run once for all rows of the comparison.
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;
@@ -16,8 +16,8 @@ use address_recalculation::priority::{Objects, PriorityTiming, SizeRule, Thresho
 use glam::{DMat3, DQuat, DVec3};
 use tracking::motion::Walk;
 
-/// Number of frames of each walk: two minutes, or four fifths of a round. The specification asks for at least 1,800
-/// frames.
+/// Number of frames of each walk: two minutes, or four fifths of a round on the gallery's path. The specification asks
+/// for at least 1,800 frames.
 pub const EXPERIMENT_FRAMES: u64 = 7_200;
 
 /// Settings and results of one simulated walk of the viewer.
@@ -30,7 +30,7 @@ pub struct NamedWalk {
     pub report: Report,
 }
 
-/// A cell side fitted to one update rate of table 1.
+/// The side of a cell (square of the floor), fitted to one update rate of table 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Rules with which the cell side was fitted.
@@ -61,14 +61,15 @@ pub struct Experiments {
     pub interpretations: Interpretations,
     /// Thresholds of the image error, each with the cell side that fits table 1.
     pub thresholds: Vec<ThresholdRow>,
-    /// Number of segments into which the fitted cells cut the gallery.
+    /// Number of segments (parts of objects) into which the fitted cells cut the gallery.
     pub segments: usize,
-    /// Four walks with the fitted cells: cut with tears, cut and warped, uncut, and warped without cascade.
+    /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without the
+    /// updates of faster memories (cascade).
     pub walks: Vec<NamedWalk>,
     /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,
-    /// Factors by which priority rendering reduces draws of point objects: 4 memories at 1 m/s, and 5 memories at 0.37
-    /// m/s.
+    /// Factors by which priority rendering reduces the number of draws of point objects: with 4 memories at 1 m/s, and
+    /// with 5 memories at 0.37 m/s.
     pub reductions: [f64; 2],
     /// Times for which an object's image is valid, for several ratios of size to distance.
     pub sizes: Vec<SizeRow>,
@@ -94,7 +95,7 @@ impl Experiments {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError`] if a scene or a number is invalid. The built-in ones are valid.
+    /// Returns [`WalkError`] if a scene or a number is invalid. The built-in scenes and numbers are valid.
     pub fn run() -> Result<Self, WalkError> {
         // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;
@@ -136,7 +137,7 @@ impl Experiments {
     }
 }
 
-/// Repeats the walk with tears for renderers of decreasing speed.
+/// Repeats the walk with tears (gaps between memories) for renderers of decreasing speed.
 fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<SlowRendererResult>, WalkError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
@@ -202,21 +203,25 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
 /// and "distance", so there is one limit for each interpretation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
-    /// Name of the angle that is allowed to change: of the diameter or of the radius.
+    /// Name of the angle whose change is limited: the angle that the sphere's diameter covers, or the angle that the
+    /// radius covers.
     pub angle: &'static str,
-    /// Allowed change of the radius' angle, divided by the threshold of translation.
+    /// Allowed change of the angle that the radius covers, divided by the threshold for translation of the eye.
     pub factor: f64,
-    /// Limit of the ratio of the diameter to the distance of the sphere's middle.
+    /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation still decides the
+    /// validity.
     pub of_middle: f64,
-    /// Limit of the ratio of the diameter to the distance of the sphere's nearest point.
+    /// Greatest ratio of the sphere's diameter to the distance of its nearest point at which translation still decides
+    /// the validity.
     pub of_nearest: f64,
 }
 
 /// Returns the limits for spheres under three interpretations. Translation is always measured at the middle of the
 /// sphere.
 ///
-/// The interpretations differ in the limited angle. The threshold limits the change of the diameter, or that of the
-/// radius, or twice the threshold limits that of the radius.
+/// The interpretations differ in the limited angle. In the first, the threshold limits the change of the angle that the
+/// diameter covers. In the second, the threshold limits the change of the radius' angle. In the third, the limit of the
+/// radius' angle is twice the threshold.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
     let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];

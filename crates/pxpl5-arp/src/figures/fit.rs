@@ -1,4 +1,4 @@
-//! The side of a cell, fitted to one update rate of table 1. The other rates serve as checks.
+//! The side of a cell (square of the floor), fitted to one update rate of table 1. The other rates serve as checks.
 
 use super::rules::Rules;
 use crate::error::WalkError;
@@ -12,7 +12,7 @@ use tracking::motion::Walk;
 /// Mean update rates of display memories 0 to 3, in Hz, as printed (table 1).
 pub const RATES_HZ: [f64; 4] = [60.0, 39.25, 28.21, 16.15];
 
-/// Index of the memory whose update rate determines the side of a cell.
+/// Index of the memory whose update rate determines the side of a cell (square of the floor).
 pub const RATE_FITTED: usize = 1;
 
 /// Cell sides to try, in tenths of a metre.
@@ -35,8 +35,8 @@ pub fn policy_rates_hz(
     Ok(rates_hz(world.cells(), at_frames(path, 1.0, numbers.frame_hz), numbers, has_cascade, frames))
 }
 
-/// Returns the updates per second of each display memory for a set of occupied cells. `eye` returns the position of the
-/// eye in each frame.
+/// Returns the updates per second of each display memory for a set of occupied cells (squares of the floor). `eye`
+/// returns the position of the eye in each frame.
 pub(super) fn rates_hz(
     held: impl IntoIterator<Item = Cell>,
     eye: impl Fn(u64) -> DVec3,

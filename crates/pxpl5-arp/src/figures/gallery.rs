@@ -5,8 +5,8 @@ use crate::hall::{Route, path_of, scaled};
 use pxpl5_scene::{Scene, builtin};
 use tracking::motion::Walk;
 
-/// Scale of the gallery in the experiments. The scaled gallery is 20 m wide: eight cells of 2.5 m. It has 191 segments;
-/// table 2 has 183 and 213.
+/// Scale of the gallery in the experiments. The scaled gallery is 20 m wide: eight cells of 2.5 m. The gallery then has
+/// 191 segments; table 2 of the paper has 183 and 213.
 const HALL_SCALE: f64 = 0.5;
 
 /// Returns the scaled gallery and its path.

@@ -84,14 +84,15 @@ impl Situation {
 /// Update rates of the memories for one side length of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Trial {
-    /// Side of a cell in metres. It applies to the default threshold.
+    /// Side of a cell in metres, for the default threshold.
     pub cell_m: f64,
     /// Updates per second of display memories 0 to 3.
     pub rates_hz: [f64; 4],
 }
 
 impl Trial {
-    /// Returns the root mean square of the relative errors of the update rates of the given memories, in percent.
+    /// Returns the root mean square of the relative errors in percent, for the update rates of the given memories
+    /// compared with table 1.
     #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();
@@ -159,13 +160,13 @@ pub struct Interpretations {
     pub left_out: Vec<LeftOutRate>,
 }
 
-/// Smallest cell side to try, in metres. Each further cell side is [`STEP`] times the previous one.
+/// Smallest cell side to try, in metres. Each further cell side is [`STEP`] times the previous side.
 const FIRST_SIDE_M: f64 = 1.4;
 const STEP: f64 = 1.06;
 const STEPS: i32 = 20;
 
 impl Tried {
-    /// Tries all cell sides, and then four more near the best one.
+    /// Tries all cell sides, and then four more sides near the best side.
     ///
     /// # Errors
     ///
@@ -196,7 +197,8 @@ fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }
 
-/// Returns the trial with the smallest error over the given memories. If several are equal, returns the first one.
+/// Returns the trial with the smallest error over the given memories. Of several trials with equal errors, returns the
+/// first.
 fn best_of<'a>(trials: &'a [Trial], memories: &[usize]) -> Option<&'a Trial> {
     trials.iter().min_by(|a, b| a.error_percent(memories).total_cmp(&b.error_percent(memories)))
 }
@@ -255,19 +257,20 @@ fn left_out(ranked: &[RankedRules], memory: usize) -> Option<LeftOutRate> {
 pub const PIXEL_DEG: f64 = 60.0 / 640.0;
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
-/// A threshold of the image error, with the cell side and the tears that follow. The product of threshold and cell side
-/// is fixed, because it fits table 1.
+/// A threshold of the image error, with the cell side and the tears (gaps between memories) that follow. The product of
+/// threshold and cell side is fixed, because it fits table 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
-    /// The threshold as text, in pixels of the display or texels of an ideal face.
+    /// The threshold of the image error as text, in pixels of the display or texels of an ideal face.
     pub threshold: &'static str,
-    /// The threshold in degrees.
+    /// The threshold of the image error in degrees.
     pub theta_deg: f64,
     /// Side of a cell in metres.
     pub cell_m: f64,
-    /// Widest tear if each update is shown as soon as it is due, in pixels of the display.
+    /// Widest tear (gap between two memories) if each update is shown as soon as it is due, in pixels of the display.
     pub at_once_px: f64,
-    /// Widest tear if the update of the slower memory is shown one frame of walking too late, in pixels of the display.
+    /// Widest tear (gap between two memories) if the update of the slower memory is shown one frame of walking too
+    /// late, in pixels of the display.
     pub frame_late_px: f64,
 }
 

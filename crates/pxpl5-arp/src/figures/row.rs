@@ -5,20 +5,20 @@ use serde::Serialize;
 /// Provenance of a simulated number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Standing {
-    /// Simulated, with no parameter fitted to it.
+pub enum Provenance {
+    /// The number is simulated, and no parameter was fitted to this number.
     Checked,
-    /// Simulated with a parameter whose value was chosen so that this row agrees.
+    /// The number is simulated with a parameter whose value was chosen so that this row agrees.
     Fitted,
-    /// Depends on facts that the papers do not print. The published number is compared with the interval over all
-    /// interpretations.
+    /// The number depends on facts that the papers do not print. The published number is compared with the interval
+    /// over all interpretations.
     Interpretation,
-    /// Cannot be reproduced, because the papers do not print its conditions. Only the shape of its curve or table is
-    /// checked.
+    /// The number cannot be reproduced, because the papers do not print its conditions. Only the shape of its curve or
+    /// table is checked.
     Shape,
 }
 
-impl Standing {
+impl Provenance {
     /// Returns the name used in the document.
     #[must_use]
     pub const fn text(self) -> &'static str {
@@ -31,7 +31,7 @@ impl Standing {
     }
 }
 
-/// A published or derived number next to the simulated one.
+/// A published or derived number next to the simulated number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Name of the experiment, E1 to E9.
@@ -47,30 +47,37 @@ pub struct Row {
     pub published: f64,
     /// Simulated number.
     pub ours: f64,
-    pub standing: Standing,
-    /// True if the simulated number agrees to 1 percent. If the number cannot be reproduced, true if its shape agrees.
+    pub provenance: Provenance,
+    /// True if the simulated number agrees to 1 percent. For a number that cannot be reproduced, true if the shape of
+    /// its curve or table agrees.
     pub is_met: bool,
 }
 
 impl Row {
     /// Creates a row whose numbers should agree to 1 percent.
     #[must_use]
-    pub fn number(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], standing: Standing) -> Self {
+    pub fn number(
+        id: &'static str,
+        statement: &str,
+        unit: &'static str,
+        both: [f64; 2],
+        provenance: Provenance,
+    ) -> Self {
         let [published, ours] = both;
         let is_met = (ours - published).abs() <= 0.01 * published.abs();
-        Self { experiment: "", id, statement: statement.to_owned(), unit, published, ours, standing, is_met }
+        Self { experiment: "", id, statement: statement.to_owned(), unit, published, ours, provenance, is_met }
     }
 
-    /// Creates a row for a number that cannot be reproduced. `holds` is true if its shape agrees.
+    /// Creates a row for a number that cannot be reproduced. `holds` is true if the shape of its curve or table agrees.
     #[must_use]
     pub fn shape(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], holds: bool) -> Self {
-        Self { is_met: holds, ..Self::number(id, statement, unit, both, Standing::Shape) }
+        Self { is_met: holds, ..Self::number(id, statement, unit, both, Provenance::Shape) }
     }
 
     /// Creates a row that has its own criterion for agreement, such as "less than".
     #[must_use]
     pub fn limit(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], is_met: bool) -> Self {
-        Self { is_met, ..Self::number(id, statement, unit, both, Standing::Checked) }
+        Self { is_met, ..Self::number(id, statement, unit, both, Provenance::Checked) }
     }
 
     /// Returns the row with the name of the experiment that it belongs to.
@@ -91,15 +98,15 @@ impl Row {
     /// number cannot be reproduced, but the shape of its curve or table agrees with the print.
     #[must_use]
     pub const fn verdict(&self) -> &'static str {
-        match (self.is_met, self.standing) {
+        match (self.is_met, self.provenance) {
             (false, _) => "missed",
-            (true, Standing::Shape) => "shape",
-            (true, Standing::Interpretation) => "within",
+            (true, Provenance::Shape) => "shape",
+            (true, Provenance::Interpretation) => "within",
             (true, _) => "met",
         }
     }
 
-    /// Returns the known cause for which the simulated number misses the published one.
+    /// Returns the known reason why the simulated number misses the published number.
     #[must_use]
     pub fn cause(&self) -> &'static str {
         match self.id {

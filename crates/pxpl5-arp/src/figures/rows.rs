@@ -4,7 +4,7 @@ use super::definitions::SEGMENTS;
 use super::experiments::{Experiments, Fit};
 use super::fit::{RATE_FITTED, RATES_HZ};
 use super::interpretations::PIXEL_DEG;
-use super::row::{Row, Standing};
+use super::row::{Provenance, Row};
 use address_recalculation::priority::saved_percent;
 
 /// Returns the rows of the experiments E1 to E9, except the rows of E1 that need a simulated machine.
@@ -29,16 +29,16 @@ pub fn rows(all: &Experiments) -> Vec<Row> {
 
 fn rotation(all: &Experiments) -> Vec<Row> {
     let turned = "pixels that a stalled renderer changes in what is seen after turns of 12, 90 and 180 degrees";
-    vec![Row::number("A4", turned, "px", [0.0, all.turned_differ as f64], Standing::Checked)]
+    vec![Row::number("A4", turned, "px", [0.0, all.turned_differ as f64], Provenance::Checked)]
 }
 
 fn composition(all: &Experiments) -> Vec<Row> {
     let statement = "texels of the composite of four memories drawn from one place that are not those of one memory (fig. 2, 12, 14)";
-    vec![Row::number("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Standing::Checked)]
+    vec![Row::number("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Provenance::Checked)]
 }
 
-/// Compares the paper's statement A8, "about ten times the distance", with the limits for spheres, measured to their
-/// nearest point.
+/// Compares the paper's statement A8 ("about ten times the distance") with the limits of size for spheres. The distance
+/// of a sphere is measured to its nearest point.
 fn sizes(all: &Experiments) -> Vec<Row> {
     let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
     let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];
@@ -46,7 +46,7 @@ fn sizes(all: &Experiments) -> Vec<Row> {
     let statement = format!(
         "size over the distance of the nearest point above which size may decide (interpretations: {least:.1} to {most:.1})"
     );
-    let row = Row::number("A8", &statement, "1", [10.0, ours], Standing::Interpretation);
+    let row = Row::number("A8", &statement, "1", [10.0, ours], Provenance::Interpretation);
     vec![Row { is_met: (least..=most).contains(&10.0), ..row }]
 }
 
@@ -62,7 +62,7 @@ fn reductions(all: &Experiments) -> Vec<Row> {
     let harmonics = "rate of the fastest memory; each further one is slower";
     let mut rows = vec![Row::shape("A5", harmonics, "Hz", [60.0, fastest], falls && fastest == 60.0)];
     for (i, expected) in [6.01, 13.40].into_iter().enumerate() {
-        rows.push(Row::number("A18", statements[i], "1", [expected, all.reductions[i]], Standing::Checked));
+        rows.push(Row::number("A18", statements[i], "1", [expected, all.reductions[i]], Provenance::Checked));
     }
     rows
 }
@@ -72,10 +72,10 @@ fn table_1(all: &Experiments) -> Vec<Row> {
 }
 
 fn rate(all: &Experiments, memory: usize) -> Row {
-    let standing = if memory == RATE_FITTED { Standing::Fitted } else { Standing::Checked };
+    let provenance = if memory == RATE_FITTED { Provenance::Fitted } else { Provenance::Checked };
     let Fit { cell_m, rates_hz, .. } = &all.fits[0];
     let statement = format!("update rate of memory {memory} (rings that double, cells of {cell_m:.1} m)");
-    Row::number("A12", &statement, "Hz", [RATES_HZ[memory], rates_hz[memory]], standing)
+    Row::number("A12", &statement, "Hz", [RATES_HZ[memory], rates_hz[memory]], provenance)
 }
 
 fn table_2(all: &Experiments) -> Vec<Row> {
@@ -115,12 +115,12 @@ fn tears(all: &Experiments) -> Vec<Row> {
     let pixels = widest(0) * all.walks[0].settings.texel_deg() / PIXEL_DEG;
     let before =
         "widest tear before warping, 2 to 5 pixels of the display (printed: \"a few\"; the threshold was chosen so)";
-    let torn = Row::number("A15", before, "px", [3.0, pixels], Standing::Fitted);
+    let torn = Row::number("A15", before, "px", [3.0, pixels], Provenance::Fitted);
     let after = "widest tear left after warping, with cascade";
     vec![
         Row { is_met: (2.0..=5.0).contains(&pixels), ..torn },
         Row::limit("A16", after, "texels", [0.0, warped], warped < 1e-6),
-        Row::number("fig. 15", "widest tear without segmentation", "texels", [0.0, uncut], Standing::Checked),
+        Row::number("fig. 15", "widest tear without segmentation", "texels", [0.0, uncut], Provenance::Checked),
     ]
 }
 

@@ -8,10 +8,10 @@ use serde::Serialize;
 pub struct Rules {
     /// Number of rings of cells around the user's cell in memory 0.
     pub inner_rings: u64,
-    /// Ratio of the number of rings in a memory to that in the next faster memory.
+    /// Number of rings in a memory, divided by the number of rings in the next faster memory.
     pub ring_growth: u64,
-    /// True if distances are measured to cells that hold segments. False if distances are measured to the border of a
-    /// block of cells.
+    /// True if distances are measured to cells that hold segments (parts of objects). False if distances are measured
+    /// to the border of a block of cells.
     pub to_held_cells: bool,
     /// True if an update of a memory makes all faster memories due for an update.
     pub has_cascade: bool,

@@ -110,7 +110,7 @@ fn legend(svg: &mut String, memory: usize, top: f64) {
     );
 }
 
-/// Draws the edges of upright triangles, seen from above. They are the walls and partitions.
+/// Draws the edges of upright triangles, seen from above. These triangles are the walls and partitions.
 fn upright_edges(svg: &mut String, world: &World, plan: &Plan) {
     for three in world.segments.iter().flat_map(|segment| &segment.triangles) {
         // Only upright triangles form walls.

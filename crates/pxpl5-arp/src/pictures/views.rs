@@ -77,7 +77,8 @@ impl Views<'_> {
         }))
     }
 
-    /// Returns the angle between the displayed and the correct direction of the point that a ray hits, in radians.
+    /// Returns the error of one pixel for [`Self::errors`]: the angle between the displayed and the correct direction
+    /// of the point that the pixel's ray hits, in radians.
     ///
     /// Returns `None` if the ray hits nothing.
     fn off(&self, simulation: &Simulation<'_>, view: &CubeView, ray: DVec3, eye: DVec3) -> Option<f64> {

@@ -23,7 +23,7 @@ pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, scre
     // Rotate world coordinates to the axes of the head.
     let back = orientation.conjugate();
     let seen = |index: u32| back * (world.vertices[index as usize] - eye);
-    // Draw the grey edges first, so that red ones cover them.
+    // Draw the grey edges first, so that red edges cover the grey edges.
     for (is_cut, style) in
         [(false, "stroke=\"#999\" stroke-width=\"0.7\""), (true, "stroke=\"#d00\" stroke-width=\"1.2\"")]
     {
@@ -58,8 +58,8 @@ fn edges(world: &World, side_m: f64) -> BTreeMap<[u32; 2], bool> {
     edges
 }
 
-/// Returns true if both coordinates lie exactly on the same border of cells. Cuts compute coordinates so that this
-/// comparison is exact.
+/// Returns true if both coordinates lie exactly on the same border of cells. The test needs no tolerance, because cuts
+/// set coordinates exactly to a border.
 fn is_on_border(p: f64, q: f64, side_m: f64) -> bool {
     let border = (p / side_m).round() * side_m;
     p == border && q == border

@@ -139,7 +139,8 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     text
 }
 
-/// Returns the mean latency from a step of the head to the display of each memory's picture, in ms.
+/// Returns the mean latency from a step (translation) of the head until the picture of each display memory is lit, in
+/// ms, as text.
 fn steps(report: &Report) -> String {
     let totals = report.memories.iter().map(|memory| memory.translation_latency_ms.total);
     let totals: Vec<String> = totals.map(|total| or_none(total.map(|ms| format!("{ms:.1}")))).collect();

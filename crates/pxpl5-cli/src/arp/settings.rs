@@ -76,11 +76,11 @@ impl WalkArgs {
     ///
     /// Returns an error that names the wrong file, option or setting, the expected value and the value found.
     pub(super) fn gather(&self) -> Result<(Arc<Scene>, Plan), CliError> {
-        let (scene, said) = self.said()?;
+        let (scene, given) = self.given()?;
         let mut plan = Plan::usual();
         let mut table = None;
         // A lens table is read last, because its size depends on the picture that the other settings choose.
-        for (path, value, place) in &said {
+        for (path, value, place) in &given {
             match value.strip_prefix("table:").filter(|_| path == LENS) {
                 Some(file) => table = Some(file),
                 None => plan.set(path, value, place)?,
@@ -94,12 +94,12 @@ impl WalkArgs {
         plan.settings()?;
         warn(&warnings(&plan), self.quiet);
         let scene = load(self.scene.as_deref().unwrap_or(&scene))?;
-        scenes::tell(&scene, self.quiet);
+        scenes::print_warnings(&scene, self.quiet);
         Ok((scene, plan))
     }
 
     /// Returns an error if the estimated time or memory of several walks (frames seen along a path) exceeds the budget.
-    /// `walks` is their number.
+    /// `walks` is the number of walks.
     ///
     /// # Errors
     ///
@@ -125,8 +125,8 @@ impl WalkArgs {
     }
 
     /// Returns the scene's name, and all settings in the order in which they apply: file, options, `--set`.
-    fn said(&self) -> Result<(String, GivenSettings), CliError> {
-        let mut said = GivenSettings::new();
+    fn given(&self) -> Result<(String, GivenSettings), CliError> {
+        let mut given = GivenSettings::new();
         let mut scene = "gallery".to_owned();
         if let Some(path) = &self.file {
             let place = path.display().to_string();
@@ -134,11 +134,11 @@ impl WalkArgs {
                 std::fs::read(path).map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
             let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
             let file = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
-            // Settings of the file come first, so that later ones override them.
+            // Settings of the file come first, so that later settings override them.
             for (path, value) in leaves(file) {
                 match path.as_str() {
                     "scene" => scene = plain(&value),
-                    _ => said.push((path, plain(&value), place.clone())),
+                    _ => given.push((path, plain(&value), place.clone())),
                 }
             }
         }
@@ -152,16 +152,16 @@ impl WalkArgs {
             ("source", "--source", &self.source),
         ];
         for (path, option, text) in options {
-            said.extend(text.iter().map(|text| (path.to_owned(), text.clone(), option.to_owned())));
+            given.extend(text.iter().map(|text| (path.to_owned(), text.clone(), option.to_owned())));
         }
         // `--set` comes last and overrides everything else.
         for assignment in &self.sets {
             let (path, value) = assignment
                 .split_once('=')
                 .ok_or_else(|| CliError::usage(format!("--set: expected PATH=VALUE, found {assignment}")))?;
-            said.push((path.trim().to_owned(), value.trim().to_owned(), "--set".to_owned()));
+            given.push((path.trim().to_owned(), value.trim().to_owned(), "--set".to_owned()));
         }
-        Ok((scene, said))
+        Ok((scene, given))
     }
 }
 
@@ -190,7 +190,7 @@ fn load(name: &str) -> Result<Arc<Scene>, CliError> {
     Ok(choice.load()?)
 }
 
-/// Writes pictures into a folder. Each PNG file also holds the settings that reproduce it.
+/// Writes pictures into a folder. Each PNG file also holds the settings that reproduce the picture.
 ///
 /// # Errors
 ///

@@ -15,7 +15,7 @@ pub(super) enum Kind {
 /// A publication.
 #[derive(Debug)]
 pub(super) struct Work {
-    /// Short name, as the documents of the project use it. Also the key in BibTeX.
+    /// Short name, as the documents of the project use it. The same name is the key in BibTeX.
     pub(super) key: &'static str,
     /// Systems that the emulator models from this work.
     pub(super) systems: &'static str,
@@ -23,7 +23,7 @@ pub(super) struct Work {
     pub(super) authors: &'static [Name],
     pub(super) title: &'static str,
     pub(super) venue: &'static str,
-    /// Number of a report.
+    /// Number of a technical report.
     pub(super) number: Option<&'static str>,
     pub(super) year: u16,
     pub(super) pages: Option<[u16; 2]>,

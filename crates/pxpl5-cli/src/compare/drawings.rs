@@ -20,7 +20,7 @@ pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
 }
 
 /// Returns the rows in which at least one pixel was evaluated.
-fn judged(comparison: &Comparison) -> impl Iterator<Item = &ComparisonRow> {
+fn evaluated(comparison: &Comparison) -> impl Iterator<Item = &ComparisonRow> {
     comparison.pipelines.iter().filter(|row| row.was_evaluated())
 }
 
@@ -38,7 +38,7 @@ fn distribution(comparison: &Comparison) -> String {
 }
 
 fn curves(comparison: &Comparison, axes: &ChartAxes, points: impl Fn(&ComparisonRow) -> Vec<(f64, f64)>) -> String {
-    let curves = judged(comparison).map(|row| Curve { name: row.pipeline.clone(), points: points(row) });
+    let curves = evaluated(comparison).map(|row| Curve { name: row.pipeline.clone(), points: points(row) });
     curve_chart(axes, &curves.collect::<Vec<_>>())
 }
 
@@ -64,7 +64,7 @@ fn over_prediction(comparison: &Comparison) -> String {
 
 fn points(comparison: &Comparison, axes: &ChartAxes, across: impl Fn(&ComparisonRow) -> f64) -> String {
     // Rows without a latency, such as the reference, are not drawn.
-    let placed = judged(comparison).filter(|row| across(row).is_finite());
+    let placed = evaluated(comparison).filter(|row| across(row).is_finite());
     let points = placed.map(|row| {
         let error = &row.error.mean_px;
         MarkedPoint {
@@ -148,7 +148,7 @@ fn written(name: serde_json::Result<Value>) -> String {
 
 /// Returns the text of errors.csv. Each line holds the errors of one display field of one pipeline, for the first seed.
 fn errors_csv(comparison: &Comparison) -> String {
-    let rows = judged(comparison).flat_map(|row| {
+    let rows = evaluated(comparison).flat_map(|row| {
         row.by_field.iter().map(|field| {
             [
                 row.pipeline.clone(),

@@ -9,7 +9,7 @@ use pxpl5::compare::{Comparison, ComparisonRow, LastPicture};
 use pxpl5::views::page::{PagePicture, PageTable, html_of_tables};
 use pxpl5::views::png_bytes;
 
-/// Writes a picture for each row, the ideal pictures, and a page that shows all of them.
+/// Writes a picture for each row, the ideal pictures, and a page that shows all these pictures.
 ///
 /// # Errors
 ///

@@ -48,7 +48,7 @@ pub(super) fn text(comparison: &Comparison) -> String {
     text
 }
 
-/// Returns a sentence for each method of the intervals, with the rows that have it.
+/// Returns a sentence for each method of the intervals, with the rows that use the method.
 fn intervals(comparison: &Comparison) -> String {
     let confidence = percent(comparison.confidence);
     let mut text = String::new();
@@ -62,12 +62,14 @@ fn intervals(comparison: &Comparison) -> String {
     text
 }
 
-/// Returns a share in percent, with the digits that it needs.
+/// Converts a share from 0 to 1 into percent, rounded to six decimals, so that rounding errors of the product do not
+/// appear.
 fn percent(share: f64) -> f64 {
     (share * 1e8).round() / 1e6
 }
 
-/// Returns the name of a row, with the lengths of the series and of the blocks of a bootstrap.
+/// Returns the name of a row. If a bootstrap gave the row's interval, the lengths of its series and blocks in fields
+/// follow.
 fn with_blocks(row: &ComparisonRow) -> String {
     let blocks =
         row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));

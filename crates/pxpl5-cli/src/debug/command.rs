@@ -19,7 +19,7 @@ pub(super) enum Command {
     Show(Pane),
     /// Shows the state of one board.
     ShowBoard(Board),
-    /// Sets a breakpoint at a label or address. Without one, lists all breakpoints.
+    /// Sets a breakpoint at a label or address. Without a label or address, the command lists all breakpoints.
     Break(Option<String>),
     Delete(String),
     Registers(Board),

@@ -92,7 +92,7 @@ const STAGES: usize = 12;
 pub(super) fn timeline(stepper: &Stepper) -> String {
     let record = stepper.record();
     let mut stages = record.stages();
-    // Leave out stages in the future, then show the most recent ones.
+    // Leave out stages in the future, then show the most recent stages.
     stages.retain(|stage| stage.begin <= stepper.now());
     stages.sort_by_key(|stage| stage.begin);
     let first = stages.len().saturating_sub(STAGES);

@@ -11,12 +11,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Output files that are complete but do not have their final names yet.
 #[derive(Debug)]
 pub(super) struct Batch {
-    /// Place of the output, for error messages.
+    /// Description of the output and of its option, for error messages.
     place: Place,
     files: Vec<Staged>,
-    /// Files of the previous run. They are deleted after all new files have their names.
+    /// Files of the previous run. These files are deleted after all new files have their names.
     gone: Vec<PathBuf>,
-    /// Data for devices, pipes and standard output. Written last, because such a write cannot be undone.
+    /// Data for devices, pipes and standard output. These data are written last, because such a write cannot be undone.
     streams: Vec<(Target, Vec<u8>)>,
 }
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 pub(super) enum Target {
     /// A regular file, or a path at which no file exists yet. Writing replaces the file by one rename.
     File(PathBuf),
-    /// A device, a pipe or a socket. Data are written into it, because it must not be replaced.
+    /// A device, a pipe or a socket. Data are written into this object, because no file may replace it.
     Through(PathBuf),
     /// Standard output of this process, named by a path such as /dev/stdout.
     StandardOutput,

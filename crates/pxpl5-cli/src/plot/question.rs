@@ -45,7 +45,7 @@ pub(super) struct Group {
     pub(super) counts: Counts,
 }
 
-/// Sums of the counts over all rows of a group. A count is `None` if no row has it.
+/// Sums of the counts over all rows of a group. A count is `None` if no row has this count.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counts {
     /// Number of pictures that were due.

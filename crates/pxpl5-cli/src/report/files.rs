@@ -33,7 +33,7 @@ impl<'a> Files<'a> {
     ///
     /// # Errors
     ///
-    /// Fails when the file cannot be read, or differs from the one that the manifest lists.
+    /// Fails when the file cannot be read, or differs from the file that the manifest lists.
     pub(crate) fn first(&self, name: &str) -> Result<Vec<u8>, String> {
         let Some(manifest) = &self.manifest else {
             let bytes = fs::read(self.folder.join(name)).map_err(|error| error.to_string())?;

@@ -92,7 +92,7 @@ fn pairs(settings: &Value) -> String {
     all.map(|(key, value)| format!("{key} = {}", shown(value))).collect::<Vec<_>>().join(", ")
 }
 
-/// Adds charts and pictures to a table: those that the manifest lists, sorted by name.
+/// Adds the charts and pictures that the manifest lists to a table, sorted by name.
 fn with_pictures(table: PageTable, files: &Files<'_>) -> PageTable {
     files.warn_if_unlisted();
     let mut names: Vec<&str> = files.names().collect();

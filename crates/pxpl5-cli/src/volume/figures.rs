@@ -46,7 +46,7 @@ const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let document = args.write.as_deref().map(|path| OutputFile::open(path, "--write")).transpose()?;
     let mut folder = args.out.as_deref().map(|out| OutputFolder::of_run(out, "volume figures")).transpose()?;
-    // Rows are measured on all scenes; drawings use the first one.
+    // Rows are measured on all scenes; drawings use the first scene.
     let scenes = SCENES.iter().map(|name| load(name, None)).collect::<Result<Vec<_>, _>>()?;
     let bar = progress(0, "scenes", args.quiet);
     let figures = all(&scenes, &Threads::all(), |done, of| advance(&bar, done, of));
@@ -111,7 +111,7 @@ fn line(text: &mut String, row: &FigureRow) {
         compact(figure.computed),
         figure.unit,
         if figure.published == 0.0 { 0.0 } else { row.error_percent },
-        figure.standing,
+        figure.provenance,
         figure.statement
     );
 }

@@ -19,7 +19,7 @@ use pxpl5::{MotionChoice, Parameter, SceneChoice};
 use std::num::NonZero;
 use std::sync::Arc;
 
-/// The scene of a volume, and the settings that differ from those of the paper.
+/// The scene of a volume, and the settings that differ from the paper's settings.
 #[derive(Args, Debug)]
 pub(super) struct VolumeSettingArgs {
     /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .stl, .pdb, or .gltf and .glb in a build
@@ -144,7 +144,7 @@ impl VolumeSettingArgs {
     /// Fails when the scene does not exist or its file cannot be used.
     pub(super) fn load_scene(&self) -> Result<Arc<Scene>, CliError> {
         let scene = load(&self.scene, self.triangles)?;
-        scenes::tell(&scene, self.settings.quiet);
+        scenes::print_warnings(&scene, self.settings.quiet);
         Ok(scene)
     }
 

@@ -9,8 +9,8 @@ use pxpl5_wire::display::{
 };
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// Frame buffer boards with panels that share a sync generator. There is one board for each of the pictures that are
-/// drawn at the same time.
+/// Frame buffer boards with panels that share a sync generator. Each picture that is drawn at the same time has its own
+/// board.
 ///
 /// A board writes regions into the buffer that is not shown. A swap request takes effect at the next retrace.
 ///
@@ -24,8 +24,8 @@ pub struct Panel {
     surfaces: Vec<Surface>,
     /// One board for each surface. Port n belongs to the board with index n modulo the number of boards.
     boards: Vec<DoubleBuffer>,
-    /// Boards of an interlaced panel in their state one period ago. Their lines are still visible between the new
-    /// lines.
+    /// The boards of an interlaced panel in their state of one period ago. The lines of this state are still visible
+    /// between the new lines.
     older: Vec<DoubleBuffer>,
     scans: u64,
 }
@@ -164,7 +164,7 @@ impl Display for Panel {
             return None;
         }
         let frame = self.tick(period.next()).since(self.tick(period));
-        // The pixels share the lit part of the period evenly.
+        // Each pixel takes an equal part of the time in which the scan lights pixels.
         let pixels = u128::from(width * (height / rows.1)) * 1_000;
         let passed = u128::from(frame.0) * u128::from(active_permille) * u128::from(self.order(x, y, rows)) / pixels;
         Some(self.tick(period) + Span(passed as u64))
@@ -177,7 +177,7 @@ impl Display for Panel {
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage> {
         let board = self.boards.get(surface).filter(|_| self.last_seen() == Some(period))?;
         let mut seen = board.scanned_picture();
-        // The lines that this period skipped are those of the period before.
+        // The lines that this period skipped still show the picture of the previous period.
         if let Some(before) = self.older.get(surface).map(DoubleBuffer::scanned_picture) {
             let (first, distance) = self.rows(period);
             let bytes = self.numbers.width as usize * 3;

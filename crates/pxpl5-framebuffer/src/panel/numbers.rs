@@ -11,7 +11,8 @@ const MOST_REGIONS: u64 = 128;
 /// Number of microseconds in a second.
 const US_PER_S: u64 = 1_000_000;
 
-/// The parameters of a panel, a display without NTSC timing. A parameter that is missing from a table has a default.
+/// The parameters of a panel, a display without NTSC timing. A table of parameters need not have all parameters. Each
+/// missing parameter has a default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelNumbers {
     /// Width of the panel: visible pixels in each line.
@@ -22,7 +23,7 @@ pub struct PanelNumbers {
     pub refresh_hz: u64,
     /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
     pub interlace: u64,
-    /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at once (global).
+    /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all pixels are lit at once (global).
     pub scan: u64,
     /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
     pub direction: u64,
@@ -87,7 +88,7 @@ impl PanelNumbers {
     ///
     /// # Errors
     ///
-    /// [`DisplayError`] names the parameter, the expected range and the found value.
+    /// Returns a [`DisplayError`] with the name of the parameter, the expected range and the found value.
     pub fn check(&self, table: &str) -> Result<(), DisplayError> {
         let wrong = |name: &str, expected: String, found: String| {
             Err(DisplayError(format!("{table}.{name}: expected {expected}, found {found}")))
@@ -98,7 +99,7 @@ impl PanelNumbers {
             }
         }
         let size = u64::from(REGION_SIZE);
-        // Firmware numbers regions with a fixed number of bits.
+        // Firmware has one bit for each region in a mask of fixed size.
         let regions = self.width.div_ceil(size).saturating_mul(self.height.div_ceil(size));
         if regions > MOST_REGIONS {
             let expected = format!("at most {MOST_REGIONS} regions of {size} x {size}, as many as firmware can number");
@@ -110,7 +111,7 @@ impl PanelNumbers {
             let expected = format!("0 to {period_us}, a period of {} Hz", self.refresh_hz);
             return wrong("persistence_us", expected, self.persistence_us.to_string());
         }
-        // Both fields of an interlaced picture have equally many lines.
+        // Both fields of an interlaced picture have the same number of lines.
         if self.interlace == 1 && !self.height.is_multiple_of(2) {
             return wrong("height", "an even number of interlaced lines".to_owned(), self.height.to_string());
         }

@@ -1,4 +1,4 @@
-//! Panels with a name of their own: tables of their parameters.
+//! Panels with a name, and the tables of their parameters.
 
 use super::PanelNumbers;
 use super::board::build;
@@ -55,11 +55,11 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 pxpl5_sim::parameters::parameter_table! {
-    /// An assumed LCD panel for one eye, with numbers between those of two headsets of 2019. A short flash lights the
-    /// panel after all its pixels were written.
+    /// An assumed LCD panel for one eye, with numbers between the numbers of two headsets of 2019. A short flash lights
+    /// the panel after all its pixels were written.
     ///
     /// No single headset has these numbers. Oculus Rift S has this size at 80 Hz. Valve Index has this rate and flash,
-    /// but its 1440 x 1600 pixels have 156 regions, and firmware can number 128.
+    /// but its 1440 x 1600 pixels have 156 regions, and firmware supports at most 128 regions.
     pub struct LcdConfig {
         /// Width of the panel: visible pixels in each line.
         width: 1280, "pixels", Assumed, 1280..=1440 in 1..=16_384, "an assumed panel: 1280 x 1440 for each eye in Oculus Rift S (2019), 1440 x 1600 in Valve Index (2019), whose 156 regions are more than firmware can number";
@@ -73,7 +73,7 @@ pxpl5_sim::parameters::parameter_table! {
         scan: 1, "1", Assumed, 1..=1 in 0..=1, "an assumed panel: global backlight illumination in Valve Index (2019)";
         /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
         direction: 0, "1", Assumed, 0..=3 in 0..=3, "without effect while the scan is global";
-        /// Part of each period that passes before the flash lights the panel, in thousandths of the period.
+        /// Time from the start of a period to the flash that lights the panel, in thousandths of the period.
         active_permille: 950, "1/1000", Assumed, 800..=1000 in 1..=1000, "the flash begins when the panel is written and liquid crystals have settled";
         /// Time for which the backlight is on in each scan.
         persistence_us: 330, "us", Assumed, 330..=530 in 0..=1_000_000, "an assumed panel: 0.330 to 0.530 ms in Valve Index (2019), depending on the rate";

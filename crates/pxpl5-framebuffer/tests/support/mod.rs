@@ -16,7 +16,7 @@ pub(crate) const WORD: Span = Span::from_ns(50);
 /// Time of a message of 1,024 words on the ring, including the overhead.
 pub(crate) const MESSAGE: Span = Span::from_us(52);
 
-/// A pixel source whose pixel `i` is `first + step * i`.
+/// A pixel source. Pixel `i` has the value `first + step * i`.
 #[derive(Debug)]
 pub(crate) struct Counted {
     pub(crate) first: Word,
@@ -71,8 +71,8 @@ impl Board {
         Self { device, bench: TestBench::new(), slowness: config.port.word_ns / 50 }
     }
 
-    /// Makes a board behind a slower ring, with word times of `slowness` x 50 ns. From 2 on, words come more slowly
-    /// than the beam passes pixels.
+    /// Makes a board on a slower ring, with word times of `slowness` x 50 ns. With a slowness of 2 or more, words
+    /// arrive more slowly than the beam passes pixels.
     pub(crate) fn slow(slowness: u64) -> Self {
         let port = PortTiming { word_ns: 50 * slowness };
         Self::with(FrameBufferConfig { port, ..FrameBufferConfig::NTSC })
@@ -100,7 +100,7 @@ impl Board {
         self.feed(at, FrameBufferEvent::Pixels(pixels));
     }
 
-    /// Sends all messages of a region; the last one arrives at `last`.
+    /// Sends all messages of a region. The last message arrives at `last`.
     pub(crate) fn region(&mut self, last: Time, target: CopyTarget, image: &Arc<Counted>) {
         let parts = n_parts(&target);
         for part in 0..parts {

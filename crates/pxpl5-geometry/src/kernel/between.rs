@@ -1,5 +1,5 @@
-//! Code of the graphics processor for triangles between two views. It records the corners of triangles in both views,
-//! and makes commands for any view in between.
+//! Code of the graphics processor for triangles between two views. The code records the corners of triangles in both
+//! views, and makes commands for any view between the two views.
 //!
 //! The sources are kernels/ends.s and kernels/compiled.s.
 

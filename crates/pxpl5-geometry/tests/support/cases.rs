@@ -11,8 +11,8 @@ pub struct Case {
     pub name: &'static str,
     pub view: ViewTransform,
     pub triangles: Vec<Triangle>,
-    /// True if the triangles tile a part of the screen: no two may share a pixel, and no pixel between them may be
-    /// missing.
+    /// True if the triangles tile a part of the screen. In a tiling, no pixel may belong to two triangles, and no pixel
+    /// between triangles may be missing.
     pub tiling: bool,
 }
 
@@ -70,7 +70,7 @@ fn large() -> Case {
     case("ordinary, as large as the screen", many(2, 12, |r| std::array::from_fn(|_| anywhere(r))))
 }
 
-/// Returns triangles 300 px long and `width` px wide, in any direction.
+/// Returns triangles with a length of 300 px and a width of `width` px, in any direction.
 fn slivers(name: &'static str, width: f32) -> Case {
     let triangles = many(3, 100, |r| {
         let [dx, dy] = r.direction();
@@ -111,7 +111,7 @@ fn fan() -> Case {
     tiling("fan of 48 around one corner", triangles.collect())
 }
 
-/// Returns a jittered grid, in which neighbours share edges in opposite directions.
+/// Returns a grid with random displacements of the corners. Neighbours have their common edge in opposite directions.
 fn grid(name: &'static str, step: f32, jitter: f32) -> Case {
     let mut random = Random::new(5);
     let columns = 40_usize;
@@ -203,7 +203,7 @@ fn depth_range() -> Case {
     Case { view: pixel_view(1e-3, 1e6), ..case("depth from 10^-3 to 10^6", triangles) }
 }
 
-/// Returns a case with a rotated view of a model of a given size at a given place, like a user's view.
+/// Returns a case with a rotated view of a model, like the view of a user. The model has a given size and place.
 fn placed(name: &'static str, seed: u64, size: f32, place: Vec3) -> Case {
     let random = &mut Random::new(seed);
     let triangles = (0..100)
@@ -255,8 +255,8 @@ fn edge_on() -> Case {
     case("walls seen edge-on, near to far", triangles)
 }
 
-/// Returns triangles 4,000 px long and half a subpixel thick, from far to near across their thickness: slopes beyond
-/// any format.
+/// Returns triangles with a length of 4,000 px and a thickness of half a subpixel. Their depth goes from far to near
+/// across the thickness, so their slopes exceed every format.
 fn overflowing() -> Case {
     let mut random = Random::new(15);
     let triangles = (0..20)
@@ -270,7 +270,7 @@ fn overflowing() -> Case {
     Case { view: pixel_view(1.875, FAR), ..case("half a subpixel thick, near to far", triangles) }
 }
 
-/// Returns all families of triangles: ordinary ones, then the hard ones.
+/// Returns all families of triangles. Ordinary families come first, then the hard families.
 pub fn all() -> Vec<Case> {
     vec![
         ordinary(),

@@ -64,7 +64,8 @@ fn weighted(values: [&BigInt; 3], weights: &[BigInt; 3]) -> BigInt {
     values.iter().zip(weights).map(|(value, weight)| *value * weight).sum()
 }
 
-/// Converts a number to a pixel coordinate. A large number becomes a coordinate beyond that side of the frame.
+/// Converts a number to a pixel coordinate. A number outside the frame becomes a coordinate beyond the same side of the
+/// frame.
 fn pixel(number: &BigInt) -> i32 {
     number.to_i32().unwrap_or(if number.is_negative() { -1 } else { WIDTH })
 }
@@ -114,7 +115,8 @@ pub struct ExactTriangle {
 }
 
 impl ExactTriangle {
-    /// Creates the exact triangle. Returns `None` if it is seen edge-on or has no area, so that it covers no pixel.
+    /// Creates the exact triangle. Returns `None` if the triangle is seen edge-on or has no area, so that it covers no
+    /// pixel.
     pub fn new(view: &ViewTransform, triangle: &Triangle) -> Option<Self> {
         let corners = reduced(triangle.positions.map(|p| clip(view, p)));
         let screen: [[BigInt; 3]; 3] = std::array::from_fn(|i| {
@@ -142,7 +144,8 @@ impl ExactTriangle {
         Some(Self { edges, depth, colour, scale, whole, corners })
     }
 
-    /// Returns the first and last covered pixel of a row of the frame. The row is empty if the first is greater.
+    /// Returns the first and last covered pixel of a row of the frame. The row is empty if the first pixel is greater
+    /// than the last pixel.
     pub fn span(&self, y: i32) -> [i32; 2] {
         let mut range = [0, WIDTH - 1];
         for edge in &self.edges {
@@ -170,7 +173,7 @@ impl ExactTriangle {
     }
 }
 
-/// Removes the power of two that is common to all coordinates, since it cancels everywhere.
+/// Removes the power of two that is common to all coordinates. The results do not depend on this power.
 fn reduced(corners: [[BigInt; 4]; 3]) -> [[BigInt; 4]; 3] {
     let shift = corners.iter().flatten().filter_map(BigInt::trailing_zeros).min().unwrap_or(0);
     corners.map(|c| c.map(|v| v >> shift))

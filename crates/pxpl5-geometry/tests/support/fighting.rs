@@ -1,4 +1,4 @@
-//! Z fighting: visibility of two nearly equal surfaces.
+//! Z fighting: visibility of two surfaces with nearly equal depths.
 
 use super::exact::ExactTriangle;
 use super::native::Piece;
@@ -6,7 +6,8 @@ use super::{HEIGHT, WIDTH, at_pixel, pixel_view};
 use glam::Vec3;
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 
-/// Counts of the pixels in which two surfaces overlap, and in which the farther one is visible.
+/// The number of pixels in which two surfaces overlap, and the number of pixels in which the farther surface is
+/// visible.
 #[derive(Clone, Debug)]
 pub struct Fight {
     pub name: String,
@@ -20,7 +21,7 @@ fn view() -> ViewTransform {
     pixel_view(64.0, 16_384.0)
 }
 
-/// Returns a triangle over most of the screen, its corners at three distances times `scale`.
+/// Returns a triangle over most of the screen. The distances of its three corners are multiplied by `scale`.
 fn surface(scale: [f32; 3]) -> Triangle {
     Triangle {
         positions: [at_pixel(10.3, 20.1, scale[0]), at_pixel(630.7, 90.4, scale[1]), at_pixel(200.9, 470.2, scale[2])],
@@ -48,7 +49,7 @@ fn fight(name: String, first: [f32; 3], second: [f32; 3]) -> Fight {
             if !pieces.iter().all(|p| p.inside_edges(x, y)) {
                 continue;
             }
-            // Drawn in order; a strictly nearer depth wins.
+            // The surfaces are drawn in order. The second surface is visible only if its depth is strictly nearer.
             let seen = pieces[1].depth(x, y) < pieces[0].depth(x, y);
             wrong += u64::from(seen != exact[1].nearer_than(&exact[0], x, y));
             let units = (exact[1].depth(x, y) - exact[0].depth(x, y)) * 16_777_216.0;
@@ -59,7 +60,7 @@ fn fight(name: String, first: [f32; 3], second: [f32; 3]) -> Fight {
     Fight { name, pixels: apart.len() as u64, wrong, apart: apart[apart.len() / 2] }
 }
 
-/// Measures parallel pairs at shrinking distances, then pairs that cross at shrinking angles.
+/// Measures pairs of parallel surfaces with decreasing distances, then pairs that cross at decreasing angles.
 pub fn all() -> Vec<Fight> {
     let base = [1.0, 1.5, 2.0];
     let mut fights = Vec::new();

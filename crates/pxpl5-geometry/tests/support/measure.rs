@@ -28,7 +28,8 @@ pub struct Row {
     /// For tilings: number of uncovered pixels inside the exact tiling.
     pub holes: Option<u64>,
     pub overlaps: Option<u64>,
-    /// Wrong pixels of exact vertices on a grid of [`SUBPIXEL_BITS`], and the exact pixels of those triangles.
+    /// Numbers of wrong pixels if exact vertices are rounded to a grid, for each grid of [`SUBPIXEL_BITS`]. The next
+    /// field, `grid_exact`, is the number of exact pixels of the same triangles.
     pub grids: [u64; SUBPIXEL_BITS.len()],
     pub grid_exact: u64,
     /// Bits, including the sign, of the largest coefficients: edges a and b, edges c, depth slopes, colour slopes.
@@ -79,7 +80,7 @@ fn pixels() -> impl Iterator<Item = (i32, i32)> {
     (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)))
 }
 
-/// Draws a case by the pipeline and by exact geometry, and counts the differences.
+/// Draws a case with the pipeline and with exact geometry, and counts the differences.
 pub fn measure(case: &Case) -> Row {
     let transform = Transform::new(&case.view, Viewport::FRAME, Culling::None).expect("finite views");
     let mut row = Row { triangles: case.triangles.len(), ..Row::default() };
@@ -98,7 +99,7 @@ pub fn measure(case: &Case) -> Row {
 }
 
 impl Row {
-    /// Compares one triangle. The counter `own` is zero before and after.
+    /// Compares one triangle. The counter `own` is zero before and after the call.
     fn compare(&mut self, pieces: &[Piece], exact: Option<&ExactTriangle>, counts: [&mut Counts; 3]) {
         let [drawn, wanted, own] = counts;
         let spans: Vec<[i32; 2]> = (0..HEIGHT).map(|y| exact.map_or([0, -1], |e| e.span(y))).collect();
@@ -147,7 +148,7 @@ impl Row {
         }
     }
 
-    /// Compares a pixel with exact geometry, if exact geometry covers it too.
+    /// Compares a pixel with exact geometry, if exact geometry covers the pixel as well.
     fn errors(&mut self, piece: &Piece, exact: Option<&ExactTriangle>, [first, last]: [i32; 2], x: i32, y: i32) {
         let Some(exact) = exact else { return };
         if !(first..=last).contains(&x) {
@@ -186,7 +187,7 @@ impl Row {
         }
         self.slope_bits(2, piece, piece.depth_corners());
         for component in 0..3 {
-            // Corners have 8 fraction bits, the expression 12.
+            // Colours at the corners have 8 fraction bits, and the expression has 12.
             self.slope_bits(3, piece, piece.colour_corners(component).map(|c| c * 16));
         }
     }

@@ -1,6 +1,6 @@
 //! Exact geometry, hard cases, and measurements of the pipeline on them.
 //!
-//! The tests and the example that writes docs/numerics.md share this module; each uses a part.
+//! The tests and the example that writes docs/numerics.md share this module. Each of them uses a part of the module.
 #![allow(dead_code, unreachable_pub, missing_docs)]
 
 pub mod cases;
@@ -21,7 +21,7 @@ pub const WIDTH: i32 = 640;
 /// Height of the frame in pixels.
 pub const HEIGHT: i32 = 480;
 
-/// Returns a view with exact screen coordinates: the point of [`at_pixel`] is at its pixel without rounding.
+/// Returns a view with exact screen coordinates. The point that [`at_pixel`] returns is at its pixel without rounding.
 pub fn pixel_view(near: f32, far: f32) -> ViewTransform {
     let range = near - far;
     ViewTransform {
@@ -35,8 +35,8 @@ pub fn pixel_view(near: f32, far: f32) -> ViewTransform {
     }
 }
 
-/// Returns the point at (x, y) px, at distance `960 * scale`. It is exact if `scale` is a power of two and x, y are
-/// short fractions.
+/// Returns the point at (x, y) px, at distance `960 * scale`. The point is exact if `scale` is a power of two and x, y
+/// are short fractions.
 pub fn at_pixel(x: f32, y: f32, scale: f32) -> Vec3 {
     Vec3::new((x - 320.0) * 3.0, (240.0 - y) * 4.0, -960.0) * scale
 }

@@ -1,4 +1,4 @@
-//! Evaluation of the pipeline's expressions at pixels, by the renderer's formats.
+//! Evaluation of the pipeline's expressions at pixels, in the renderer's formats.
 
 use super::{HEIGHT, WIDTH};
 use pxpl5_geometry::{GouraudTriangle, RegionMask, ScreenTriangle, SetupStats, VertexColours, Viewport};
@@ -34,7 +34,7 @@ impl Piece {
         self.planes.edges.iter().all(|e| e.at(x, y) >= 0)
     }
 
-    /// Calls `draw` for each covered pixel of a touched region, by brute force over the bounding box.
+    /// Calls `draw` for each covered pixel of a touched region. The function tests all pixels of the bounding box.
     pub fn pixels(&self, mut draw: impl FnMut(i32, i32)) {
         let outline = &self.screen.outline;
         for y in pixels_between(&outline.y, HEIGHT) {
@@ -46,10 +46,10 @@ impl Piece {
         }
     }
 
-    /// Returns the stride between covered pixels at which errors are measured: all pixels of small triangles, some
-    /// 2,000 of large ones.
+    /// Returns the stride between covered pixels at which errors are measured. All pixels of small triangles are
+    /// measured, and about 2,000 pixels of large triangles.
     pub fn stride(&self) -> u64 {
-        // Twice the area in 1/256 square px. A part of it may be off the screen.
+        // Twice the area in 1/256 square px. A part of the triangle can be off the screen.
         let (_, twice_area) = self.exact_plane([0; 3], 0, 0);
         let pixels = (twice_area / 512).min(i128::from(WIDTH * HEIGHT));
         1 + pixels as u64 / 2000

@@ -1,4 +1,5 @@
-//! The formats alone: exact vertices, snapped to a given number of subpixel bits, then exact integers.
+//! Geometry with only the error of the vertex format. Exact vertices are rounded to a number of subpixel bits, and all
+//! later steps use exact integers.
 
 use super::exact::ExactTriangle;
 use super::{HEIGHT, WIDTH};
@@ -14,7 +15,7 @@ pub struct Snapped {
     bits: u32,
 }
 
-/// Returns the nearest grid position, ties up, of half a numerator over w; `None` if it is far away.
+/// Returns the grid position nearest to numerator / 2w, ties up. Returns `None` if the position is far away.
 fn snap(numerator: BigInt, w: &BigInt, bits: u32) -> Option<i128> {
     // Computes floor(n / 2w + 1/2) on the finer grid.
     let twice: BigInt = (numerator << bits) + w;
@@ -36,7 +37,8 @@ impl Snapped {
         Some(corners)
     }
 
-    /// Returns the area of (from, to, pixel centre), positive inside, minus 1 if ties are outside.
+    /// Returns the area of (from, to, pixel centre), which is positive inside. For edges whose ties are outside, the
+    /// result is the area minus 1.
     fn edge(&self, from: usize, to: usize, turn: i128, [x, y]: [i32; 2]) -> i128 {
         let dx = (self.x[to] - self.x[from]) * turn;
         let dy = (self.y[to] - self.y[from]) * turn;

@@ -42,7 +42,7 @@ pub fn transform() -> Transform {
     Transform::new(&pixel_view(NEAR, FAR), Viewport::FRAME, Culling::None).expect("a finite view")
 }
 
-/// The quadratic `r^2 d.d - |d x c|^2` on an integer scale: coefficients of x^2, xy, y^2, x, y, 1.
+/// The quadratic `r^2 d.d - |d x c|^2` on an integer scale, with the coefficients of x^2, xy, y^2, x, y and 1.
 pub struct ExactSphere {
     coefficients: [BigInt; 6],
     centre: [f64; 3],
@@ -170,7 +170,8 @@ fn not_drawn() -> SphereCase {
     }
 }
 
-/// Returns all families of spheres, by growing size; then those that are hard or not drawn.
+/// Returns all families of spheres. Families with increasing size come first, then families of spheres that are hard or
+/// not drawn.
 pub fn all() -> Vec<SphereCase> {
     vec![
         family("1/1000 px, on pixel centres", 20, 0.001, 100, true),
@@ -206,8 +207,8 @@ impl SphereRow {
         for y in 0..HEIGHT {
             for x in 0..WIDTH {
                 let touched = screen.regions.contains(region_of(x, y));
-                // Outside the touched regions of small spheres no pixel is covered, as the exact quadratic of a few
-                // pixels shows. The tests check all pixels.
+                // Skip pixels outside the touched regions of small spheres. No such pixel is covered, because the image
+                // of a small sphere has only a few pixels. The tests check all pixels.
                 if !touched && small {
                     continue;
                 }

@@ -43,7 +43,7 @@ fn an_endless_loop_ends_with_its_budget() {
 #[test]
 fn a_program_that_changed_itself_is_as_new_when_it_is_loaded_again() {
     let mut processor = processor();
-    // Stores the word of `other` over that of `here`, which it executes afterwards.
+    // Stores the word at `other` over the word at `here`, and executes `here` afterwards.
     let changing = program(
         "start: orh 0, r0, r18\n or 0x1018, r18, r18\n ld.l 0(r18), r19\n bri r1\n adds 1, r17, r17\n nop\n\
          other: adds 5, r17, r17\n change: orh 0, r0, r18\n or 0x1010, r18, r18\n st.l r19, 0(r18)\n bri r1\n nop",
@@ -60,8 +60,8 @@ fn a_program_that_changed_itself_is_as_new_when_it_is_loaded_again() {
     }
 }
 
-/// The window of the ring interface is in no cache, so every read of it goes to memory. Other addresses hit the cache
-/// after the first read.
+/// The caches never hold the window of the ring interface, so every read of the window goes to memory. Other addresses
+/// hit the cache after the first read.
 #[test]
 fn the_window_of_the_ring_is_in_no_cache() {
     let mut processor = Processor::new(NodeId(3), 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
@@ -72,7 +72,7 @@ fn the_window_of_the_ring_is_in_no_cache() {
         let _cold = [look(), look()];
         [look(), look()]
     };
-    // Four instructions, the wait of the first for the second, and the clock of an indirect branch.
+    // Four instructions, one freeze between the first and the second, and the clock of an indirect branch.
     let held = Processor::CLOCK * 6;
     assert_eq!(looks(window::WINDOW - 32), [held; 2]);
     for address in [window::WINDOW, window::RING_MEMORY.end - 4] {
@@ -93,7 +93,7 @@ fn outputs_take_both_ends_of_what_data_leave_in_whole_lines() {
     let mut processor = processor();
     let end = 1 << 16;
     assert_eq!(processor.place_output(0, 1_001, 100), Ok(1_024));
-    // The last line that begins 100 bytes before the end.
+    // The output begins at the last cache line that starts at least 100 bytes before the end.
     assert_eq!(processor.place_output(1, 1_001, 100), Ok(65_408));
     // 1,124 to 1,152 is the rest of a line.
     let room = end - 1_152;
@@ -132,7 +132,7 @@ fn who_writes_over_a_program_changes_it() {
     assert_eq!(processor.register(17), 40);
 }
 
-/// A watched call records each pass of a breakpoint. Time and budget are the same as without breakpoints.
+/// A call with breakpoints records each passed breakpoint. Time and budget are the same as without breakpoints.
 #[test]
 fn a_watched_call_takes_the_same_time_and_the_same_budget() {
     let turns = program("start: nop\nagain: adds -1, r16, r16\n btne r0, r16, again\n bri r1\n nop");
@@ -152,7 +152,7 @@ fn a_watched_call_takes_the_same_time_and_the_same_budget() {
     watched.call(&turns, "start", &[(16, 100)], 1_000).expect("it returns");
     let hits = watched.take_hits();
     assert_eq!(hits.len(), KEPT_HITS);
-    // The first instruction, then the two of a turn and the two clocks of a taken btne.
+    // The first instruction, then two instructions and the two clocks of a taken btne for each turn.
     let expected: Vec<Span> = (0..KEPT_HITS as u64).map(|turn| Processor::CLOCK * (1 + 4 * turn)).collect();
     assert_eq!(hits.iter().map(|hit| hit.into_call).collect::<Vec<_>>(), expected);
     assert_eq!(hits.iter().map(|hit| hit.state.r[16]).collect::<Vec<_>>(), (37..=100).rev().collect::<Vec<_>>());

@@ -43,7 +43,7 @@ fn free_entries(processor: &Processor) -> Vec<u32> {
     all
 }
 
-/// Puts a message into the next buffer, if the interface owns that buffer. Returns true if it does.
+/// Puts a message into the next buffer, if the interface owns that buffer. Returns true if the message was written.
 fn arrive(processor: &mut Processor, slot: u32, source: u32, header: Word, words: &[Word]) -> bool {
     let descriptor = RX + slot % RX_COUNT * DESCRIPTOR_BYTES;
     if at(processor, descriptor) != 0 {
@@ -62,7 +62,7 @@ fn call(processor: &mut Processor, entry: &str, registers: &[(usize, Word)]) {
     processor.call(&PROGRAM, entry, &registers, BUDGET).expect("it returns");
 }
 
-/// Random sequences of messages, interrupts and reads: the program receives the messages that arrived, in order.
+/// Sends random sequences of messages, interrupts and reads. The program must receive the messages in order of arrival.
 #[test]
 fn a_program_gets_what_arrived_in_order_and_everything_is_given_back() {
     let mut numbers = SplitMix64::new(5);

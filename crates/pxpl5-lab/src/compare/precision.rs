@@ -1,4 +1,5 @@
-//! The width at which the interval of a mean is narrow enough, and the number of seeds that it takes.
+//! The precision that a comparison requires, which is the greatest width of the interval of a mean error. The module
+//! also estimates the number of seeds that this precision needs.
 
 use super::interval::{IntervalMethod, MeanInterval};
 use std::fmt;
@@ -13,7 +14,7 @@ pub enum Precision {
     Pixels(f64),
 }
 
-/// Goal of a comparison that adds seeds to a row until the interval of its mean error is narrow enough.
+/// Goal of a comparison that adds seeds to a row until the interval of the row's mean error is narrow enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UntilPrecise {
     /// Greatest width of the interval.
@@ -26,8 +27,8 @@ pub struct UntilPrecise {
 pub const MAX_SEEDS: usize = 50;
 
 impl UntilPrecise {
-    /// Returns true if the interval exists and is narrow enough. An interval over the fields of one seed does not count,
-    /// because it leaves out how motions differ.
+    /// Returns true if the interval exists and is narrow enough. An interval over the fields of one seed does not
+    /// count, because such an interval leaves out the differences between motions.
     #[must_use]
     pub fn is_reached(&self, error: &MeanInterval) -> bool {
         let is_over_seeds = error.method != IntervalMethod::MovingBlockBootstrap;
@@ -80,7 +81,7 @@ impl FromStr for Precision {
     }
 }
 
-/// Error of a text that is no precision.
+/// Error of a text that does not state a precision.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("expected a width above 0 of the interval, as a share of the mean (10%) or in pixels (0.2px), found `{found}`")]
 pub struct PrecisionError {

@@ -19,7 +19,7 @@ pub struct PredictorError {
     pub training: Option<Training>,
     /// Errors of position on the screen in pixels. `None` if no pixel was evaluated.
     pub error: Option<PixelErrors>,
-    /// Reason why the predictor has no result in `error`. `None` if it has one.
+    /// Reason why the predictor has no result in `error`. `None` if the predictor has a result.
     pub failure: Option<String>,
 }
 
@@ -28,8 +28,8 @@ pub struct PredictorError {
 pub struct Predictors {
     /// Predictor that the experiment selects.
     pub chosen: PredictorKind,
-    /// Predictor with the smallest mean error. If several are equal, the simplest of them. `None` if no error was
-    /// evaluated.
+    /// Predictor with the smallest mean error. Of several predictors with equal errors, the simplest. `None` if no
+    /// error was evaluated.
     pub best: Option<PredictorKind>,
     /// Results of all predictors, from the simplest on.
     pub each: Vec<PredictorError>,
@@ -44,21 +44,21 @@ impl Predictors {
 }
 
 /// Runs an experiment once with each predictor. All other settings stay the same. If the experiment's own predictor is
-/// tuned, all are tuned for the pipeline's prediction interval and the motion. Returns `None` for an experiment without
-/// a head. No pixels are computed.
+/// tuned, all predictors are tuned for the pipeline's prediction interval and the motion. Returns `None` for an
+/// experiment without a head. No pixels are computed.
 #[must_use]
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     let head = experiment.tracked_head()?;
     let showing = head.raster().into();
     let each = parallel::map(&PredictorKind::ALL, |kind| with_predictor(experiment, head, showing, *kind));
     let mean = |one: &PredictorError| one.error.as_ref().map(|error| (one.kind, error.pixels.mean));
-    let judged = each.iter().filter_map(mean).filter(|(_, mean)| mean.is_finite());
-    let best = judged.reduce(|best, next| if next.1 < best.1 { next } else { best });
+    let evaluated = each.iter().filter_map(mean).filter(|(_, mean)| mean.is_finite());
+    let best = evaluated.reduce(|best, next| if next.1 < best.1 { next } else { best });
     Some(Predictors { chosen: head.predictor_kind(), best: best.map(|(kind, _)| kind), each })
 }
 
-/// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the known error of the chosen
-/// predictor, so that its run is not repeated. The mean is NaN if no error was evaluated.
+/// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the mean error with the chosen
+/// predictor, which a run has already given. The mean is NaN if no error was evaluated.
 pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chosen_px: f64) -> Vec<PredictorMean> {
     let Some(head) = experiment.tracked_head() else { return Vec::new() };
     parallel::map(&PredictorKind::ALL, |kind| {
@@ -82,7 +82,7 @@ fn of_run(kind: PredictorKind, showing: Showing, run: Result<Outcome, Experiment
         Ok(outcome) => PredictorError {
             numbers: outcome.head().map(|views| *views.head().predictor()),
             training: outcome.head().and_then(|views| views.head().training().copied()),
-            error: Some(PixelErrors::shown(&outcome, showing)).filter(|error| error.judged > 0),
+            error: Some(PixelErrors::shown(&outcome, showing)).filter(|error| error.evaluated > 0),
             ..blank
         },
         Err(error) => PredictorError { failure: Some(error.to_string()), ..blank },

@@ -21,11 +21,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
-/// all observations of a run in memory to evaluate its errors in several ways.
+/// all observations of a run in memory to evaluate the errors of the run in several ways.
 const MOST_FIELDS: u64 = 250_000;
 
 /// Maximum difference between the first evaluated display periods of two rows. A row with a larger difference starts
-/// late. Due pictures can be several periods apart.
+/// late. The difference is allowed because due pictures can be several periods apart.
 const MOST_PERIODS_APART: u64 = 4;
 
 /// Minimum number of seeds for meaningful confidence intervals.
@@ -74,7 +74,8 @@ pub struct Comparison {
     pub seeds: Vec<u64>,
     /// Confidence of all intervals, between 0 and 1.
     pub confidence: f64,
-    /// Greatest width of the intervals that the query asked for, such as `10%`. `None` if it did not ask.
+    /// Greatest width of the intervals that the query asked for, such as `10%`. `None` if the query asked for no
+    /// precision.
     pub until_precision: Option<String>,
     /// Maximum number of seeds of a row. `None` if the query did not ask for a precision.
     pub max_seeds: Option<usize>,
@@ -201,15 +202,15 @@ impl CompareQuery {
         Ok(self.identity()?.1)
     }
 
-    /// Returns the plan of the first row with the first seed, and the names of all rows.
+    /// Returns the plan (checked experiment) of the first row with the first seed, and the names of all rows.
     pub(super) fn identity(&self) -> Result<(Plan, Vec<String>), StudyError> {
         let rows = self.compared_pipelines()?;
         let plan = self.any_plan(&rows)?;
         Ok((plan, rows.into_iter().map(|row| row.name).collect()))
     }
 
-    /// Returns the plan of each row with the first seed, from which the cost can be estimated. Rows that cannot run are
-    /// left out.
+    /// Returns the plan (checked experiment) of each row with the first seed, from which the cost of the comparison can
+    /// be estimated. Rows that cannot run are left out.
     ///
     /// # Errors
     ///
@@ -234,7 +235,7 @@ impl CompareQuery {
         Ok(chosen)
     }
 
-    /// Returns the plan of the first row with the first seed, without a check of its length.
+    /// Returns the plan (checked experiment) of the first row with the first seed. The number of fields is not checked.
     pub(super) fn first_plan(&self) -> Result<Plan, StudyError> {
         self.plan_of_first(&self.compared_pipelines()?)
     }
@@ -245,7 +246,8 @@ impl CompareQuery {
         Ok(first.plan(&self.shared, seed)?)
     }
 
-    /// Returns the plan of the first row with the first seed, to check the shared settings.
+    /// Checks the settings that all rows share: the head, the seeds and the number of fields. Returns the plan (checked
+    /// experiment) of the first row with the first seed.
     fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
         let plan = self.plan_of_first(compared_pipelines)?;
         if plan.head.is_none() {
@@ -263,8 +265,8 @@ impl CompareQuery {
         Ok(plan)
     }
 
-    /// Checks that all seeds differ, that experiment files can hold them, and that the maximum number of seeds is not
-    /// below the number of seeds.
+    /// Checks three conditions: all seeds differ, experiment files can hold all seeds, and the maximum number of seeds
+    /// is not below the number of seeds.
     fn check_seeds(&self) -> Result<(), StudyError> {
         let mut sorted = self.seeds.clone();
         sorted.sort_unstable();
@@ -284,7 +286,8 @@ impl CompareQuery {
         }
     }
 
-    /// Returns seeds that follow the seeds of the query and those that were added before.
+    /// Returns `more` new seeds for a row that has already run with `ran` seeds. The new seeds follow all seeds of the
+    /// row.
     fn seeds_after(&self, ran: usize, more: usize) -> Vec<u64> {
         let greatest = self.seeds.iter().copied().max().unwrap_or_default();
         let added = (ran - self.seeds.len()) as u64;
@@ -353,7 +356,7 @@ impl CompareQuery {
             && !contender.is_reference()
         {
             let experiment =
-                plan.experiment(Arc::clone(scene)).host(progress.host()).with_dry_run(first.rehearsed.clone());
+                plan.experiment(Arc::clone(scene)).host(progress.host()).with_dry_run(first.dry_run.clone());
             // The dry run of the first trial is reused for every predictor.
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
@@ -387,7 +390,7 @@ fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     }
 }
 
-/// Returns the criterion of the triangle limit in words.
+/// Returns, in words, the condition under which a number of triangles counts as drawn in time.
 fn definition(plan: &Plan) -> String {
     let goal = match plan.limit.goal {
         Goal::NoMissedRetrace => "with no retrace missed".to_owned(),
@@ -403,14 +406,14 @@ impl Comparison {
     /// Four kinds of rows are never the best:
     ///
     /// - rows with pictures that were due and not shown
-    /// - the reference
+    /// - the row `ideal`, which shows ideal pictures as a reference
     /// - rows that were evaluated over other display periods
     /// - the row of delayed video, whose error leaves out the delay of the world
     #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {
-        let judged =
+        let evaluated =
             self.pipelines.iter().filter(|row| row.was_evaluated() && row.failure.is_none() && row.shows_all());
-        let rivals = judged.filter(|row| row.pipeline != DELAYED_VIDEO);
+        let rivals = evaluated.filter(|row| row.pipeline != DELAYED_VIDEO);
         let timed = rivals.filter(|row| row.head_to_light_ms.mean.is_finite() && !self.starts_late(row));
         timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
     }

@@ -1,4 +1,5 @@
-//! Opening of the finished rows of a comparison, with the settings that identify them.
+//! Opens the folder with the finished rows of a comparison, and checks that the rows have the settings of this
+//! comparison.
 
 use super::query::CompareQuery;
 use super::store::{CompareStore, Header, ROWS_SCHEMA};

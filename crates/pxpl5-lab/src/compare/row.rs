@@ -40,7 +40,7 @@ pub struct CauseShare {
     pub px: MeanInterval,
 }
 
-/// Mean error of a comparison row when another predictor replaces its own.
+/// Mean error of a comparison row when another predictor replaces the row's own predictor.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PredictorMean {
     /// Predictor that replaced the row's own predictor.
@@ -75,8 +75,9 @@ pub struct ComparisonRow {
     /// milliseconds. Cube faces are turned at scan-out with the newest orientation. Other pictures show the orientation
     /// and the position of the same pose.
     pub turn_to_light_ms: Statistics,
-    /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the time
-    /// from the measured pose to the arrival of its report, the second from the start of an eye's TRANSFORM to the swap.
+    /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the
+    /// time from the measurement of a pose to the arrival of the tracker's report. The second is the time from the
+    /// start of an eye's TRANSFORM to the swap.
     ///
     /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND,
     /// EDIT and the scan.
@@ -99,12 +100,13 @@ pub struct ComparisonRow {
     pub late_regions: Option<usize>,
     /// Error of position on the screen, over a grid of pixels and all evaluated fields.
     pub error: ErrorSpread,
-    /// Display periods over which the first seed was evaluated. `None` if there is no seed, or if the run ended before
-    /// the evaluation began.
+    /// Display periods over which the run with the first seed was evaluated. `None` if there is no seed, or if the run
+    /// ended before the evaluation began.
     pub window: Option<ResultWindow>,
     /// Contributions of all causes to the mean error. The sum of all contributions is the mean error.
     pub causes: Vec<CauseShare>,
-    /// Mean error of the first seed with each predictor. Empty for the reference, which is computed without firmware.
+    /// Mean error of the first seed with each predictor. Empty for the row `ideal`, whose pictures no predictor
+    /// changes.
     pub predictors: Vec<PredictorMean>,
     /// Largest number of triangles that meets the pipeline's own criterion. `None` if the query did not ask for a
     /// search, or the search failed.
@@ -181,8 +183,8 @@ impl ComparisonRow {
     /// Returns the predictor with the smallest mean error, or `None` if no predictor was evaluated.
     #[must_use]
     pub fn best_predictor(&self) -> Option<PredictorMean> {
-        let judged = self.predictors.iter().copied().filter(|one| one.mean_px.is_finite());
-        judged.min_by(|one, other| one.mean_px.total_cmp(&other.mean_px))
+        let evaluated = self.predictors.iter().copied().filter(|one| one.mean_px.is_finite());
+        evaluated.min_by(|one, other| one.mean_px.total_cmp(&other.mean_px))
     }
 
     /// Returns true if every picture that was due was shown in time.
@@ -198,7 +200,7 @@ impl ComparisonRow {
     }
 }
 
-/// Sample of runs behind a row.
+/// Number and kind of the runs from which a row is computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sampling {
     /// Number of seeds.
@@ -209,7 +211,7 @@ pub(super) struct Sampling {
     pub(super) confidence: f64,
 }
 
-/// Returns the sum of the known values, or `None` if all values are unknown.
+/// Returns the sum of the values that are not `None`, or `None` if there is no such value.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
     let mut known = values.flatten().peekable();
     known.peek().is_some().then(|| known.sum())
@@ -253,33 +255,33 @@ fn causes(trials: &[&Trial], sampling: Sampling) -> Vec<CauseShare> {
 
 impl ErrorSpread {
     /// Combines the errors of all runs. Several motions give an interval over the seeds. One motion gives an interval
-    /// over time, because further seeds do not move the head otherwise.
+    /// over time, because further seeds do not change the motion.
     pub(super) fn of(trials: &[&Trial], sampling: Sampling) -> Self {
         let confidence = sampling.confidence;
-        let judged: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.judged > 0).collect();
-        let px: Vec<f64> = judged.iter().map(|trial| trial.errors.pixels.mean).collect();
-        let deg: Vec<f64> = judged.iter().map(|trial| trial.errors.degrees.mean).collect();
-        let mut all: Vec<f64> = judged.iter().flat_map(|trial| &trial.errors.all_px).copied().collect();
+        let evaluated: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.evaluated > 0).collect();
+        let px: Vec<f64> = evaluated.iter().map(|trial| trial.errors.pixels.mean).collect();
+        let deg: Vec<f64> = evaluated.iter().map(|trial| trial.errors.degrees.mean).collect();
+        let mut all: Vec<f64> = evaluated.iter().flat_map(|trial| &trial.errors.all_px).copied().collect();
         all.sort_by(f64::total_cmp);
         let mut spread = Self {
             mean_px: MeanInterval::of(&px, confidence),
             bootstrap: None,
             mean_deg: MeanInterval::of(&deg, confidence),
             pixels: Percentiles::of(all.iter().copied()),
-            n: judged.iter().map(|trial| trial.errors.judged).sum(),
+            n: evaluated.iter().map(|trial| trial.errors.evaluated).sum(),
             distribution_px: hundredths(&all),
         };
         if sampling.is_one_motion || px.len() < 2 {
-            spread.bootstrap_over_time(&judged, confidence);
+            spread.bootstrap_over_time(&evaluated, confidence);
         }
         spread
     }
 
-    /// Replaces the interval of the mean by that of a bootstrap over the fields. The interval has no ends if the run is
-    /// too short for a bootstrap.
-    fn bootstrap_over_time(&mut self, judged: &[&Trial], confidence: f64) {
+    /// Replaces the interval of the mean by the interval of a bootstrap over the fields. The interval has no ends if
+    /// the run is too short for a bootstrap.
+    fn bootstrap_over_time(&mut self, evaluated: &[&Trial], confidence: f64) {
         let mean = self.mean_px.mean;
-        let bootstrap = BlockBootstrap::of(&mean_of_fields(judged));
+        let bootstrap = BlockBootstrap::of(&mean_of_fields(evaluated));
         let (low, high) = bootstrap.as_ref().map_or((f64::NAN, f64::NAN), |it| it.interval(mean, confidence));
         let method = if bootstrap.is_some() { IntervalMethod::MovingBlockBootstrap } else { IntervalMethod::None };
         self.mean_px = MeanInterval { low, high, method, ..self.mean_px };
@@ -290,9 +292,9 @@ impl ErrorSpread {
 }
 
 /// Returns the mean error of each evaluated field in the order of time, averaged over the seeds.
-fn mean_of_fields(judged: &[&Trial]) -> Vec<f64> {
+fn mean_of_fields(evaluated: &[&Trial]) -> Vec<f64> {
     let mut fields: BTreeMap<PeriodNumber, (f64, f64)> = BTreeMap::new();
-    for field in judged.iter().flat_map(|trial| &trial.errors.by_field).filter(|field| field.mean_px.is_finite()) {
+    for field in evaluated.iter().flat_map(|trial| &trial.errors.by_field).filter(|field| field.mean_px.is_finite()) {
         let (sum, n) = fields.entry(field.field).or_default();
         *sum += field.mean_px;
         *n += 1.0;

@@ -2,11 +2,11 @@
 //!
 //! ```text
 //!  rows/rows.jsonl    header, then one line for each finished row
-//!  rows/1-seen.png    last picture of the row in line 1 behind the header, and the ideal picture
+//!  rows/1-seen.png    last picture of the row in line 1 after the header, and the ideal picture
 //! ```
 //!
-//! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. It is
-//! removed, and only its row is computed again.
+//! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. The
+//! incomplete line is removed, and only the row of this line is computed again.
 
 use super::gallery::LastPicture;
 use super::row::ComparisonRow;
@@ -27,7 +27,7 @@ pub const ROWS_SCHEMA: &str = "pxpl5-comparison-rows/1";
 /// Name of the folder with the finished rows, within the folder of a comparison.
 pub const ROWS_FOLDER: &str = "rows";
 
-/// Settings of a comparison, in the first line of its file of rows.
+/// Settings that identify a comparison, in the first line of the file with its rows.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Header {
     pub(super) schema: String,
@@ -35,9 +35,9 @@ pub(super) struct Header {
     pub(super) version: String,
     /// Names of all rows of the comparison.
     pub(super) rows: Vec<String>,
-    /// Keys and options with their values, and the hashes of the files that they name.
+    /// Keys and options with their values, and the hashes of the files that the values name.
     pub(super) settings: BTreeMap<String, String>,
-    /// Hash of all effective settings of the first row, also of those from presets.
+    /// Hash of all effective settings of the first row, including the settings from presets.
     pub(super) config_hash: String,
 }
 
@@ -116,13 +116,13 @@ impl CompareStore {
         self.found.len()
     }
 
-    /// Returns the row with this name, if an earlier process has finished it.
+    /// Returns the row with this name, if an earlier process has finished this row.
     #[must_use]
     pub fn row(&self, name: &str) -> Option<&ComparisonRow> {
         self.found.iter().find(|row| row.pipeline == name)
     }
 
-    /// Appends a finished row. Returns the row with the numbers that a later process reads, so that an interruption
+    /// Appends a finished row. Returns the row as a later process reads the row from the file, so that an interruption
     /// changes no result.
     pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, StudyError> {
         let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
@@ -150,13 +150,13 @@ impl CompareStore {
 }
 
 impl Header {
-    /// Returns an error that names the first difference to the header of a file.
+    /// Compares this header with the header of a file. Returns an error that names the first difference.
     fn check(&self, path: &Path, found: Option<&Self>) -> Result<(), StudyError> {
         let Some(found) = found.filter(|found| *found != self) else { return Ok(()) };
         let value = |header: &Self, key: &str| header.settings.get(key).map_or("not set", String::as_str).to_owned();
         let keys = self.settings.keys().chain(found.settings.keys());
         let settings = keys.map(|key| (key.as_str(), value(self, key), value(found, key)));
-        // The hash comes last, because a key tells more.
+        // The hash comes last, because the name of a key is more helpful in an error.
         let pairs = [
             ("schema", self.schema.clone(), found.schema.clone()),
             ("version", self.version.clone(), found.version.clone()),

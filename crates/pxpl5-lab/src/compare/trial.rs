@@ -29,13 +29,14 @@ pub(super) struct Trial {
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
     /// Result of the dry run that preceded the run.
-    pub(super) rehearsed: Option<Arc<DryRun>>,
+    pub(super) dry_run: Option<Arc<DryRun>>,
     /// Last picture of the run, if the run computed pixels and showed a picture.
     pub(super) picture: Option<LastPicture>,
 }
 
 impl ComparedPipeline {
-    /// Returns the plan of one run: the shared settings, the settings of this row, and a seed.
+    /// Returns the plan (checked experiment) of one run, from the shared settings, the settings of this row, and a
+    /// seed.
     pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, FileError> {
         let mut file = shared.clone();
         file.set("pipeline", self.pipeline, "compare")?;
@@ -45,7 +46,7 @@ impl ComparedPipeline {
         file.resolve_for(seed)
     }
 
-    /// Runs one plan of the row. An error is returned as its message.
+    /// Runs one plan (checked experiment) of the row. Returns an error as text.
     pub(super) fn trial(
         &self,
         plan: &Plan,
@@ -55,14 +56,15 @@ impl ComparedPipeline {
     ) -> Result<Trial, String> {
         let from = common_window_from(plan.fields);
         let experiment = plan.experiment(Arc::clone(scene)).host(host).pixels(pixels).results_from(from);
-        let outcome = experiment.rehearsed().and_then(|it| it.run()).map_err(|error| error.to_string())?;
+        let outcome = experiment.after_dry_run().and_then(|it| it.run()).map_err(|error| error.to_string())?;
         Ok(Trial::of(&outcome, self.showing))
     }
 }
 
-/// Returns the first display period in which the rows of a comparison are evaluated: after a quarter of the run.
+/// Returns the first display period in which the rows of a comparison are evaluated. This period comes after a quarter
+/// of the run and after the warm-up.
 ///
-/// All rows are thus evaluated over the same periods, although some start up later than others.
+/// All rows are thus evaluated over the same periods, although some pipelines start up later than others.
 pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
     PeriodNumber(WARM_UP_PERIODS.max(fields / 4))
 }
@@ -89,7 +91,7 @@ impl Trial {
             shown: report.pictures,
             late_regions: report.late_regions,
             host_seconds: outcome.host_seconds().unwrap_or_default(),
-            rehearsed: outcome.experiment().rehearsal().cloned(),
+            dry_run: outcome.experiment().dry_run().cloned(),
             picture: LastPicture::of(outcome, report.ends_complete).filter(|_| is_timed),
         }
     }
@@ -99,8 +101,9 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()).collect()
 }
 
-/// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. Cube faces
-/// get their orientation at scan-out. Other pictures are drawn for the orientation of their pose.
+/// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. For cube
+/// faces, this orientation is chosen at scan-out. Any other picture shows the orientation of the pose for which the
+/// picture was drawn.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     if !outcome.pipeline().draws_faces() {
         return Budget::totals_ms(outcome);
@@ -108,8 +111,8 @@ fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()
 }
 
-/// Returns the prediction intervals in milliseconds. Each reaches from the newest measurement behind a head pose to the
-/// instant for which the picture with this pose is drawn.
+/// Returns the prediction intervals in milliseconds. Each interval begins at the newest measurement from which a head
+/// pose was predicted. The interval ends at the instant for which the picture with this pose is drawn.
 fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let Some(head) = outcome.head() else { return Vec::new() };
     // Only views whose pictures were shown completely count.

@@ -9,16 +9,17 @@ use pxpl5_wire::display::DisplayConfig;
 /// Prefix of the keys of display parameters.
 pub(super) const NUMBERS: &str = "display.";
 
-/// Name of the preset that display parameters change if the file names no preset.
+/// Name of the preset that is used if the file sets display parameters but names no preset.
 const OWN: &str = "panel";
 
-/// A display parameter in an experiment file. It has one name in the file and one in the display's table of parameters.
+/// A display parameter in an experiment file. The parameter has one name in the file (`key`) and another name in the
+/// display's table of parameters (`parameter`).
 struct NumberKey {
     key: &'static str,
     parameter: &'static str,
     per_unit: f64,
     about: &'static str,
-    /// Words that the file may contain instead of a number, each with its number.
+    /// Words that the file may contain instead of a number, each with the number that the word stands for.
     words: &'static [(&'static str, u64)],
 }
 
@@ -87,7 +88,7 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
         set(config.as_mut(), key, path, setting)?;
     }
     if let (Err(error), Some(first)) = (config.check(), given.first()) {
-        // The message names the number of the table; the place is that of the key which sets it.
+        // The message names the number of the table; the place is the place of the key that sets this number.
         let reason = error.to_string();
         let named = given.iter().find(|(key, ..)| reason.contains(&format!(".{}:", key.parameter)));
         let (_, path, setting) = named.unwrap_or(first);
@@ -140,7 +141,7 @@ fn unit_text(key: &NumberKey) -> String {
     }
 }
 
-/// Returns the range of a display parameter in the unit of the experiment file.
+/// Returns the range of a display parameter in the unit of the experiment file, for error messages.
 fn limits(key: &NumberKey, table: &dyn ParameterTable) -> String {
     let info = table.infos().iter().find(|info| info.name == key.parameter);
     let text = |value: Number| match value {

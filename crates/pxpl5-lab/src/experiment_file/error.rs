@@ -85,7 +85,7 @@ pub enum FileError {
         /// Key of the pipeline that sets the same parameter, with its value.
         other: String,
     },
-    /// The machine cannot be built.
+    /// No machine can be built from the settings.
     #[error("{place}: {error}")]
     Config {
         /// File and line, or the command line option. The text is "machine" if the error concerns the machine as a

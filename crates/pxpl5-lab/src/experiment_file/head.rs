@@ -1,4 +1,5 @@
-//! The tracked head of an experiment: its motion, tracker and predictor, and the raster of its display.
+//! The tracked head of an experiment: its motion, tracker, predictor and raster. The raster is the correction that the
+//! display applies to pictures during the scan.
 
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;
@@ -63,7 +64,7 @@ impl HeadChoice {
         let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
         let head =
             head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).with_aim(aim).placed(place);
-        let head = judged(file, if is_tuned(file)? { head.tuned() } else { head })?;
+        let head = evaluated(file, if is_tuned(file)? { head.tuned() } else { head })?;
         let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
         let head = head.with_unsupported_parameters(supposed);
         Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
@@ -76,7 +77,7 @@ impl HeadChoice {
         if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
     }
 
-    /// Returns the head with its tracker and predictor. All runs of a plan share this head.
+    /// Returns the head with its tracker and predictor. All runs of one checked experiment share this head.
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)
@@ -115,7 +116,7 @@ impl HeadChoice {
             all.push(("head.place".to_owned(), Value::from(self.head.place().to_string())));
         }
         all.extend(reprojection::settings(self.head.raster()));
-        all.extend(self.head.judge_at_m().map(|metres| ("head.judge_at".to_owned(), Value::from(metres))));
+        all.extend(self.head.evaluate_at_m().map(|metres| ("head.evaluate_at".to_owned(), Value::from(metres))));
         // Only recordings have an end, axes and columns.
         if is_recording(&self.motion) {
             let Replay { format, end } = &self.replay;
@@ -189,9 +190,9 @@ fn is_tuned(file: &ExperimentFile) -> Result<bool, FileError> {
     Ok(choice.unwrap_or(!TUNED.iter().any(|name| is_given(name))))
 }
 
-fn judged(file: &ExperimentFile, head: Head) -> Result<Head, FileError> {
-    match file.number("head.judge_at")? {
-        Some(metres) => head.evaluated_at(metres).map_err(|error| refused(file, "head.judge_at", &error)),
+fn evaluated(file: &ExperimentFile, head: Head) -> Result<Head, FileError> {
+    match file.number("head.evaluate_at")? {
+        Some(metres) => head.evaluated_at(metres).map_err(|error| refused(file, "head.evaluate_at", &error)),
         None => Ok(head),
     }
 }

@@ -83,7 +83,8 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
     })
 }
 
-/// Returns the range of a number in words, with the names and units of the keys.
+/// Returns the valid range of a parameter in words, for an error message. Names and units are those of the experiment
+/// file.
 fn expected(error: &RangeError) -> &'static str {
     match error.what {
         "eye_separation_m" => "0 to 1000, in millimetres",
@@ -92,7 +93,7 @@ fn expected(error: &RangeError) -> &'static str {
     }
 }
 
-/// Returns the parameters that differ from those of the papers' display, with their keys.
+/// Returns the parameters whose values differ from the papers' display, with their keys.
 pub(super) fn settings(hmd: &Hmd) -> impl Iterator<Item = (&'static str, Value)> {
     let config = *hmd.config();
     let usual = HmdConfig::unc();

@@ -60,7 +60,7 @@ const COMMON: &[(&str, &str)] = &[
           given (those of tracking.filter)",
     ),
     (
-        "head.judge_at",
+        "head.evaluate_at",
         "metres from the eye at which pixel errors are evaluated; default: the distance of the scene's content",
     ),
     (
@@ -102,7 +102,7 @@ const COMMON: &[(&str, &str)] = &[
 /// Former names of keys, each with the current name.
 const RENAMED: [(&str, &str); 2] = [("head.display", "head.raster"), ("display.preset", "display")];
 
-/// Returns all keys except those of the machine's parameters. A parameter's key is `machine.` followed by a path of
+/// Returns all keys except the keys of the machine's parameters. A parameter's key is `machine.` followed by a path of
 /// [`MachineConfig::set`].
 #[must_use]
 pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
@@ -153,7 +153,7 @@ fn is_key(registry: &Registry, path: &str) -> bool {
     keys(registry).iter().any(|key| key.path == path)
 }
 
-/// Returns true if the path is a parameter of a machine with some registered display.
+/// Returns true if the path is a parameter of a machine with any display of the registry.
 fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
     let Some(path) = path.strip_prefix("machine.") else { return false };
     parameters(registry).iter().any(|known| known == path)

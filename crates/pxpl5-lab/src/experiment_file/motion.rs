@@ -23,7 +23,7 @@ pub enum PathChoice {
         /// Distance from the scene's centre in metres. `None` fits the scene into the view.
         distance: Option<f64>,
     },
-    /// The head looks at the scene and walks back and forth.
+    /// The head faces the scene and moves back and forth.
     Look {
         /// Distance from the scene's centre in metres. `None` fits the scene into the view.
         distance: Option<f64>,

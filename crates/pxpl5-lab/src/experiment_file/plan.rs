@@ -1,4 +1,4 @@
-//! The checked plan of one experiment.
+//! The plan of one experiment: all settings, with values that were checked together.
 
 use super::head::HeadChoice;
 use super::hmd;
@@ -71,7 +71,7 @@ pub struct Plan {
     pub title: Option<String>,
     /// Registry of the pipelines and displays that the experiment can name.
     pub registry: Arc<Registry>,
-    /// Pipeline, built from the settings that it reads from the file.
+    /// Pipeline, built with the values of the pipeline's keys in the file.
     pub pipeline: Arc<dyn Pipeline>,
     /// Criterion for searching the largest number of triangles that are drawn in time.
     pub limit: LimitCriterion,
@@ -85,11 +85,11 @@ pub struct Plan {
     pub seed: u64,
     /// Level of modelling; default transaction.
     pub level: Level,
-    /// Head with its tracker. `None` if the head moves as the scene says, without tracking delay.
+    /// Head with its tracker. `None` if the head follows the scene's own motion, without tracking delay.
     pub head: Option<HeadChoice>,
     /// Head-mounted display that the viewer wears.
     pub hmd: Hmd,
-    /// Choice of the pixels that are computed. By default only pixels that are read later.
+    /// Choice of the pixels that are computed. By default, only pixels that are read later are computed.
     pub pixels: Pixels,
     /// Quantities that tables and rows of results contain.
     pub measure: Vec<Measure>,
@@ -254,7 +254,7 @@ impl ExperimentFile {
         self.get(&key).map_or("machine", |setting| &setting.place)
     }
 
-    /// Returns an error for a parameter that a key of the pipeline also sets, unless both values are the same.
+    /// Returns an error if a machine parameter and a key of the pipeline set different values for the same number.
     fn refuse_twice(
         &self,
         entry: &PipelineEntry,
@@ -281,7 +281,7 @@ const CODES: [(&str, Option<CodeVersion>); 4] = [
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
 
-/// Possible origins of primitive times, by name. The value is true for the times of executed code.
+/// Names of the possible origins of primitive times: the papers, or executed code (true).
 const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 fn refused(place: &str, error: ConfigError) -> FileError {
@@ -304,8 +304,9 @@ impl Plan {
         self.scene.load()
     }
 
-    /// Returns all parameters of the experiment. They are the parameters of its machine and, with a tracked head, those
-    /// of the tracker, the host's port and the predictor. Paths of tracking parameters begin with `tracking.`.
+    /// Returns all parameters of the experiment. These are the parameters of the machine and, with a tracked head, the
+    /// parameters of the tracker, the host's port and the predictor. Paths of tracking parameters begin with
+    /// `tracking.`.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(HeadChoice::parameters);
@@ -369,11 +370,11 @@ impl Plan {
         self.run_on(Workstation::with_threads(1), scene)
     }
 
-    /// Like [`run`](Self::run), on another host. A host can stop the run.
+    /// Runs the experiment as [`run`](Self::run) does, but on the given host, which can stop the run.
     ///
     /// # Errors
     ///
-    /// Like [`run`](Self::run), and [`ExperimentError::Stopped`] if the host stops the run.
+    /// Fails in the same cases as [`run`](Self::run). Returns [`ExperimentError::Stopped`] if the host stops the run.
     pub fn run_on(&self, host: impl Host + 'static, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
         let experiment = self.experiment(scene).pixels(Pixels::Off).host(host);
         match self.level {

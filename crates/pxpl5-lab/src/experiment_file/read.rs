@@ -30,8 +30,8 @@ impl ExperimentFile {
             .ok_or_else(|| wrong(key, setting, &format!("a whole number from {} to {}", range.start(), range.end())))
     }
 
-    /// Converts the value of a setting to a parameter. A TOML value with a fraction becomes a real number, any other a
-    /// whole number.
+    /// Converts the value of a setting to a parameter. A TOML value with a fraction becomes a real number. Any other
+    /// value must be a whole number.
     pub(super) fn parameter_value(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
         match &setting.value {
             Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
@@ -53,8 +53,8 @@ impl ExperimentFile {
         list.flatten().map(Some).ok_or_else(|| wrong(key, setting, "a list of texts in quotes"))
     }
 
-    /// Returns the one of several named values that a key selects. A number selects the name with the same digits, so
-    /// that `code = 1994` needs no quotes.
+    /// Returns the named value that a key selects. A number selects the name with the same digits, so that `code =
+    /// 1994` needs no quotes.
     pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Result<Option<T>, FileError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         let found = plain(&setting.value);

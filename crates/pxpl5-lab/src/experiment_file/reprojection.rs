@@ -1,25 +1,27 @@
-//! The raster in a tracked head's display: plain, the raster offset of VDRT, or a device that moves pictures.
+//! The raster of a tracked head's display: the correction that the display applies to pictures during the scan. The
+//! raster is plain (no correction), the raster offset of VDRT, or a device that moves pictures.
 
 use super::read::wrong;
 use super::{ExperimentFile, FileError};
 use pxpl5_run::{Every, Pipeline, Raster, Reprojection, Warp};
 use toml::Value;
 
-/// Key for the parameter `every` of a device that moves pictures.
+/// Key of the part of a scan for which a device takes a new pose to move pictures: a field, a strip or a line.
 pub(super) const EVERY: &str = "head.reprojection.every";
 pub(super) const LATENCY: &str = "head.reprojection.latency_us";
 
 /// Key that selects the raster.
 const RASTER: &str = "head.raster";
 
-/// A raster as selected by its name: a raster without parameters, or a device that moves pictures.
+/// The choice of a raster by its name: a raster without parameters, or a device that moves pictures.
 #[derive(Clone, Copy)]
 enum Named {
     Raster(Raster),
     Device(Warp),
 }
 
-/// Reads the raster of an experiment. A raster offset requires a pipeline in which each picture has one head pose.
+/// Reads the raster of an experiment (the correction of pictures during the scan). A raster offset requires a pipeline
+/// in which each picture has one head pose.
 pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Raster, FileError> {
     let plain = Raster::ALL.map(|(name, raster)| (name, Named::Raster(raster)));
     let devices = Warp::ALL.map(|(name, by)| (name, Named::Device(by)));
@@ -54,7 +56,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
     }
 }
 
-/// Returns an error if a parameter of a device is set without a device that moves pictures.
+/// Returns an error if the file sets a parameter of a device that moves pictures, but selects no such device.
 fn refuse_numbers(file: &ExperimentFile) -> Result<(), FileError> {
     for key in [EVERY, LATENCY] {
         if let Some(setting) = file.get(key) {
@@ -64,7 +66,7 @@ fn refuse_numbers(file: &ExperimentFile) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Returns the settings that select a raster, as keys and values.
+/// Returns the keys and values that select a raster in an experiment file.
 pub(super) fn settings(raster: Raster) -> Vec<(String, Value)> {
     let Raster::Reprojected(Reprojection { by, every, latency_us }) = raster else {
         return vec![(RASTER.to_owned(), Value::from(raster.to_string()))];

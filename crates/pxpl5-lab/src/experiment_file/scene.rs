@@ -83,8 +83,9 @@ impl SceneChoice {
     }
 }
 
-/// Returns true if a scene's name is the path of a file: it contains a separator or a file extension. A built-in scene
-/// has no extension, because the part behind the dot in `typical:1.5` has no letter.
+/// Returns true if a scene's name is the path of a file. Such a path contains a separator or a file extension. A
+/// built-in scene has no extension, because a file extension has a letter. The part after the dot in `typical:1.5` has
+/// no letter.
 pub(crate) fn is_file(name: &str) -> bool {
     let extension = Path::new(name).extension().map(|end| end.to_string_lossy().contains(char::is_alphabetic));
     name.contains(['/', std::path::MAIN_SEPARATOR]) || extension == Some(true)

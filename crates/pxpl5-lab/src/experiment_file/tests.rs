@@ -210,7 +210,7 @@ fn a_recording_is_read_beside_its_file_with_the_columns_and_the_end_that_it_says
     std::fs::create_dir_all(&folder).expect("a folder");
     let poses = "stamp;qx;qy;qz;qw;px;py;pz\n10;0;0;0;1;0;0;0\n1010;0;0;0;1;2000;0;0\n";
     std::fs::write(folder.join("poses.csv"), poses).expect("written");
-    let text = "pipeline = \"slats\"\nscene = \"room\"\n[head]\nmotion = \"poses.csv\"\nend = \"hold\"\njudge_at = 3.5\n\
+    let text = "pipeline = \"slats\"\nscene = \"room\"\n[head]\nmotion = \"poses.csv\"\nend = \"hold\"\nevaluate_at = 3.5\n\
                 [head.columns]\nt_ms = \"stamp\"\nx_mm = 6\ny = 7\nz = 8\nqw = \"qw\"\nqx = \"qx\"\nqy = \"qy\"\nqz = \"qz\"\n";
     let path = folder.join("experiment.toml");
     std::fs::write(&path, text).expect("written");
@@ -220,7 +220,7 @@ fn a_recording_is_read_beside_its_file_with_the_columns_and_the_end_that_it_says
         (head.motion().pose(500_000_000_000).position.x - 1.0).abs() < 1e-12,
         "half of 2,000 mm after half a second"
     );
-    assert_eq!((head.motion().ends_ps(), head.judge_at_m()), (None, Some(3.5)));
+    assert_eq!((head.motion().ends_ps(), head.evaluate_at_m()), (None, Some(3.5)));
     // The written settings mean the same in another folder.
     let other = folder.join("elsewhere");
     std::fs::create_dir_all(&other).expect("a folder");
@@ -236,14 +236,14 @@ fn what_is_said_of_a_head_is_checked() {
         let text = format!("pipeline = \"slats\"\nscene = \"room\"\n{more}\n");
         ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect_err("refused").to_string()
     };
-    let at = refusal("head.motion = \"pan:1\"\nhead.judge_at = 0");
+    let at = refusal("head.motion = \"pan:1\"\nhead.evaluate_at = 0");
     assert!(at.contains("distance at which errors are evaluated, m: expected 0.001 to 1000000, found 0"), "{at}");
     let end = refusal("head.motion = \"pan:1\"\nhead.end = \"hold\"");
     assert!(end.contains("line 4: head.end: expected nothing: head.motion is no recording"), "{end}");
     let sine = refusal("head.motion = \"sine:20\"");
     assert!(sine.contains("such as sine:20:0.5, found `20`"), "{sine}");
-    let judged = refusal("head.judge_at = 2.0");
-    assert!(judged.contains("head.motion is missing"), "{judged}");
+    let evaluated = refusal("head.evaluate_at = 2.0");
+    assert!(evaluated.contains("head.motion is missing"), "{evaluated}");
 }
 
 /// Returns the plan of `e.toml`, with a recorded motion in which the head moves `x` metres in one second.

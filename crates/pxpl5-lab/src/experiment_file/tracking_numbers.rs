@@ -1,4 +1,5 @@
-//! Parameters of trackers, predictors and the host's port. An experiment sets them by the keys `tracking.table.name`.
+//! Parameters of trackers, predictors and the host's port. An experiment sets these parameters by keys of the form
+//! `tracking.table.name`.
 
 use super::{ExperimentFile, FileError, Setting};
 use crate::compare::tracker_by;
@@ -15,7 +16,8 @@ const PREFIX: &str = "tracking.";
 const COMMON: [&str; 3] = ["host", "filter", "gate"];
 
 /// Returns every tracking parameter with its published value. Parameters of heads, the measuring rig, the video and the
-/// papers' pictures are read-only. They are facts for comparison with a model, not settings of a tracked head.
+/// papers' pictures are read-only. Read-only parameters are published facts for comparison with a model, not settings
+/// of a tracked head.
 #[must_use]
 pub fn tracking_parameters() -> Vec<Parameter> {
     let numbers = Tables::PAPERS.all().into_iter().flat_map(|(name, table)| parameters_of(name, table, false));

@@ -1,13 +1,14 @@
 //! Values with units in settings: `20us`, `16.7ms`, `60deg`, `640px`.
 //!
-//! A plain number has the unit that its key documents. A number with a unit is converted to that unit.
+//! A plain number has the unit that the documentation of the key states. A number with a unit is converted to the unit
+//! of the key.
 
 use super::tracking_numbers::tracking_parameters;
 use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_run::Registry;
 use toml::Value;
 
-/// Units of one quantity, such as time. Each has its size as a multiple of the first unit.
+/// Units of one quantity, such as time. Each unit has its size as a multiple of the first unit.
 type Kind = &'static [(&'static str, f64)];
 
 const TIMES: Kind = &[("ps", 1.0), ("ns", 1e3), ("us", 1e6), ("ms", 1e9), ("s", 1e12)];
@@ -25,7 +26,7 @@ const KINDS: [Kind; 8] = [TIMES, LENGTHS, ANGLES, RATES, TURNS, SPEEDS, SIZES, P
 const UNITS: [(&str, &str); 8] = [
     ("motion.distance", "m"),
     ("motion.deg_per_s", "deg/s"),
-    ("head.judge_at", "m"),
+    ("head.evaluate_at", "m"),
     ("hmd.field_of_view", "deg"),
     ("hmd.eye_distance", "mm"),
     ("hmd.near", "m"),
@@ -35,8 +36,8 @@ const UNITS: [(&str, &str); 8] = [
 
 /// Converts a text such as `20us` to a number in the unit of a key.
 ///
-/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. The text then stays
-/// unchanged.
+/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. In these cases the text is
+/// used unchanged.
 ///
 /// # Errors
 ///
@@ -58,7 +59,7 @@ pub(super) fn converted(registry: &Registry, key: &str, text: &str) -> Result<Op
     Ok(Some(value(number * from / to)))
 }
 
-/// Splits a text into a number and a unit. Returns `None` if one of them is missing.
+/// Splits a text into a number and a unit. Returns `None` if the number or the unit is missing.
 fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     // An exponent belongs to the number; no unit begins with e.

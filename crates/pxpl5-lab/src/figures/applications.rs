@@ -25,7 +25,7 @@ pub(super) type RigKey = (u64, FinishedRegions, Vec<(String, u64)>);
 /// The cached value of one key. `None` until the value is computed.
 type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 
-/// The cached values of all keys that were requested.
+/// The cached values, by key. A key is added when its value is first requested.
 type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 
 /// The cache of scenes, loads, measurements and results.
@@ -60,12 +60,12 @@ impl Applications {
         find_or_compute(&self.scenes, (name, culled), make)
     }
 
-    /// Returns the loads (amounts of work) of a scene's fly-through. `make` computes them at the first request.
+    /// Returns the loads (amounts of work) of a scene's fly-through. `make` computes the loads at the first request.
     pub(super) fn loads(&self, key: LoadsKey, make: impl FnOnce() -> Result<Vec<Vec<Load>>>) -> Result<LoadsOfSeeds> {
         find_or_compute(&self.loads, key, || make().map(Arc::new))
     }
 
-    /// Returns the measurement with the pendulum rig for the given rules. `make` performs the measurement at the first
+    /// Returns the measurement with the pendulum rig for a cache key. `make` performs the measurement at the first
     /// request.
     pub(super) fn rig(&self, key: RigKey, make: impl FnOnce() -> Result<FigureValue>) -> Result<FigureValue> {
         find_or_compute(&self.rigs, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
@@ -86,8 +86,8 @@ impl Applications {
 
 /// Returns the cached value of a key, or computes it once. Other threads that request the same key wait for the result.
 ///
-/// `make` must not run work on other threads. While the calling thread waits for such work, it could take over other
-/// work that requests the same key, and deadlock.
+/// `make` must not run work on other threads. While the calling thread waits for such work, this thread could take over
+/// other work that requests the same key. The program would then be in a deadlock.
 fn find_or_compute<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
     // The outer lock is held only to find the slot; the inner lock is held while the value is computed.
     let place = Arc::clone(locked(all).entry(key).or_default());

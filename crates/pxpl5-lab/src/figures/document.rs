@@ -1,4 +1,4 @@
-//! The document ACCURACY.md, generated from the figures.
+//! The document ACCURACY.md, generated from the published figures and the model's values.
 
 use super::{FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
 use crate::application_time::{ApplicationTime, Spread, published};
@@ -26,7 +26,8 @@ pub fn markdown(figures: &Figures) -> String {
     text
 }
 
-/// Minimum difference in percent between the timing table and executed code for which a figure is listed.
+/// Minimum change of a figure, in percent, for which the document lists the figure. The change is caused by times of
+/// executed code in place of the timing table.
 const MOVED_PERCENT: f64 = 0.05;
 
 /// Writes the figures that change when the times of executed code are used. Also writes the reason why these times are
@@ -111,15 +112,15 @@ fn of_readings(text: &mut String, readings: &Readings) {
     fits.iter().take(BEST).for_each(|fit| text.push_str(&fitted(fit)));
     let _ = write!(
         text,
-        "\nThe project uses the interpretation **{}**, which has rank {} in the list. The most likely interpretation is {:.1} times as likely.\n\
-         Within the printed digits, {} interpretations are as good as the first one ({:.2} % of a mean error).\n\n\
+        "\nThe project uses the interpretation **{}**, which has rank {} in the list. The most likely interpretation is {:.2} times as likely.\n\
+         The number of interpretations that equal the first one within the printed digits ({:.2} % of a mean error) is {}.\n\n\
          These reasons decide the choice:\n\n\
          - *each eye, whole fields*: The application figures are printed in fields. Samples of 4 and 5 fields in equal numbers give\n  \
            a mean of 4.5 and a deviation of 0.5. The paper prints a mean of 4.47 and a deviation of 0.502. The printed pair 4.61 and 0.589 also\n  \
            needs a few samples of 6 fields. The first eyes alone have a deviation of 0.1.\n\n\
          - *room for all*: The 4,096 bits of a pixel hold 128 regions of 32 bits. A smaller number of regions would need a rule of\n  \
            the software.\n\n\
-         - *wait*: With room for all regions, `store` makes figure 4 6 % too late, and `wait` makes figure 4 1 to 2 % too late. The text\n  \
+         - *wait*: With room for all regions, the latency of figure 4 is 6 % too long with `store`, and 1 to 2 % too long with `wait`. The text\n  \
            of the paper allows both rules.\n\n\
          - *large, culled*: The head takes twice the printed time on the small machine, or if all faces are drawn.\n\n\
          - *bins of one eye*: With bins of both eyes, 7,700 triangles take 454 ms instead of the printed 293 ms. No paper states this rule.\n  \
@@ -129,8 +130,8 @@ fn of_readings(text: &mut String, readings: &Readings) {
         Reading::USUAL,
         place(&Reading::USUAL),
         (likeliest - usual).exp(),
-        readings.as_good,
         readings.rounding_percent,
+        readings.as_good,
     );
     // Each figure is predicted without its own data.
     for left_out in &readings.left_out {
@@ -214,7 +215,7 @@ fn range([low, high]: [f64; 2]) -> String {
 }
 
 fn head(text: &mut String, rows: &[FigureRow]) {
-    let free = rows.iter().filter(|row| row.standing == "free").count();
+    let free = rows.iter().filter(|row| row.provenance == "free").count();
     let missed = rows.iter().filter(|row| row.misses()).count();
     let _ = write!(
         text,
@@ -222,7 +223,7 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          The command `pxpl5 figures --write ACCURACY.md` generates this file. The command `pxpl5 figures --check ACCURACY.md` fails\n\
          if the file is out of date.\n\n\
          This file compares each published figure with the result of the model. All results come from the same machine parameters.\n\
-         The column *provenance* tells if something was chosen to reproduce the row:\n\n\
+         The column *provenance* states if a parameter or a rule was chosen to reproduce the row:\n\n\
          - *free*: No parameter and no rule was chosen to reproduce the figure.\n\n\
          - *fitted*: One parameter was chosen so that the model reproduces the figure.\n\n\
          - *rule*: One rule of the model was chosen so that the model reproduces the figure.\n\n\
@@ -236,7 +237,7 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          The difference between *analytic* and *simulated* is the error of the analytic level.\n\n\
          The interval can be widened on both sides by the error of the analytic level. A figure outside of the widened interval is\n\
          *out of reach*. A figure out of reach shows an error in the rules of the model, because no allowed number reproduces the figure.\n\
-         A figure that is *not varied* depends only on the scenes or on a motion. No parameter changes such a figure.\n\n\
+         A figure that is *not varied* depends only on the scenes or on a motion. The parameters of the machine do not change this figure.\n\n\
          The intervals of figures 17, 19 and 19b come from simulations with events. These simulations vary the depth of a renderer's\n\
          FIFO and the number of channels of a sender. The interval of figure 17 also covers the positions of the photodiode on the screen\n\
          and the interpretations.\n\n\
@@ -269,12 +270,12 @@ fn line(text: &mut String, row: &FigureRow) {
         number(row.simulated),
         row.unit,
         row.error_percent,
-        standing(row),
+        provenance(row),
     );
 }
 
-fn standing(row: &FigureRow) -> String {
-    if row.fitted.is_empty() { row.standing.to_owned() } else { format!("{}: {}", row.standing, row.fitted) }
+fn provenance(row: &FigureRow) -> String {
+    if row.fitted.is_empty() { row.provenance.to_owned() } else { format!("{}: {}", row.provenance, row.fitted) }
 }
 
 fn misses(text: &mut String, rows: &[FigureRow]) {

@@ -3,7 +3,7 @@
 
 use super::measured::{Result, scene_named};
 use super::{Bench, FigureError};
-use pxpl5_arp::figures::{Experiments, Row, Standing, missed, rows, table};
+use pxpl5_arp::figures::{Experiments, Provenance, Row, missed, rows, table};
 use pxpl5_run::{
     Experiment, ExperimentError, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl,
     RotationLatency,
@@ -35,7 +35,8 @@ const FIELD_MS: f64 = 1001.0 / 60.0;
 
 /// Number of fields of a run of experiment E1.
 const FIELDS: u64 = 60;
-/// Number of fields from the start that all runs of experiment E1 have in common.
+/// Number of rotation latencies that each run of experiment E1 must give. The runs are compared field by field, so this
+/// number must be the same for all runs.
 const COMPARED: usize = 55;
 
 impl FigureFamily {
@@ -61,7 +62,7 @@ impl FigureFamily {
     /// Returns the family's section of ACCURACY.md.
     #[must_use]
     pub fn markdown(&self) -> String {
-        let shapes = self.rows.iter().filter(|row| row.standing == Standing::Shape).count();
+        let shapes = self.rows.iter().filter(|row| row.provenance == Provenance::Shape).count();
         let mut text = String::new();
         let _ = write!(
             text,
@@ -74,7 +75,7 @@ impl FigureFamily {
             self.title,
             self.document,
             self.document,
-            self.rows.iter().filter(|row| row.standing != Standing::Shape && !row.is_met).count(),
+            self.rows.iter().filter(|row| row.provenance != Provenance::Shape && !row.is_met).count(),
             self.rows.len() - shapes,
             table(&self.rows),
             missed(&self.rows).trim_end()
@@ -84,8 +85,8 @@ impl FigureFamily {
 }
 
 /// Runs E1, which measures two latencies for growing numbers of triangles. The first is the latency of the head's
-/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control.
-/// There the head looks at the triangles all the time, because triangles out of sight are not drawn.
+/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control. In
+/// the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
 fn turning(bench: &Bench) -> Result<Vec<Row>> {
     let mut turns = Vec::new();
     let mut drawn_ms = Vec::new();
@@ -107,7 +108,7 @@ fn turning(bench: &Bench) -> Result<Vec<Row>> {
     let grows = "latency of a picture with 10,000 triangles under Rendering Control less that with 10";
     let growth = drawn_ms[3] - drawn_ms[0];
     let rows = [
-        Row::number("A4", same, "ps", [0.0, greatest.map_or(f64::NAN, |ps| ps as f64)], Standing::Checked),
+        Row::number("A4", same, "ps", [0.0, greatest.map_or(f64::NAN, |ps| ps as f64)], Provenance::Checked),
         Row::shape("fig. 1", grows, "ms", [f64::NAN, growth], growth > FIELD_MS),
     ];
     Ok(rows.map(|row| row.of("E1")).to_vec())

@@ -1,6 +1,6 @@
 //! Groups of published figures by topic: peak rates, just-in-time pixels, trackers. Each figure is measured by
-//! simulation with events, whichever level of modelling is chosen. No figure of a group counts in the mean error of the
-//! main table.
+//! simulation with events, whichever level of modelling is chosen. The mean error of the main table does not include
+//! the figures of groups.
 
 use super::measured::{FigureValue, Result};
 use super::{Basis, Bench, Figure, FigureError, FigureRow};
@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 pub struct FigureGroup {
     /// Name of the topic.
     pub title: &'static str,
-    /// Conditions shared by all rows of the group, and conditions that the papers leave open.
+    /// Conditions of the experiments that all rows of the group share, and conditions that the papers do not state.
     pub about: &'static str,
     /// Rows in the order of the group's table.
     pub rows: Vec<FigureRow>,
@@ -24,8 +24,8 @@ pub struct FigureGroup {
 pub(super) struct Measurement {
     pub(super) figure: Figure,
     pub(super) measure: fn(&Bench) -> Result<FigureValue>,
-    /// Paths of the parameters that are varied for the figure's interval. One at a time, each takes both ends of its
-    /// range.
+    /// Paths of the parameters that are varied for the figure's interval. One parameter at a time takes both ends of
+    /// its range.
     pub(super) moved_by: &'static [&'static str],
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Topic {
     pub(super) measurements: Vec<Measurement>,
 }
 
-/// Returns a figure for which no parameter was fitted.
+/// Creates a figure of a group to which no parameter was fitted.
 pub(super) const fn free(
     (id, paper, section): (&'static str, &'static str, &'static str),
     statement: &'static str,
@@ -118,7 +118,7 @@ impl Measurement {
     }
 
     /// Returns the minimum and maximum of the figure over both ends of each parameter's range, including the value for
-    /// the presets. If the experiment yields no value for a setting, the preset's value counts.
+    /// the presets. If the experiment yields no value for an end of a range, the figure for the presets counts.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));

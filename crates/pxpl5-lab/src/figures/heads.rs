@@ -13,7 +13,7 @@ use tracking::rig::{Latency, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
 /// Path of the parameter for the photodiode's position in figure 17: the visible line of the screen under the
-/// photodiode. A bench may change this parameter.
+/// photodiode. The common settings of measurements ([`Bench::changes`](super::Bench)) may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
 /// Measures figure 17: the mean latency seen from outside. The photodiode is on the given line, or on the assumed line
@@ -73,8 +73,8 @@ pub(super) fn ratio_of_errors() -> FigureValue {
 /// Number of display fields in the runs for figure 19: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Measures figures 19 and 19b: the sum of the latency stages that the paper adds. The stages that the paper leaves out
-/// appear as details.
+/// Measures figures 19 and 19b: the sum of those stages of the latency that the paper adds. The details state the other
+/// stages of the latency.
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,

@@ -28,14 +28,14 @@ pub struct Bench {
     /// Level of modelling at which every figure is measured.
     pub level: Level,
     /// Parameters, by path, that differ from the presets, with their values. A path that begins with a preset's name
-    /// and a colon changes only that preset. Times of PPHIGS code do not change the machines that run Slats.
-    /// [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
+    /// and a colon changes only that preset. For example, times of PPHIGS code must not change the machines that run
+    /// Slats. [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
     pub changes: Vec<(String, u64)>,
     /// Number of seeds of the head motion in the experiment of figure 7.
     pub seeds: u64,
     /// Number of evaluated frames for each seed in the experiment of figure 7.
     pub frames: u64,
-    /// Interpretation of the papers: answers to the questions that they leave open about Rendering Control.
+    /// Interpretation of the papers: the answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
     pub(crate) applications: Arc<Applications>,
 }
@@ -187,14 +187,14 @@ impl Bench {
         self.stereo(self.machine("small-hmd")?)
     }
 
-    /// Runs the experiment of figures 16b and 16c: as many screen-filling triangles as the bins hold according to the
-    /// papers.
+    /// Runs the experiment of figures 16b and 16c: the number of screen-filling triangles that fit into the bins
+    /// according to the papers.
     fn full_bins(&self) -> Result<Arc<Summary>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
     }
 
-    /// Measures figure 3: the latency if everything except COPY takes no time.
+    /// Measures figure 3: the latency if all work except COPY takes no time.
     fn copy_alone(&self) -> Result<FigureValue> {
         let mut machine = self.machine("small-hmd")?;
         let gp = ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"];
@@ -218,8 +218,9 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures figure 17 for all lines of the photodiode, unless the settings choose one line. The rig's measurement
-    /// does not depend on the level of modelling or on the definition of latency samples.
+    /// Measures figure 17 with the photodiode on the first, the assumed and the last line of the screen, unless the
+    /// settings choose one line. The rig's measurement does not depend on the level of modelling or on the definition
+    /// of latency samples.
     fn rig(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let key = (self.reading.kept, self.reading.finished, self.changes.clone());
@@ -269,8 +270,8 @@ impl Bench {
         Ok(spread_ms(Statistics::of(means.into_iter())))
     }
 
-    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. The number of seeds is divided by
-    /// `seeds_of_one`.
+    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. The number of seeds in the settings is
+    /// divided by `seeds_of_one`, because larger scenes get fewer fly-throughs.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
         let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
@@ -311,7 +312,7 @@ impl Bench {
         Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
     }
 
-    /// Returns the experiment of a fly-through. Its length allows two display fields per frame (30 Hz). If frames take
+    /// Returns the experiment of a fly-through. The run has two display fields for each frame (30 Hz). If frames take
     /// longer, the run has fewer frames.
     fn application_experiment(&self, scene: &'static str, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
@@ -355,8 +356,8 @@ impl Bench {
     }
 }
 
-/// Measures figure 8: the number of bin entries of one pass over each scene. The scene is seen from poses along its own
-/// head motion.
+/// Measures figure 8: the number of regions that a triangle touches, which is the number of bin entries per visible
+/// triangle. Each scene is seen from poses along its own head motion. The figure is the mean over three scenes.
 fn regions_touched() -> Result<FigureValue> {
     let mut details = Vec::new();
     for name in ["mig", "molecules", "head"] {
@@ -395,7 +396,7 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     Ok(entries as f64 / triangles.max(1) as f64)
 }
 
-/// Returns the number of complete pictures shown per second, or 0 if none was shown.
+/// Returns the number of complete pictures shown per second, or 0 if no picture was shown.
 fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
 }
@@ -420,9 +421,10 @@ mod tests {
     ///
     /// A region counts if the triangle covers the centre of one of its pixels. A leg therefore crosses a border if
     /// pixel centres lie on both sides, which holds for leg - 1 of all positions. Four borders separate the five
-    /// columns of regions, and three the four rows. The triangle's bounding box touches on average `(1 + 4 (leg - 1) /
-    /// width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach one corner of the box. Some boxes contain
-    /// a point where four regions meet. In half of these cases the triangle therefore touches one region less.
+    /// columns of regions, and three borders separate the four rows. The triangle's bounding box touches on average
+    /// `(1 + 4 (leg - 1) / width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach one corner of the
+    /// box. Some boxes contain a point where four regions meet. In half of these cases the triangle therefore touches
+    /// one region less.
     fn expected(leg: f64) -> f64 {
         let [width, height] = TYPICAL_SPREAD_PX;
         let columns = 4.0 * (leg - 1.0) / width;

@@ -1,4 +1,4 @@
-//! Results of the experiments behind the figures.
+//! Results of the experiments that simulate published figures.
 
 use pxpl5_run::ExperimentError;
 use pxpl5_scene::{Scene, builtin};

@@ -21,7 +21,7 @@ more tuning, and he stated neither the size of the machine nor the size of the t
 The intervals set one parameter at a time to both ends of its range. The varied parameters are the depth of the renderers' FIFO, the channels \
 of a sender, and the channels for messages to FIFOs. The times of a triangle on a processor and on a renderer also vary. All runs use events.";
 
-/// Parameters that limit the machine's triangle rate and that no source gives.
+/// Paths of the parameters without a published value that limit the machine's triangle rate.
 const OF_TRIANGLES: &[&str] = &[
     "renderer.fifo_words",
     "ring.source_channels",
@@ -31,7 +31,7 @@ const OF_TRIANGLES: &[&str] = &[
     "renderer.phong_triangle_clocks",
 ];
 
-/// Parameters that limit the triangle rate of a single renderer.
+/// Paths of the parameters that limit the triangle rate of a single renderer.
 const OF_RENDERER: &[&str] =
     &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.phong_triangle_clocks", "renderer.shade_clocks"];
 
@@ -164,8 +164,8 @@ fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<Figure
     Ok(FigureValue::with(TRIANGLES as f64 * hz, vec![detail("frames a second", hz, "Hz")]))
 }
 
-/// Measures the number of commands that a renderer executes per second in which its pixel array works. Of the 26,000
-/// commands of a frame, all but 80 are triangles.
+/// Measures the number of commands that a renderer executes per second. Only the time in which the pixel array works
+/// counts. Of the 26,000 commands of a frame, all but 80 are triangles.
 fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, shading, TRIANGLES / 2, 2 * FIELDS)?;
@@ -177,7 +177,8 @@ fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     Ok(rates.sum::<f64>().into())
 }
 
-/// Measures the number of triangles that a processor transforms per second of TRANSFORM. The first frame is left out.
+/// Measures the number of triangles that a processor transforms per second. Only the time of TRANSFORM counts. The
+/// first frame is left out.
 fn processor_rate(bench: &Bench) -> Result<FigureValue> {
     let triangles = 2_000;
     let machine = MachineConfig { n_gps: 2, ..bench.machine("small-hmd")? };

@@ -25,11 +25,11 @@ pub enum FieldCount {
     Whole,
 }
 
-/// An interpretation of the papers: one answer to each question that they leave open about the figures of Rendering
-/// Control.
+/// An interpretation of the papers: one answer to each question that the papers leave open about the figures of
+/// Rendering Control.
 ///
-/// The first two answers concern the figures, the others the machine and the scenes. All figures are measured with the
-/// same interpretation. No answer is chosen for a single figure.
+/// The first two answers concern the figures. The other answers concern the machine and the scenes. All figures are
+/// measured with the same interpretation. No answer is chosen for a single figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {
     /// Definition of the latency samples whose mean a paper prints.
@@ -58,8 +58,8 @@ fn by_name<S: serde::Serializer>(finished: &FinishedRegions, serializer: S) -> R
 pub const ROOM: u64 = RendererTiming::PAPERS.backing_regions();
 
 impl Reading {
-    /// The interpretation with which figures are measured. `pxpl5 readings` ranks it among the best, and no text
-    /// contradicts it.
+    /// The interpretation with which figures are measured. `pxpl5 readings` ranks this interpretation among the best,
+    /// and no text of the papers contradicts it.
     pub const USUAL: Self = Self {
         samples: Samples::EachEye,
         fields: FieldCount::Whole,
@@ -70,11 +70,11 @@ impl Reading {
         bins: 1,
     };
 
-    /// The rules of TR94 alone, on a machine where nothing delays them. The theory behind figures 3 and 5 assumes this
-    /// interpretation.
+    /// The rules in the text of TR94: a renderer stores its finished region and continues with the next region. The
+    /// theory behind figures 3 and 5 assumes this interpretation.
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
-    /// Returns the interpretations that differ from the usual one in the answer to exactly one question.
+    /// Returns the interpretations that differ from this interpretation in the answer to exactly one question.
     #[must_use]
     pub fn neighbours(&self) -> Vec<Self> {
         Self::all().into_iter().filter(|other| self.differences(other) == 1).collect()
@@ -104,7 +104,7 @@ impl Reading {
         [samples, fields, kept, self.finished.name().to_owned(), machine, faces, bins]
     }
 
-    /// Returns, in words, the answers in which this interpretation differs from another one.
+    /// Returns, in words, the answers in which this interpretation differs from another interpretation.
     #[must_use]
     pub fn difference(&self, other: &Self) -> String {
         let both = self.answers().into_iter().zip(other.answers());
@@ -161,8 +161,8 @@ const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
 /// Numbers of finished regions that a renderer may keep. The last number fills the backing store.
 const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
-/// Returns copies of each interpretation, one for each possible answer to one question. `answer` sets an answer in an
-/// interpretation.
+/// Returns several copies of each interpretation, one copy for each possible answer to one question. The function
+/// `answer` sets the answer in a copy.
 fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
     readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
 }

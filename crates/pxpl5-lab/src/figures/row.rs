@@ -25,10 +25,11 @@ pub struct FigureRow {
     pub interval: Option<[f64; 2]>,
     /// Provenance of the row. `free`: nothing was fitted to the figure. `fitted`: a parameter was fitted. `rule`: a
     /// rule was chosen.
-    pub standing: &'static str,
+    pub provenance: &'static str,
     /// Half the width of the range that the paper prints, in `unit`. `None` if the paper prints no range.
     pub spread: Option<f64>,
-    /// Parameter that was fitted to the figure, or rule that was chosen for it. Empty if nothing was fitted or chosen.
+    /// Parameter that was fitted to the figure, or rule that was chosen because of the figure. Empty if nothing was
+    /// fitted or chosen.
     pub fitted: &'static str,
     /// Short name of the paper and the topic within the paper.
     pub source: String,
@@ -56,7 +57,7 @@ impl FigureRow {
     #[must_use]
     pub fn new(figure: &Figure, measured: FigureValue) -> Self {
         // The provenance decides whether the row counts as a free check.
-        let (standing, fitted) = match figure.basis {
+        let (provenance, fitted) = match figure.basis {
             Basis::Free => ("free", ""),
             Basis::Fitted { parameter } => ("fitted", parameter),
             Basis::Rule { rule } => ("rule", rule),
@@ -69,7 +70,7 @@ impl FigureRow {
             error_percent: 100.0 * (measured.value - figure.value) / figure.value,
             analytic: None,
             interval: None,
-            standing,
+            provenance,
             spread: figure.spread,
             fitted,
             source: format!("{}, {}", figure.paper, figure.section),
@@ -85,9 +86,9 @@ impl FigureRow {
     /// then wrong.
     ///
     /// The values that the model can reach are the interval of the analytic level, extended on both sides. The
-    /// extension is the distance between `analytic` and `simulated`. The two levels may differ as much at the ends of
-    /// the ranges as at the presets. The published value is compared with its printed range, or with its last digit if
-    /// no range is printed.
+    /// extension is the distance between `analytic` and `simulated`. This assumes that the two levels differ as much at
+    /// the ends of the ranges as at the presets. The published value is compared with its printed range, or with its
+    /// last digit if no range is printed.
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };
@@ -98,9 +99,9 @@ impl FigureRow {
         self.published + slack < low || self.published - slack > high
     }
 
-    /// Returns true if the model misses the figure: its value lies outside the printed range. If no range is printed,
-    /// an error of more than [`MISS_PERCENT`] is a miss. If the paper does not print a condition, the figure is missed
-    /// only if no value of this condition reproduces the figure.
+    /// Returns true if the model misses the figure: the simulated value lies outside the printed range. If no range is
+    /// printed, an error of more than [`MISS_PERCENT`] is a miss. If the paper does not print a condition, the figure
+    /// is missed only if no value of this condition reproduces the figure.
     #[must_use]
     pub fn misses(&self) -> bool {
         // A tiny margin absorbs rounding in floating-point arithmetic.
@@ -114,7 +115,7 @@ impl FigureRow {
 /// counts 100 %.
 #[must_use]
 pub fn mean_error_percent(rows: &[FigureRow]) -> f64 {
-    let free: Vec<_> = rows.iter().filter(|row| row.standing == "free").collect();
+    let free: Vec<_> = rows.iter().filter(|row| row.provenance == "free").collect();
     let errors = free.iter().map(|row| if row.simulated.is_finite() { row.error_percent.abs() } else { 100.0 });
     errors.sum::<f64>() / free.len().max(1) as f64
 }

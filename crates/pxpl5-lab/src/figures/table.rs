@@ -8,7 +8,7 @@ use serde::Serialize;
 pub enum Basis {
     /// An independent check: nothing was chosen to reproduce the figure.
     Free,
-    /// A parameter was fitted to this figure, or derived from it.
+    /// A parameter was fitted to this figure, or derived from this figure.
     Fitted {
         /// Path of the fitted parameter, and the preset that holds its value.
         parameter: &'static str,
@@ -51,7 +51,8 @@ const SLATS: &str = "Slats";
 const HEAD: &str = "from head to light";
 const FREE: Basis = Basis::Free;
 
-/// Returns a figure that the model reproduces.
+/// Creates a figure of the table, without a cause of a difference between model and paper. The method `because` adds a
+/// cause.
 const fn figure(
     id: &'static str,
     (paper, section): (&'static str, &'static str),

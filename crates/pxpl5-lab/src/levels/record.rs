@@ -45,12 +45,12 @@ pub struct LevelReport {
 pub struct LevelSpeed {
     /// Choice of the pixels that are computed.
     pub pixels: Pixels,
-    /// Simulated seconds per second of the host's time, on one simulating thread. Pixels are computed by further
-    /// threads, as many as the host has.
+    /// Simulated seconds per second of the host's time, on one simulating thread. Further threads, one for each core of
+    /// the host, compute the pixels.
     pub simulated_seconds_per_second: Option<f64>,
 }
 
-/// Median of a set of values, and the interval that contains 90 % of them.
+/// Median of a set of values, and the interval that contains the middle 90 % of the values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Median of the values.

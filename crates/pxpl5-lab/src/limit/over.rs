@@ -96,7 +96,7 @@ pub struct OverLimit {
 /// Result of the experiment with one value of the setting.
 struct Trial {
     reached: bool,
-    /// Closeness of the result to the goal. A greater score is better.
+    /// Closeness of the result to the goal, in the unit of the goal. A greater score is better.
     score: f64,
     because: Option<String>,
 }
@@ -105,7 +105,7 @@ impl OverQuery {
     /// Returns the values of a setting that are tried by default.
     ///
     /// A number of boards goes up to the number in the largest preset. Any other parameter goes through the range that
-    /// its sources allow.
+    /// the sources of the parameter allow.
     ///
     /// # Errors
     ///
@@ -135,7 +135,7 @@ impl OverQuery {
     ///
     /// The search first tries the ends of the range and three values between them. If one of these values reaches the
     /// goal, the search bisects from there to either side. The limit is therefore exact if all values on one side of
-    /// the limit reach the goal and all on the other side miss.
+    /// the limit reach the goal and all values on the other side miss.
     ///
     /// # Errors
     ///
@@ -199,7 +199,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Returns true if the experiment with this value reaches the goal. A value that cannot be run does not.
+    /// Returns true if the experiment with this value reaches the goal. A value that cannot be run does not reach the
+    /// goal.
     fn reaches(&mut self, number: u64) -> bool {
         if let Some(trial) = self.trials.get(&number) {
             return trial.reached;

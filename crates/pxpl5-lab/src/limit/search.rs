@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// Result of a search for the largest number of triangles, with facts about the sizes that were tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Limit {
-    /// Largest number of triangles below the first miss. Every tried size up to this one reached the goal. 0 if one
+    /// Largest number of triangles below the first miss. Every tried size up to this size reached the goal. 0 if one
     /// triangle already misses the goal.
     pub triangles: u32,
     /// Smallest tried number of triangles that missed the goal. `None` if all tried sizes reached the goal.
@@ -20,21 +20,22 @@ pub struct Limit {
     pub tried: usize,
 }
 
-/// Hints from another model, which reduce the number of trials. They do not change the result of any trial.
+/// Hints from another model, which reduce the number of trials. Hints do not change the result of any trial.
 #[derive(Clone, Debug, Default)]
 pub struct Hints {
     /// Number of triangles near the limit. Without this hint the search starts with one triangle.
     pub near: Option<u32>,
-    /// Numbers of triangles that may miss the goal although larger ones reach it. The search tries them too.
+    /// Numbers of triangles that may miss the goal although larger numbers reach the goal. The search tries these
+    /// numbers too.
     pub doubtful: Vec<u32>,
 }
 
-/// Number of sizes directly below the result that are all tried: 60 sizes, or two clumps of 30 triangles. Above the
-/// result, the search looks equally far for sizes that reach the goal.
+/// Number of sizes directly below the result that are all tried: 60 sizes, or two clumps of 30 triangles. The search
+/// also tries equally many sizes above the result, because some of these may reach the goal.
 const LOOK: u32 = 60;
 
 /// Maximum sum of triangles over the consecutive sizes tried on either side of the result. Larger sizes take longer to
-/// simulate, so fewer of them are tried.
+/// simulate, so fewer large sizes are tried.
 const TRIANGLES_IN_A_ROW: u32 = 60_000;
 
 /// Minimum number of consecutive sizes that are tried on either side of the result.
@@ -64,7 +65,7 @@ impl<F> Tried<F> {
         self.answers.iter().find(|(_, reached)| !**reached).map(|(size, _)| *size)
     }
 
-    /// Returns the largest tried size below `size`, or 0 if there is none.
+    /// Returns the largest tried size below `size`, or 0 if no smaller size was tried.
     fn before(&self, size: u32) -> u32 {
         self.answers.range(..size).next_back().map_or(0, |(size, _)| *size)
     }
@@ -103,7 +104,7 @@ impl<F> Tried<F> {
         Ok(())
     }
 
-    /// Tries sizes until one misses the goal. Returns true if one missed.
+    /// Tries sizes until a size misses the goal. Returns true if a size missed.
     fn finds_a_miss<E>(&mut self, sizes: impl IntoIterator<Item = u32>) -> Result<bool, E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -132,7 +133,7 @@ impl<F> Tried<F> {
 /// Returns the smallest size that misses the goal, up to `ceiling`, as far as trials can show.
 ///
 /// Sizes above the first miss may reach the goal, because a nearly empty clump (group of triangles) costs as many
-/// messages as a full one. The result is guaranteed in three respects:
+/// messages as a full clump. The result is guaranteed in three respects:
 ///
 /// - The first miss misses the goal.
 /// - The sizes from [`Limit::unbroken_from`] to the size before the first miss reach the goal.
@@ -178,7 +179,8 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the sizes to try below a found limit: consecutive sizes, doubtful sizes, and some at distances that double.
+/// Returns the sizes to try below a found limit: consecutive sizes, doubtful sizes, and some sizes at distances that
+/// double.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
     // All sizes directly below, from the largest down.
@@ -192,7 +194,7 @@ fn in_a_row(limit: u32) -> u32 {
     (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }
 
-/// Returns the sizes to try above the first miss. Their number is the same as below the limit.
+/// Returns the sizes to try above the first miss. As many sizes are tried above the limit as directly below the limit.
 fn above(limit: u32, ceiling: u32) -> impl Iterator<Item = u32> {
     let farthest = limit.saturating_add(1 + LOOK.min(limit / 2)).min(ceiling);
     let step = (farthest.saturating_sub(limit) / in_a_row(limit)).max(1) as usize;

@@ -27,7 +27,7 @@ pub struct FigureFit {
 /// Agreement of all published figures with the model under one interpretation of the papers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
-    /// The interpretation of the papers: its answers to their open questions.
+    /// The interpretation of the papers: the answers to the papers' open questions.
     pub reading: Reading,
     /// The interpretation of the papers in words.
     pub words: String,
@@ -40,8 +40,8 @@ pub struct Fit {
     /// Logarithm of the likelihood of the printed means and standard deviations, up to a constant. See
     /// [`FigureFit::log_likelihood`].
     pub log_likelihood: f64,
-    /// Numbers of the figures that the interpretation does not explain. Their error exceeds 8 %, or their standard
-    /// deviation differs by more than a quarter.
+    /// Numbers of the figures that the interpretation does not explain. The error of such a figure exceeds 8 %, or its
+    /// standard deviation differs by more than a quarter.
     pub unexplained: Vec<&'static str>,
 }
 
@@ -51,11 +51,11 @@ const EXPLAINED_PERCENT: f64 = 8.0;
 /// Largest relative error of a standard deviation that still counts as explained.
 const EXPLAINED_SD: f64 = 0.25;
 
-/// Relative uncertainty of the model itself, because no paper gives some of its clocks and costs.
+/// Relative uncertainty of the model itself. The reason is that no paper gives some clocks and costs of the model.
 const DISCREPANCY: f64 = 0.02;
 
-/// Number of samples behind the means that the papers print. A mean of 4.47 with a standard deviation of 0.502 follows
-/// from samples of 4 and 5 only for 67 to 119 samples.
+/// Number of samples from which the papers' printed means were computed. The printed mean of 4.47 with a standard
+/// deviation of 0.502 follows from samples of 4 or 5 fields only if there are 67 to 119 samples.
 const SAMPLES: f64 = 87.0;
 
 /// Returns the standard deviation that the paper prints for an application scene. `None` for other figures.

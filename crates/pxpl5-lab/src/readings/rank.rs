@@ -17,7 +17,7 @@ pub struct LeaveOneOut {
     pub chosen: Reading,
     /// The chosen interpretation in words.
     pub words: String,
-    /// Relative error in percent of the prediction for the figure.
+    /// Relative error, in percent, of the figure's value under the chosen interpretation.
     pub error_percent: f64,
 }
 
@@ -32,7 +32,8 @@ pub struct Readings {
     pub transaction: Vec<Fit>,
     /// Prediction of each figure by the interpretation that fits all other figures best, at the analytic level.
     pub left_out: Vec<LeaveOneOut>,
-    /// Number of interpretations whose mean error equals the error of the best one, within the printed digits.
+    /// Number of interpretations whose mean error equals the error of the best interpretation, within the printed
+    /// digits.
     pub as_good: usize,
     /// Part of a mean error, in percent, that the rounding of printed digits can explain.
     pub rounding_percent: f64,

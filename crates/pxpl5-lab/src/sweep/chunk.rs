@@ -1,4 +1,5 @@
-//! Simulates some points of a sweep within a time limit. This serves callers that distribute points themselves.
+//! Simulates some points of a sweep within a time limit. Programs that distribute the points of a sweep over computers
+//! call this module.
 
 use super::{Status, Sweep, SweepRow};
 use std::time::{Duration, Instant};

@@ -1,5 +1,5 @@
-//! Estimates the cost of points before they run. The estimates are those of [`crate::estimate`]. The analytic level
-//! (closed form) gives the number of pictures.
+//! Estimates the cost of points before they run. The formulas are in [`crate::estimate`]. The analytic level (closed
+//! form) gives the number of pictures.
 //!
 //! Callers that distribute points over computers correct the estimates by the durations of finished points.
 
@@ -9,23 +9,23 @@ use crate::estimate::{Estimate, Work};
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
 
-/// Seconds to build a point's plan, its scene and its row.
+/// Seconds to check the settings of a point, to build the scene, and to write the row.
 const POINT: f64 = 3e-3;
 
 /// Memory in bytes of a point that simulates nothing.
 const NO_RUN_BYTES: f64 = 15e6;
 
 impl Sweep {
-    /// Estimates the time in seconds that each point takes on one core. If the pipeline has a closed form, it gives the
-    /// number of pictures. An invalid point costs almost nothing. Points that differ only in their seed get the same
-    /// estimate.
+    /// Estimates the time in seconds that each point takes on one core. If the pipeline has a closed form, the closed
+    /// form gives the number of pictures. An invalid point costs almost nothing. Points that differ only in their seed
+    /// get the same estimate.
     #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
         self.estimates(points).into_iter().map(|estimate| estimate.seconds).collect()
     }
 
-    /// Estimates the time in seconds and the memory of each point. Until its results are measured, a point keeps all
-    /// observations in memory.
+    /// Estimates the time in seconds and the memory of each point. The memory includes all observations of a point,
+    /// which are kept until the results of the point are measured.
     #[must_use]
     pub fn estimates(&self, points: &[u64]) -> Vec<Estimate> {
         let mut known: BTreeMap<String, Estimate> = BTreeMap::new();
@@ -55,7 +55,7 @@ impl Sweep {
 }
 
 /// Returns the number of pictures shown per field according to the pipeline's closed form. Returns `None` if the
-/// pipeline has no such model.
+/// pipeline has no closed form.
 fn pictures_from_closed_form(plan: &Plan, experiment: Experiment) -> Option<f64> {
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     let form = entry.closed_form.filter(|_| plan.head.is_none())?;

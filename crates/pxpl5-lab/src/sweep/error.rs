@@ -13,7 +13,7 @@ pub enum SweepError {
     Io {
         /// Path of the file or folder.
         path: String,
-        /// Failed operation in words: `cannot be read`.
+        /// Failed operation in words, such as `cannot be read`.
         doing: &'static str,
         /// Message of the operating system.
         reason: String,

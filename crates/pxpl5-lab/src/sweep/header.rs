@@ -100,7 +100,7 @@ impl Sweep {
 }
 
 /// Returns the hash that identifies a sweep. The hash covers the effective settings of the first point, because a
-/// preset may change between versions. It also covers the contents of all files that points name.
+/// preset may change between versions. The hash also covers the contents of all files that points name.
 fn hash(
     version: &str,
     first: &Plan,

@@ -1,4 +1,4 @@
-//! The input files that points of a sweep read.
+//! The input files that points of a sweep read, such as models and recordings, with hashes of their contents.
 
 use super::{Sweep, Values};
 use crate::experiment_file::{ExperimentFile, beside, is_file};

@@ -109,7 +109,8 @@ impl Joined {
         &self.duplicates
     }
 
-    /// Returns the row of a point, or `None` if the point has no row. `point` must be less than the number of points.
+    /// Returns the row of a point, or `None` if the point has no row. `point` must be less than the number of points of
+    /// the sweep.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, SweepError> {
         let Some(file) = (self.holders[point as usize] as usize).checked_sub(1) else { return Ok(None) };
         self.files[file].row_at(self.places[point as usize]).map(Some)
@@ -147,8 +148,8 @@ impl RowBlocks {
         Some(&rest[..end])
     }
 
-    /// Reads the block that begins at a byte position. The block is extended until it holds a complete line, if the
-    /// file has one.
+    /// Reads the block that begins at a byte position. The block is extended until the block holds a complete line, if
+    /// the file has a complete line there.
     fn read(&mut self, byte: u64) -> io::Result<()> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(byte))?;

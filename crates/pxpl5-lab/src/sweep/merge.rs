@@ -26,8 +26,8 @@ pub struct Merged {
 ///
 /// # Errors
 ///
-/// Returns [`SweepError::Foreign`] if a folder belongs to another sweep, [`SweepError::Contradiction`] if a point has
-/// different rows, and [`SweepError::Missing`] if points are missing and `allow_missing` is false.
+/// Returns [`SweepError::Foreign`] if a folder belongs to another sweep. Returns [`SweepError::Contradiction`] if a
+/// point has different rows. Returns [`SweepError::Missing`] if points are missing and `allow_missing` is false.
 pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Merged, SweepError> {
     let mut joined = Joined::of(folders)?;
     let points = joined.header().points;

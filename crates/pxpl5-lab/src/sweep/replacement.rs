@@ -1,4 +1,4 @@
-//! Replaces a file by a complete new version.
+//! Replaces a file by a complete new version, so that no reader finds a file in part.
 
 use super::SweepError;
 use std::fs::{self, File};

@@ -1,4 +1,5 @@
-//! Access to a file of result rows through an index of byte positions. A row is read from the file when it is needed.
+//! Access to a file of result rows through an index of byte positions. A row is read from the file only when the row is
+//! needed.
 
 use super::points::Points;
 use super::{Header, MAX_POINTS, Status, SweepError, SweepRow};

@@ -36,12 +36,12 @@ pub fn run(
     run_stoppable(sweep, store, options, &Arc::default(), finished)
 }
 
-/// Like [`run`], and ends early when another thread sets `stop` to true. The points in progress then end within a few
-/// display periods and get no row.
+/// Simulates the points of a shard as [`run`] does, until another thread sets `stop` to true. The simulations in
+/// progress then end within a few display periods, and their points get no row.
 ///
 /// # Errors
 ///
-/// Like [`run`].
+/// Fails in the same cases as [`run`].
 pub fn run_stoppable(
     sweep: &Sweep,
     store: &mut Store,

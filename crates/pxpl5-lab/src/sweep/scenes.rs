@@ -13,7 +13,8 @@ pub(super) struct Scenes(Mutex<BTreeMap<SceneKey, Arc<Scene>>>);
 type SceneKey = (String, bool, bool);
 
 impl Scenes {
-    /// Returns the scene of a plan. Each scene is loaded once for all points that share it.
+    /// Returns the scene of a plan (the checked experiment at a point). Each scene is loaded once for all points that
+    /// share it.
     pub(super) fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
         // The lock is held while loading, so that no other thread loads the same scene.
         let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);

@@ -4,7 +4,7 @@ use crate::experiment_file::{ExperimentFile, FileError, Setting};
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
-/// Maximum number of points of a sweep. Assumed, because the rows of so many points fill some gigabytes.
+/// Maximum number of points of a sweep. Assumed, because the rows of this number of points fill some gigabytes.
 pub const MAX_POINTS: u64 = 10_000_000;
 
 /// An axis of a parameter space: settings that change together, with their values in order.

@@ -27,11 +27,11 @@ pub struct Store {
     folder: PathBuf,
     header: Header,
     rows: RowFile,
-    /// Byte position in the file of rows at which the next row begins.
+    /// Byte position in the file of rows at which the next row is written.
     end: u64,
     rows_file: File,
     times_file: File,
-    /// True after a row was appended. Plots and pages that were made from fewer rows have then been removed.
+    /// True after this process has appended a row, and has removed the plots and pages that were made from fewer rows.
     is_renewed: bool,
     /// Lock of the folder, held as long as the store exists. The operating system releases the lock after a crash.
     _lock: File,

@@ -31,7 +31,7 @@ impl Machine {
                     record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick.0]);
                     note_swap(&mut record.observation, queue, swaps, (time, surface, port, tick, buffer));
                 }
-                // An update of a part of a surface, which has its own port.
+                // A swap of a part of a surface. The part has its own port.
                 DisplayOutput::Updated { surface, port, buffer, tick } => {
                     let surface = SurfaceId((first_surface + surface) as u16);
                     record.hash.record(time, &[7, u64::from(port.0), u64::from(buffer), tick.0]);
@@ -42,8 +42,8 @@ impl Machine {
     }
 }
 
-/// Records the tick from which a surface, or its part behind one port, shows its other buffer. Signals the swap to the
-/// first graphics processor.
+/// Records the tick at which a surface, or the part of the surface behind one port, starts to show its other buffer.
+/// The function also signals the swap to the first graphics processor.
 fn note_swap(
     observation: &mut Observation,
     queue: &mut EventQueue<Event>,

@@ -110,8 +110,8 @@ fn numbers_of_firmware_are_kept_once_and_found_by_their_type() {
     assert_eq!(config.firmware_table::<Others>().map(|table| table.share), Some(0.5));
 }
 
-/// Names of experiments depend on these parameters. Parameters of firmware and of the i860 were added later and appear
-/// only if changed.
+/// Names of experiments depend on these parameters. Parameters of firmware and of the i860 were added later. They
+/// appear in a name only if they were changed.
 #[test]
 fn parameters_tell_a_machine_apart_but_those_that_all_have() {
     let telling = |config: &MachineConfig| -> Vec<String> {

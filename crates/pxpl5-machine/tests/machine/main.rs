@@ -1,4 +1,4 @@
-//! Guarantees of the machine itself, tested with short programs and with a display that the test controls by messages.
+//! Tests of the machine itself with short programs, and with a display that the test controls by messages.
 
 mod configuration;
 mod messages;

@@ -1,6 +1,6 @@
 //! Timing of messages, event by event.
 //!
-//! A signal leaves its board one cycle of the 40 MHz clock after it was made. A message of w words arrives 16 + w word
+//! A signal leaves its board one cycle of the 40 MHz clock after its cause. A message of w words arrives 16 + w word
 //! times after its grant, plus one hop for each port that it passes.
 
 use crate::rig::{

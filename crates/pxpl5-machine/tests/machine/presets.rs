@@ -5,8 +5,8 @@ use pxpl5_machine::{MachineConfig, PRESETS};
 
 /// Sources are TR94 (small-hmd, slats), I3D95 (slats-1995, slats-optimised, large) and F89 (design-maximum).
 ///
-/// The published limits of 110 triangles per field (TR94) and 100 (I3D95) correspond to 30.0 and 55.8 us. Code that
-/// fits into the cache takes a third of the time.
+/// The published limits of 110 (TR94) and 100 (I3D95) triangles per field correspond to times of 30.0 and 55.8 us. Code
+/// that fits into the cache takes a third of the time.
 #[test]
 fn presets_have_the_boards_and_times_that_were_published() {
     let expected = [
@@ -36,7 +36,7 @@ fn an_unknown_preset_names_the_nearest() {
     assert_eq!(error.to_string(), "there is no machine `larg`; did you mean `large`? (`pxpl5 machines` lists all)");
 }
 
-/// Compiled is the code that did not fit the cache.
+/// The version `Compiled` is the code that did not fit the cache.
 #[test]
 fn times_of_code_are_those_of_the_version_in_its_use() {
     let compiled = MachineConfig::slats();

@@ -76,7 +76,7 @@ impl DisplayConfig for ScreenConfig {
     }
 }
 
-/// A test display that emits the outputs it receives as messages.
+/// A test display. Each message to the display contains an output, which the display then emits.
 #[derive(Debug)]
 pub(crate) struct Screen {
     period: Span,
@@ -304,7 +304,7 @@ pub(crate) fn happenings(machine: &mut Machine, until: Time) -> Vec<(Time, Board
 /// A list in which programs record what they observe.
 pub(crate) type Notes<T> = Rc<RefCell<Vec<T>>>;
 
-/// Pixels of a region that count how often they are read.
+/// Pixels of a region, with a count of their reads.
 #[derive(Debug, Default)]
 pub(crate) struct Counted {
     pub(crate) asked: std::sync::atomic::AtomicU64,

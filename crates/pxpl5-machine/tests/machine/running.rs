@@ -75,7 +75,8 @@ fn a_run_ends_before_its_end_and_goes_on_from_there() {
     assert_eq!(machine.record().observation().arrivals.len(), 1);
 }
 
-/// At time zero there is a tick of the display, its signal to the first graphics processor, and a poll of three boards.
+/// At time zero there are the following events: a tick of the display, its signal to the first graphics processor, and
+/// a poll of each of the three boards.
 #[test]
 fn events_are_counted() {
     let mut machine = machine();
@@ -87,7 +88,7 @@ fn events_are_counted() {
     assert_eq!(machine.into_record().events(), 5);
 }
 
-/// Only the first processor receives retraces, and only those of the first display.
+/// Only the first processor receives retraces, and only retraces of the first display.
 #[test]
 fn the_first_display_is_the_sync_generator_of_the_first_processor() {
     let mut other = ScreenConfig::new(1);

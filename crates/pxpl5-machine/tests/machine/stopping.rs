@@ -16,7 +16,7 @@ fn load_waiting(machine: &mut Machine, node: NodeId) {
     load(machine, node, |gp| async move { gp.until("Godot", || None).await });
 }
 
-/// Period 0 contains the polls at the start, so the second tick is the first idle one.
+/// Period 0 contains the polls at the start, so the second tick is the first idle tick.
 #[test]
 fn programs_that_wait_for_ever_are_a_deadlock_after_so_many_ticks() {
     let mut machine = machine();
@@ -76,10 +76,10 @@ fn who_is_sent_something_now_and_then_is_not_deadlocked() {
     assert_eq!(run(false).map_err(|error| error.time()), Err(us(100 * (1 + DEADLOCK_TICKS))));
 }
 
-/// TRANSFORM of a large scene on one processor exceeds the time after which a deadlock is detected.
+/// TRANSFORM of a large scene on one processor takes longer than the time after which the machine detects a deadlock.
 ///
-/// No deadlock may be reported before the work ends. After its end, the program still waits, and the machine is
-/// deadlocked.
+/// The machine must not report a deadlock before the work ends. After the work, the program still waits, and the
+/// machine is deadlocked.
 #[test]
 fn work_that_takes_long_is_no_deadlock_until_it_is_over() {
     let ticks = 3 * DEADLOCK_TICKS;
@@ -117,7 +117,8 @@ fn each_waiting_board_is_listed_with_the_cause_of_its_wait() {
     assert_eq!(programs, ["host waits for Godot", "GP 1 waits for nothing"]);
     assert_eq!(blocked[2].waits_for, "frame buffer at node 5 to take region 0");
     assert_eq!(blocked[2].waits_on, Some(Board::Display(0)));
-    // Two messages carry pixels to one port. One holds the port, and the other waits for the renderer that sends it.
+    // Two messages carry pixels to one port. One message holds the port, and the other message waits for the renderer
+    // of the first.
     let messages = &blocked[4..];
     assert_eq!(messages.len(), machine.record().ring().waiting().len(), "and the ring's messages");
     let pairs: Vec<_> = messages.iter().map(|wait| (wait.board, wait.waits_on)).collect();
@@ -153,7 +154,8 @@ fn a_message_that_no_ring_carries_stops_the_machine() {
         load_sender(&mut machine, FIRST_GP, vec![(receiver, length, words(&[1]))]);
         machine.switch_on();
         let error = machine.run_until(LONG).expect_err("refused");
-        // The board sends its request one cycle after the software cost. The ring refuses it one word later.
+        // The board sends its request one cycle after the software cost. The ring refuses the request one word time
+        // later.
         assert_eq!(error.time(), Time::ZERO + MESSAGE + Span::from_ns(25 + 50));
         let RunError::Ring { error: found, .. } = &error else { panic!("{error}") };
         assert!(found.to_string().contains(reason), "{found}");

@@ -6,10 +6,10 @@ use crate::array::FaultKind;
 use crate::controller::{Controller, FieldBits};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Test};
 
-/// An operand whose bits are read from the least significant bit upwards. After its last bit, it continues with zeros,
-/// or with copies of its sign.
+/// An operand whose bits are read from the least significant bit upwards. After its last bit, the operand continues
+/// with zeros, or with copies of its sign.
 ///
-/// The sign is saved at the start, since the result can overwrite the operand.
+/// The sign is saved at the start, because the result can overwrite the operand.
 pub(super) struct SerialOperand {
     bits: FieldBits,
     extension: TilePlane,
@@ -88,12 +88,13 @@ impl Tile {
         SerialOperand { bits, extension }
     }
 
-    /// Stores one bit of a field in the enabled pixels.
+    /// Stores one bit plane of a field in the enabled pixels.
     fn store(&mut self, bit: usize, new: &TilePlane) {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }
 
-    /// Stores the bits that `f` returns in a field: one bit per clock, least significant bit first.
+    /// Stores in a field the bits that `f` returns. The function handles one bit per clock, the least significant bit
+    /// first.
     fn each_bit(&mut self, field: FieldBits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
@@ -123,7 +124,7 @@ impl Tile {
         let wa = source.width;
         let source = self.source(source);
         let mut over = EMPTY;
-        // A set sign bit also sets `over`. The second step below then turns negative values into 0.
+        // A set sign bit also sets `over`. The second step below then replaces negative values by 0.
         for i in w..wa {
             planes::or(&mut over, &source.bit(&self.memory, i));
         }
@@ -170,7 +171,8 @@ impl Tile {
         self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }
 
-    /// Returns the pixels in which a < b. In these pixels, the subtraction a - b over `clocks` bits ends with a borrow.
+    /// Returns the pixels in which a < b. In exactly these pixels, the subtraction a - b over `clocks` bits ends with a
+    /// borrow.
     fn less(&mut self, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
         let x = self.source(a);
         let mut borrow = EMPTY;
@@ -179,7 +181,7 @@ impl Tile {
         }
         self.clock += clocks as u64;
         if a.signed {
-            // If two's complement numbers have different signs, the negative number is less. So the last borrow is
+            // If two's complement numbers have different signs, the negative number is less, so the last borrow is
             // inverted.
             let last = clocks - 1;
             let signs = planes::combine(&x.bit(&self.memory, last), &b(&self.memory, last), |a, b| a ^ b);
@@ -210,10 +212,11 @@ impl Tile {
         }
     }
 
-    /// Computes `destination := a * b`: for each set bit of `b`, adds `a`, shifted by the position of this bit.
+    /// Computes `destination := a * b`. For each set bit of `b`, the function adds `a`, shifted by the position of this
+    /// bit.
     ///
     /// Each addition takes one more clock for its carry. For the sign bit of a signed `b`, `a` is subtracted instead.
-    /// The destination's bits above the product repeat the product's sign.
+    /// The destination's bits above the product are copies of the product's sign.
     fn multiply(&mut self, destination: FieldBits, a: FieldBits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);
         // Add one shifted copy of `a` for each bit of `b`.
@@ -235,7 +238,8 @@ impl Tile {
         }
     }
 
-    /// Adds `x << j` to `destination` in the pixels where `gate` is set. If `negative` is true, subtracts it instead.
+    /// Adds `x << j` to `destination` in the pixels where `gate` is set. If `negative` is true, the function subtracts
+    /// `x << j` instead.
     fn add_product(&mut self, destination: FieldBits, x: &SerialOperand, j: usize, gate: &TilePlane, negative: bool) {
         let top = j + x.bits.width;
         // The partial product is sign-extended if the destination has a bit at position `top`.
@@ -280,8 +284,8 @@ impl Tile {
 
     /// Computes a square root, one binary digit at a time, from the highest digit.
     ///
-    /// Each step compares the remainder with a trial value. The trial value is the known digits of the root, followed
-    /// by the bits 01. The comparison covers all bits that the remainder can occupy.
+    /// Each step compares the remainder with a trial value. The trial value consists of the digits of the root so far,
+    /// followed by the bits 01. The comparison covers all bits that the remainder can occupy.
     fn square_root(&mut self, destination: FieldBits, radicand: FieldBits) {
         let n = destination.width;
         for i in (0..n).rev() {
@@ -297,7 +301,8 @@ impl Tile {
     }
 }
 
-/// Returns bit `k` of the trial value of a square root: the known digits of the root, followed by the bits 01.
+/// Returns bit `k` of the trial value of a square root. The trial value consists of the digits of the root so far,
+/// followed by the bits 01.
 fn trial_bit(root: FieldBits, memory: &[TilePlane], k: usize) -> TilePlane {
     match k {
         0 => FULL,

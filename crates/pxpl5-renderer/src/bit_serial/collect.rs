@@ -10,8 +10,8 @@ use crate::isa::{ArrayInstruction, Expression, LINEAR_BITS, opcode};
 use pxpl5_wire::Word;
 
 impl BitSerial {
-    /// Executes the run that begins at word `position`, and returns its length in words. Returns 0 if no run begins
-    /// there.
+    /// Executes the run that begins at word `position`, and returns its length in words. Returns 0 if no run begins at
+    /// this word.
     pub(super) fn execute_run(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> usize {
         let mut run = std::mem::take(&mut self.run);
         run.clear();
@@ -27,8 +27,8 @@ impl BitSerial {
         used
     }
 
-    /// Adds the next instruction to the run and returns true. Returns false if the instruction is illegal or is of a
-    /// kind that runs do not contain.
+    /// Adds the next instruction to the run and returns true. Returns false if the instruction is illegal, or if runs
+    /// do not contain instructions of this kind.
     fn extend(&mut self, run: &mut InstructionRun, words: &[Word], position: usize) -> bool {
         let position = position + run.words;
         let Some(head) = words.get(position) else { return false };
@@ -46,7 +46,7 @@ impl BitSerial {
         match *instruction {
             ArrayInstruction::Evaluate { expression, usage } => {
                 let delivery = self.delivery(&usage, LINEAR_BITS).ok()?;
-                // A repeated expression reuses the last expression of the run, if there is one.
+                // A repeated expression reuses the last expression of the run, if the run has an expression.
                 if expression != Expression::LinearAgain || run.expressions.is_empty() {
                     if run.expressions.len() == EXPRESSIONS {
                         return None;

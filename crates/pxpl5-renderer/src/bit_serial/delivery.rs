@@ -1,4 +1,4 @@
-//! Effects of an expression's bits on the pixels of a tile, as the bits arrive.
+//! Effects of an expression's bits on the pixels of a tile. The bits take effect one by one, as they arrive.
 
 use super::arithmetic::SerialOperand;
 use super::evaluator::{Evaluator, VectorPlace, full_add};
@@ -9,19 +9,19 @@ use std::ops::Range;
 
 /// A consumer of the bits of an expression.
 trait BitSink {
-    /// Takes bit `t` of the expression, for one vector of pixels of a tile.
+    /// Applies bit `t` of the expression, for one vector of pixels of a tile.
     ///
     /// `at` is the index of the vector's first word in a plane. `carry` must be zero for the first bit.
     fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
-    /// Takes the carry that remains after the last bit.
+    /// Receives the carry that remains after the last bit.
     fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
-/// The use that pixels make of an expression: the bits that they take, and the operation on these bits.
+/// The use of an expression by the pixels: the range of used bits, and the operation on these bits.
 #[derive(Clone, Debug)]
 pub(super) struct Delivery {
-    /// Clocks in which the pixels take a bit. One bit of the expression arrives in each clock.
+    /// Clocks in which the pixels use the arriving bit. One bit of the expression arrives in each clock.
     pub(super) taken: Range<usize>,
     pub(super) effect: ExpressionEffect,
 }
@@ -68,7 +68,7 @@ impl Delivery {
         let at = place.at;
         let mut carries = E::start::<V>();
         let mut carry = V::splat(0);
-        // The pixels do not take the first bits, but the carries of these bits matter.
+        // The pixels do not use the first bits, but the carries of these bits matter.
         for t in 0..self.taken.start {
             evaluator.bit(t, place, &mut carries);
         }
@@ -168,7 +168,8 @@ impl BitSink for StoreDifference {
     }
 }
 
-/// Runs one clock of a serial subtracter in each pixel of a vector. It uses a - b = not (not a + b).
+/// Runs one clock of a serial subtracter in each pixel of a vector. The function uses the equation a - b = not (not a +
+/// b).
 #[inline(always)]
 fn subtract<V: SimdVector>(a: V, b: V, borrow: &mut V) -> V {
     let ones = V::splat(-1);

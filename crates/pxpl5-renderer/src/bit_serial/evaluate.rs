@@ -1,5 +1,5 @@
-//! Instructions with an expression. As the expression's bits arrive from the evaluator, these bits change Enable or
-//! pixel memory.
+//! Instructions with an expression. The bits of the expression arrive from the evaluator one by one, and change Enable
+//! or pixel memory.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};
@@ -40,15 +40,15 @@ impl<E: WholeTrees> VectorKernel for DeliverToTiles<'_, E> {
 impl BitSerial {
     /// Evaluates an expression in all pixels.
     ///
-    /// For a linear expression, the instruction ends when pixels have taken their last bit. For a quadratic expression,
-    /// it ends after all bits of the expression.
+    /// For a linear expression, the instruction ends after the last bit that the pixels use. For a quadratic
+    /// expression, the instruction ends after all bits of the expression.
     pub(super) fn evaluate(&mut self, expression: &Expression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         let delivery = &self.delivery(usage, expression.bits())?;
         let local = self.controller.latch(expression);
         let vectors = self.vectors;
         let skipping = self.skipping;
         let tiles = &mut self.tiles[..];
-        // A linear expression can end early; a quadratic expression keeps the trees busy to its last bit.
+        // A linear expression can end early. A quadratic expression keeps the trees busy until its last bit.
         match &local {
             LocalExpression::Linear(coefficients) => {
                 self.clock += delivery.taken.end as u64;
@@ -62,10 +62,10 @@ impl BitSerial {
         Ok(())
     }
 
-    /// Returns the bits to take from an expression of `bits` bits, and the operation on them. Fields are those of the
+    /// Returns the used bits of an expression of `bits` bits, and the operation on these bits. Fields are fields of the
     /// selected context.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
-        // A test of the sign takes only the last bit. A difference takes all bits, since it needs their borrow.
+        // A test of the sign uses only the last bit. A difference uses all bits, because it needs their borrow.
         let (taken, effect) = match *usage {
             ExpressionUse::DisableNegative => (bits as usize - 1..bits as usize, ExpressionEffect::DisableNegative),
             ExpressionUse::Load { field, shift } => {
@@ -90,8 +90,8 @@ impl BitSerial {
         Ok(Delivery { taken, effect })
     }
 
-    /// Returns the clocks in which a field takes bits, and the field's first bit in pixel memory. The expression's
-    /// first `shift` bits are left out.
+    /// Returns the clocks in which a field uses bits of an expression, and the field's first bit in pixel memory. The
+    /// field does not use the expression's first `shift` bits.
     fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
         let field = self.controller.bits(field)?;
         let shift = usize::from(shift);

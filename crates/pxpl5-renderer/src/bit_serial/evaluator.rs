@@ -2,16 +2,16 @@
 //! pixel.
 //!
 //! A tree multiplies a coefficient by the index of each column (or row), which is a leaf of the tree. Level `l` of the
-//! tree delays the coefficient by `l` clocks. It adds the delayed coefficient to the leaves whose index has bit `l`
-//! set. Coefficients enter with the least significant bit first.
+//! tree delays the coefficient by `l` clocks. This level adds the delayed coefficient to the leaves whose index has bit
+//! `l` set. Coefficients enter with the least significant bit first.
 //!
 //! For a linear expression, every pixel adds the bit stream of its column to the bit stream of its row. For a quadratic
 //! expression, wider trees multiply by the squares of the indices. Each row also gets its own coefficient of x, and
 //! each pixel multiplies this coefficient by its column. This circuit is assumed: F89 publishes only the expression.
 //!
-//! No data flows from the pixels back to the trees. So the trees first run all their clocks. Then each vector of pixels
-//! runs all of its clocks, with its carries in registers. In vectors for trees, a lane holds 32 columns or rows. In
-//! vectors for pixels, a lane holds one row of a tile.
+//! No data flows from the pixels back to the trees. The simulator therefore first computes all clocks of the trees.
+//! Then it computes all clocks of each vector of pixels, with the carries in registers. In vectors for trees, a lane
+//! holds 32 columns or rows. In vectors for pixels, a lane holds one row of a tile.
 
 use super::tile::{self, WIDTH};
 use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
@@ -47,17 +47,17 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
     out
 }
 
-/// Outputs of adjacent trees in one clock. Each word holds two lanes of a vector, and each bit belongs to one leaf.
+/// Outputs of adjacent trees in one clock. Each word holds two lanes of a vector. Each bit belongs to one leaf.
 type Streams = [u64; 8];
 
-/// Adjacent trees of serial adders. For each leaf, a tree adds a coefficient times the leaf's index to a bit stream.
-/// Each leaf is one bit of a vector.
+/// Adjacent trees of serial adders. For each leaf, a tree multiplies a coefficient by the leaf's index and adds the
+/// product to a bit stream. Each leaf is one bit of a vector.
 pub(super) struct Trees<V, const LEVELS: usize> {
     /// Low and high 32 bits of the coefficients. Each lane holds the coefficient that enters the lane's tree.
     coefficients: [V; 2],
     /// For each level `l`, the leaves whose index has bit `l` set.
     leaves: [V; LEVELS],
-    /// Delayed bits of the coefficients: level `l` uses the bit of `l` clocks ago.
+    /// Delayed bits of the coefficients: level `l` uses the bit that entered `l` clocks ago.
     late: [V; LEVELS],
     carries: [V; LEVELS],
 }
@@ -203,16 +203,16 @@ pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 /// Outputs of the trees of a quadratic expression in one clock.
 #[derive(Clone, Copy, Default)]
 struct QuadraticBits {
-    /// Sum xx x^2 for each column x, and sum one + y y + yy y^2 for each row y.
+    /// The sum `xx x^2` for each column x, and the sum `one + y y + yy y^2` for each row y.
     sums: Streams,
-    /// Coefficient of x for each row: x + xy y. It is in the same lanes as the row's bits in `sums`.
+    /// The coefficient of x in each row: `x + xy y`. The coefficient is in the same lanes as the row's bits in `sums`.
     coefficients: Streams,
 }
 
 /// State of a pixel vector's adders for a quadratic expression, between two clocks.
 pub(super) struct QuadraticCarries<V> {
-    /// Bits of the coefficient of x, one for each level of the product. Level n has the coefficient's bit of n clocks
-    /// ago.
+    /// Bits of the coefficient of x, one for each level of the product. Level n has the coefficient's bit that arrived
+    /// n clocks ago.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,
@@ -256,7 +256,7 @@ impl WholeTrees for QuadraticStreams {
         let mut squares = Trees::<V, _>::of_pair([q.xx, q.yy], &SQUARES);
         let mut numbers = Trees::<V, _>::of_pair([q.xy, q.y], &NUMBERS);
         let constants = in_lanes([q.x, q.one]);
-        // The second trees, which belong to the rows, are added up. The first tree of the indices gives the
+        // The second trees belong to the rows, and their outputs are added. The first tree of the indices gives the
         // coefficients of x.
         let second = V::spread(0xf0);
         let mut out = [QuadraticBits::default(); QUADRATIC_BITS as usize];
@@ -315,7 +315,7 @@ mod tests {
         let mut carries = E::start();
         let tile = y / HEIGHT * ACROSS + x / WIDTH;
         let place = VectorPlace::in_array(tile, y % HEIGHT / PortableVector::LANES * PortableVector::LANES);
-        // Each vector lane is one row; each word holds two rows.
+        // Each vector lane is one row, and each word holds two rows.
         let lane = y % PortableVector::LANES;
         let column = x % WIDTH;
         let value = (0..bits as usize).fold(0, |value, t| {

@@ -1,4 +1,4 @@
-//! Operations that the one-bit processors of a tile perform on all pixels at once.
+//! Operations that the one-bit processors of a tile perform on all pixels at the same time.
 
 use super::tile::{EMPTY, TilePlane};
 

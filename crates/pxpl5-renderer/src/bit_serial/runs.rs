@@ -1,13 +1,16 @@
-//! Skipping mode for runs, which are consecutive instructions with linear expressions or constants. It leaves out work
-//! that changes no bit.
+//! Skipping mode for runs, which are consecutive instructions with linear expressions or constants. The mode leaves out
+//! work that changes no bit.
 //!
-//! No data flows from pixel to pixel. So a tile can execute all instructions of a run before the next tile begins:
+//! No data flows from pixel to pixel. A tile can therefore execute all instructions of a run before the next tile
+//! begins:
 //!
-//! - If all pixels of a tile are disabled, the tile does nothing, since an expression never enables pixels.
+//! - If all pixels of a tile are disabled, the tile does nothing, because an expression never enables pixels.
 //! - An expression that is negative at all corners of a tile disables the tile without adders. An expression that is
-//!   negative at no corner disables no pixel. Both need an expression that does not overflow 32 bits in the array.
-//! - A tile is like a smaller array. Its origin is added to the constant coefficient, as the origin of a region is. For
-//!   a tile, the trees have five levels, so the trees of several expressions fit side by side in a vector.
+//!   negative at no corner disables no pixel. Both rules require that the expression does not overflow 32 bits in the
+//!   array.
+//! - A tile is like a smaller array. The origin of the tile is added to the constant coefficient, like the origin of a
+//!   region. For a tile, the trees have only five levels, so a vector can hold the trees of several expressions side by
+//!   side.
 //!
 //! The remaining work is done bit by bit, as in the reference mode.
 
@@ -19,7 +22,7 @@ use crate::isa::LINEAR_BITS;
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 
-/// Largest number of expressions in a run. The trees of so many expressions fit together in the widest vector.
+/// Largest number of expressions in a run. The widest vector can hold the trees of this number of expressions.
 pub(super) const EXPRESSIONS: usize = 8;
 
 /// Number of bits of a column's index within its tile (0 to 31).
@@ -53,8 +56,7 @@ pub(super) enum BitOrigin {
 }
 
 impl RunStep {
-    /// Returns the index of the expression whose sign disables pixels. Returns `None` if the instruction is of another
-    /// kind.
+    /// Returns the index of the expression whose sign disables pixels. Returns `None` for other kinds of instructions.
     #[inline(always)]
     const fn disables_by_sign_of(&self) -> Option<usize> {
         match (self.input, self.delivery.effect) {
@@ -96,7 +98,7 @@ impl InstructionRun {
         self.words = 0;
     }
 
-    /// Returns, for each expression whose sign disables pixels, the tiles in which its sign is known.
+    /// Returns the tiles in which the sign of an expression is known, for each expression whose sign disables pixels.
     #[inline(always)]
     fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];
@@ -131,7 +133,7 @@ impl InstructionRun {
             match step.input {
                 BitOrigin::Constant(constant) => step.delivery.in_tile::<V, _>(&constant, 0, tile),
                 BitOrigin::Expression(i) => {
-                    // If the sign is known, it decides the whole tile without adders.
+                    // If the sign is known, the whole tile needs no adders.
                     if matches!(step.delivery.effect, ExpressionEffect::DisableNegative) {
                         if signs[i].negative >> number & 1 == 1 {
                             tile.enable = EMPTY;
@@ -141,7 +143,7 @@ impl InstructionRun {
                             continue;
                         }
                     }
-                    // Run the trees only when a tile first needs them.
+                    // Run the trees of an expression only if the tile needs the expression.
                     while streams.ready <= i {
                         streams.run_trees::<V>(self, number);
                     }
@@ -156,8 +158,8 @@ impl InstructionRun {
 }
 
 impl Delivery {
-    /// Delivers bits to those vectors of a tile that contain enabled pixels. `word` is the index of the streams' word
-    /// to use.
+    /// Delivers bits to the vectors of a tile that contain enabled pixels. `word` is the index of the word of the
+    /// streams that is used.
     #[inline(always)]
     fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {
@@ -221,7 +223,7 @@ fn wraps(e: &Linear) -> bool {
     corners.iter().any(|corner| i32::try_from(*corner).is_err())
 }
 
-/// Outputs of the trees of one tile, with one word in each clock for each expression of a run.
+/// Outputs of the adder trees for one tile. For each clock, there is one word per expression of the run.
 struct TileStreams {
     streams: LinearStreams,
     /// Number of expressions whose trees have run.
@@ -229,7 +231,7 @@ struct TileStreams {
 }
 
 impl TileStreams {
-    /// Runs the trees of the next expressions of the run. It runs as many trees at once as fit in a vector.
+    /// Runs the trees of the next expressions of the run. One call runs as many trees as fit in a vector.
     #[inline(always)]
     fn run_trees<V: SimdVector>(&mut self, run: &InstructionRun, number: usize) {
         let [left, top] = tile::origin(number);
@@ -249,7 +251,7 @@ impl TileStreams {
     }
 }
 
-/// A constant whose bits are delivered one by one, like those of an expression.
+/// A constant whose bits are delivered one by one, like the bits of an expression.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConstantBits {
     pub(super) value: u32,

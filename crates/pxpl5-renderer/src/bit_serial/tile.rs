@@ -1,7 +1,7 @@
 //! Tiles of 32 x 16 pixels, into which the array is divided.
 //!
-//! One bit of each pixel of a tile takes 512 adjacent bits of the host's memory. This is the width of the widest vector
-//! unit.
+//! One bit of each pixel of a tile takes 512 adjacent bits of the host's memory. This number is the width of the widest
+//! vector unit.
 
 use crate::array::{EMPTY_PLANE, PIXELS, Plane};
 use crate::isa::MEMORY_BITS;
@@ -22,7 +22,7 @@ pub(super) const FULL: TilePlane = [u64::MAX; HEIGHT / 2];
 
 /// Pixel memory and Enable of one tile. Tiles are independent of each other.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // No vector of pixels lies across two lines of the host's cache.
+#[repr(align(64))] // No vector of pixels crosses a border between lines of the host's cache.
 pub(super) struct Tile {
     pub(super) memory: [TilePlane; MEMORY_BITS as usize],
     pub(super) enable: TilePlane,
@@ -42,7 +42,7 @@ impl Tile {
     /// Returns true if this tile must execute an instruction that changes only enabled pixels.
     ///
     /// In the reference mode, every tile executes such an instruction. In the skipping mode, only tiles with an enabled
-    /// pixel do.
+    /// pixel execute it.
     #[inline(always)]
     pub(super) fn has_work(&self, skipping: bool) -> bool {
         !skipping || self.enabled()
@@ -83,8 +83,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the index of the word of an array's plane that holds row `y` of a tile, and the row's first bit in this
-/// word.
+/// Returns the place of row `y` of a tile in a plane of the array. The place is the index of a word, and the row's
+/// first bit in this word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

@@ -5,7 +5,7 @@ use crate::isa::{ArrayInstruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId};
 
-/// Selects the context and the screen position of the region for all commands that follow.
+/// Selects the context and the screen position of the region for all following commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelectRegion {
     /// Index of the context, less than the layout's number of contexts.

@@ -9,7 +9,7 @@ use pxpl5_wire::{Linear, Word};
 /// A triangle with interpolated colour (Gouraud).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TriangleCommand {
-    /// Edge expressions; a pixel is inside where all three are `>= 0`.
+    /// Edge expressions. A pixel is inside if all three values are `>= 0`.
     pub edges: [Linear; 3],
     /// Depth expression with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction bits. A smaller depth is nearer.
     pub depth: Linear,
@@ -20,7 +20,7 @@ pub struct TriangleCommand {
 /// A triangle with interpolated normals. Its pixels are shaded at the end of the frame (Phong).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongTriangleCommand {
-    /// Edge expressions; a pixel is inside where all three are `>= 0`.
+    /// Edge expressions. A pixel is inside if all three values are `>= 0`.
     pub edges: [Linear; 3],
     /// Depth expression with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction bits. A smaller depth is nearer.
     pub depth: Linear,
@@ -76,8 +76,8 @@ pub(super) const fn evaluate(expression: Expression, usage: ExpressionUse) -> Ar
     ArrayInstruction::Evaluate { expression, usage }
 }
 
-/// Appends the instructions for three edges and Z. They disable pixels outside the edges and pixels that are not
-/// nearer, then store Z.
+/// Appends the instructions for three edges and Z. The instructions disable pixels outside the edges and pixels that
+/// are not nearer, and then store Z.
 fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<ArrayInstruction>) {
     out.extend(edges.map(|edge| evaluate(Expression::Linear(edge), ExpressionUse::DisableNegative)));
     let field = layout.plan().z;
@@ -96,8 +96,8 @@ pub(crate) const COMPONENTS_AT: [usize; 3] = [19, 23, 27];
 /// Position of the colour in an encoded Phong triangle command, in words from its start.
 pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 
-/// A fast encoder of triangle commands. It does not build the program of each command, since a scene sends 100,000
-/// triangles a frame.
+/// A fast encoder of triangle commands. The encoder does not build the program of each command, because a scene can
+/// have 100,000 triangles per frame.
 ///
 /// In one layout, the words of all triangle commands differ only in their operands. The encoder copies the words of a
 /// blank triangle, then overwrites the operands.
@@ -115,7 +115,7 @@ impl TriangleEncoder {
         Self(blank(&TriangleCommand::default().program(layout)))
     }
 
-    /// Appends the words of a triangle's command. The words equal those of its encoded
+    /// Appends the words of a triangle's command. The words equal the words of the command's encoded
     /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &TriangleCommand, out: &mut Vec<Word>) {
@@ -136,7 +136,7 @@ impl PhongTriangleEncoder {
         Ok(Self(blank(&program)))
     }
 
-    /// Appends the words of a triangle's command. The words equal those of its encoded
+    /// Appends the words of a triangle's command. The words equal the words of the command's encoded
     /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &PhongTriangleCommand, out: &mut Vec<Word>) {

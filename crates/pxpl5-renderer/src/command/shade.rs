@@ -7,8 +7,8 @@ use crate::layout::Layout;
 /// Number of times that the cosine of the highlight is squared: 5, for a power of 2^5 = 32 (assumed).
 pub const SPECULAR_SQUARINGS: u32 = 5;
 
-/// Shades every pixel that a command has covered, which is every pixel with Z nearer than the far plane. Other pixels
-/// keep the background.
+/// Shades every pixel whose Z is nearer than the far plane. These are the pixels that a command has covered. Other
+/// pixels keep the background.
 ///
 /// Inputs are the normal N, the object's colour C, and the directions to a light and an eye at infinity:
 ///
@@ -19,25 +19,25 @@ pub const SPECULAR_SQUARINGS: u32 = 5;
 /// C := limit((C i >> 8) + (s specular >> 10))
 /// ```
 ///
-/// |N| is a bit-serial square root of 12 bits. The quotients are bit-serial divisions. Five squarings, which keep 10
-/// bits each, compute the power. The function `limit` limits a value to the range from 0 to all ones. A zero normal is
-/// shaded as if it faced the light.
+/// The length |N| is a bit-serial square root of 12 bits. The quotients are bit-serial divisions. The power is computed
+/// by five squarings, each with a result of 10 bits. The function `limit` limits a value to the range from 0 to all
+/// ones. A zero normal is shaded like a normal that faces the light.
 ///
-/// The command takes 3,790 clocks (95 us): the root takes 206, each quotient 374 and the power 570. For the machine, a
-/// time of 100 to 200 us is assumed. A second light (938 clocks for each cosine) and a material for each pixel are not
-/// modelled. They would also fit in this time.
+/// The command takes 3,790 clocks (95 us): the root takes 206 clocks, each quotient 374 clocks and the power 570
+/// clocks. For the real machine, a time of 100 to 200 us is assumed. A second light (938 clocks for each cosine) and a
+/// material for each pixel are not modelled. Both would also fit in this time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shade {
-    /// Unit vector towards the light; 1.0 is 1024. Each component has 12 bits, two's complement. The vector's length
-    /// must be at most 2.0.
+    /// Unit vector towards the light. The number 1024 stands for 1.0. Each component has 12 bits, two's complement. The
+    /// vector's length must be at most 2.0.
     pub light: [i16; 3],
     /// Unit vector half way between the directions to the light and to the eye, in the same format as `light`.
     pub half: [i16; 3],
-    /// Share of the object's colour that is visible without light; 1.0 is 256.
+    /// Fraction of the object's colour that is visible without light. The number 256 stands for 1.0.
     pub ambient: u8,
-    /// Share of the object's colour that full light adds; 1.0 is 256.
+    /// Fraction of the object's colour that full light adds. The number 256 stands for 1.0.
     pub diffuse: u8,
-    /// Intensity of the white highlight; 255 is the full intensity.
+    /// Intensity of the white highlight, 0 to 255.
     pub specular: u8,
 }
 
@@ -89,7 +89,7 @@ impl Shade {
             enable(CommandKind::Shade),
             ArrayInstruction::CompareConstant { test: Test::NotEqual, a: f.z, value: u32::MAX },
         ];
-        // Compute |N| first, since both cosines divide by it.
+        // Compute |N| first, because both cosines need a division by |N|.
         length(&f, &mut out);
         cosine(&f, self.light, f.diffuse, &mut out);
         cosine(&f, self.half, f.specular, &mut out);

@@ -8,10 +8,10 @@ use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{Linear, Quadratic};
 
-/// Silhouette and depth of a sphere, common to both sphere commands.
+/// Silhouette and depth of a sphere, for both kinds of sphere commands.
 ///
-/// Under perspective the inverse depth along a pixel's ray is `linear + k sqrt(Q)`. Q is a quadratic that is zero on
-/// the silhouette. The sender scales Q so that the root needs no factor:
+/// With perspective, the inverse depth along a pixel's ray is `linear + k sqrt(Q)`. Q is a quadratic expression that is
+/// zero on the silhouette. The sender scales Q so that the root needs no factor:
 ///
 /// ```text
 /// root  = floor(sqrt((silhouette >> root_shift) & (2^24 - 1)))        12 bits; r = root at the middle < 4096
@@ -20,8 +20,8 @@ use pxpl5_wire::{Linear, Quadratic};
 ///
 /// At the sphere's middle, `silhouette = 2^root_shift (bulge / 2^depth_shift)^2`. *Bulge* is the distance of the middle
 /// in front of the plane `depth`, in units of the depth expression. Choose `depth_shift` so that `bulge >> depth_shift`
-/// is in 2048 .. 4096; then the root keeps at least 11 bits. The silhouette must stay within 48 bits on the whole
-/// region. A layout with roots of 10 bits uses the upper bits of the same operands.
+/// is in 2048 .. 4096. The root then has at least 11 significant bits. The silhouette must stay within 48 bits on the
+/// whole region. A layout with roots of 10 bits uses the upper bits of the same operands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereBody {
     /// Silhouette expression of 48 bits. A pixel is inside the sphere if the expression is `>= 0` at this pixel.
@@ -36,15 +36,15 @@ pub struct SphereBody {
 
 /// A sphere with interpolated colour.
 ///
-/// A sphere costs more than a triangle for three reasons. First, a quadratic takes 12 words and 48 clocks, and is
-/// evaluated twice: for the sign and for the radicand. Second, the root takes 202 bit clocks. Third, the depth needs
-/// three passes instead of two, since it depends on the stored root. Interpolated colour also takes a product and a
-/// limit for each component (134 clocks each).
+/// A sphere takes more clocks than a triangle for three reasons. First, a quadratic expression takes 12 words and 48
+/// clocks, and is evaluated twice: for the sign and for the radicand. Second, the root takes 202 bit clocks. Third, the
+/// depth needs three passes instead of two, because it depends on the stored root. Interpolated colour also takes a
+/// product and a limit for each component (134 clocks each).
 ///
-/// The assumed cost "a little dearer than a triangle" would fit a paraboloid, whose depth is the quadratic itself. A
-/// paraboloid takes 318 clocks with a quadratic for each colour, or 268 with normals. Its depth is exact only at the
-/// silhouette and at the middle, so intersecting spheres would meet in wrong places. Therefore the model computes the
-/// root.
+/// The assumed cost "a little dearer than a triangle" would fit a paraboloid, whose depth is the quadratic expression
+/// itself. A paraboloid takes 318 clocks with a quadratic expression for each colour, or 268 clocks with normals. The
+/// depth of a paraboloid is exact only at the silhouette and at the middle, so intersecting spheres would meet in wrong
+/// places. The model therefore computes the root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereCommand {
     /// Silhouette and depth.
@@ -53,15 +53,16 @@ pub struct SphereCommand {
     pub colour: [Linear; 3],
     /// Factor of the root for each component, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
     ///
-    /// The sum must be in -512 to 511, or it wraps. The function `limit` limits it to 0 to 255.
+    /// The sum must be in the range from -512 to 511, because a larger sum would wrap around. The function `limit`
+    /// limits the sum to the range from 0 to 255.
     pub root_factor: [i16; 3],
 }
 
 /// A sphere whose pixels are shaded at the end of the frame (Phong).
 ///
-/// The z of its normal is `root >> 2`. So the normal's z at the middle of the sphere is `r / 4`, where r is the root
-/// there. The sender uses the same scale for x and y, since shading normalizes the normal. Under perspective, x and y
-/// of the normal are approximated by linear expressions.
+/// The z component of the normal is `root >> 2`. At the middle of the sphere, this component is `r / 4`, where r is the
+/// root at the middle. The sender uses the same scale for x and y. The length of the normal has no effect, because
+/// shading normalizes the normal. With perspective, x and y of the normal are approximated by linear expressions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongSphereCommand {
     /// Silhouette and depth.
@@ -78,14 +79,14 @@ const ROOT_BITS: u8 = 12;
 const COLOUR_ROOT_BITS: u8 = 8;
 const FACTOR_BITS: u8 = 10;
 
-/// Scratch fields that a sphere's program uses.
+/// Fields of the scratch memory that a sphere's program uses.
 #[derive(Clone, Copy)]
 pub(crate) struct SphereScratch {
     radicand: Operand,
     pub(crate) root: Operand,
-    /// New depth. It uses the bits of the radicand, which is no longer needed after the root.
+    /// New depth. The depth occupies the bits of the radicand, which is no longer needed after the root.
     pub(crate) z: Operand,
-    /// Product of root and factor, 8 + 10 bits. It also uses the bits of the radicand.
+    /// Product of root and factor, 8 + 10 bits. The product also occupies the bits of the radicand.
     product: Operand,
 }
 
@@ -120,11 +121,11 @@ impl SphereScratch {
     }
 }
 
-/// Appends the instructions for silhouette, root and depth. They disable pixels outside the sphere and pixels that are
-/// not nearer, then store Z.
+/// Appends the instructions for silhouette, root and depth. The instructions disable pixels outside the sphere and
+/// pixels that are not nearer, and then store Z.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
-    // Test the sign of the silhouette, then evaluate the same quadratic again as radicand.
+    // Test the sign of the silhouette, then evaluate the same expression again as radicand.
     out.extend([
         evaluate(Expression::Quadratic(body.silhouette), ExpressionUse::DisableNegative),
         evaluate(
@@ -163,7 +164,7 @@ fn read_coverage(program: &[ArrayInstruction], layout: &Layout) -> Option<Sphere
     else {
         return None;
     };
-    // A layout with a short scratch drops `short` bits of the root, which are 2 `short` bits of the radicand.
+    // In a layout with a short scratch, the root has `short` bits less, and the radicand has twice as many bits less.
     let root_shift = shift.checked_sub(2 * short)?;
     let depth_shift = left_shift.checked_sub(short)?;
     Some(SphereBody { silhouette, root_shift, depth, depth_shift })

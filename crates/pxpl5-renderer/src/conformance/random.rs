@@ -14,14 +14,14 @@ use pxpl5_wire::{Linear, Quadratic, Word};
 pub struct Random(SplitMix64);
 
 impl Random {
-    /// Creates a generator; each seed gives a different sequence.
+    /// Creates a generator. Each seed gives a different sequence.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(SplitMix64::new(seed.wrapping_mul(0xd129_0d3b_3f4b_7ec5)))
     }
 
-    /// Returns the next 64 random bits.
-    #[allow(clippy::should_implement_trait)] // An iterator that never ends would make every caller unwrap.
+    /// Returns the next 64 bits of the generator.
+    #[allow(clippy::should_implement_trait)] // The iterator would never end, and every caller would have to unwrap.
     pub const fn next(&mut self) -> u64 {
         self.0.bits()
     }
@@ -203,8 +203,8 @@ impl Random {
     }
 }
 
-/// Returns the same shape with other colours. Its depths equal the old ones, so the depth test fails at every pixel
-/// that the old shape has drawn.
+/// Returns the same shape with other colours. The depths are equal to the depths of the old shape, so the depth test
+/// fails at every pixel that the old shape has drawn.
 fn repainted(command: Command) -> Command {
     match command {
         Command::Triangle(mut t) => {
@@ -235,7 +235,7 @@ mod tests {
     use super::*;
     use std::collections::{BTreeMap, BTreeSet};
 
-    /// Tests that every kind of command occurs often enough.
+    /// Tests that every kind of command occurs often enough in random lists.
     #[test]
     fn commands_come_in_the_shares_that_are_meant() {
         let layout = Layout::rendering_control_phong();
@@ -273,8 +273,8 @@ mod tests {
             wrong += u32::from(ArrayInstruction::decode_all(&words).is_err());
             commands += words.iter().filter(|word| **word >> 24 == 1).count();
         }
-        // At most one list in 16 is invalid, and a flipped bit often hits a number. A list has one to four commands;
-        // Slats lacks a third of them.
+        // At most one list in 16 is invalid, and a flipped bit often hits a number. A list has one to four commands.
+        // The layout of Slats lacks a third of the kinds of commands.
         assert!((5..63).contains(&wrong), "{wrong}");
         assert!((1000..3000).contains(&commands), "{commands}");
         let lengths: BTreeSet<usize> = (0..300)
@@ -323,7 +323,7 @@ mod tests {
         }
     }
 
-    /// Uses the fact that the edges of a triangle add up to a constant.
+    /// Recognizes triangles by the sum of their three edge expressions, which is a constant.
     #[test]
     fn most_edges_are_those_of_a_triangle_of_any_size() {
         let mut random = Random::new(5);
@@ -342,8 +342,8 @@ mod tests {
         assert!((1..=5).all(|digits| sizes.get(&Some(digits)).copied().unwrap_or(0) > 30), "{sizes:?}");
     }
 
-    /// Computes the middle of each ellipse, where both slopes are 0. The value there is the scale times the radius
-    /// squared.
+    /// Computes the middle of each ellipse, where both slopes are 0. The value at the middle is the scale times the
+    /// radius squared.
     #[test]
     fn most_silhouettes_are_ellipses_around_a_pixel() {
         let mut random = Random::new(6);
@@ -368,8 +368,8 @@ mod tests {
             assert!((1..500).contains(&radius), "{q:?} {radius}");
             radii[(radius >= 2) as usize + (radius >= 10) as usize + (radius >= 60) as usize] += 1;
         }
-        // Seven of eight results are ellipses, in four size classes of up to 2, 10, 60 and 500 pixels, each from 1
-        // pixel on.
+        // Seven of eight results are ellipses, in four size classes. The sizes start at 1 pixel and go up to 2, 10, 60
+        // and 500 pixels.
         assert!(radii.iter().sum::<i32>() > 3300 && radii.iter().all(|count| *count > 400), "{radii:?}");
         assert!(tilted > 2500, "{tilted}");
     }

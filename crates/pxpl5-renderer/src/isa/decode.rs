@@ -6,7 +6,7 @@ use pxpl5_wire::{
     CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId, Word,
 };
 
-/// The error for words that encode no instruction.
+/// An error for words that do not encode an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position} ({word:#010x}): {kind}")]
 pub struct DecodeError {
@@ -17,7 +17,7 @@ pub struct DecodeError {
     pub kind: DecodeErrorKind,
 }
 
-/// Reason why words encode no instruction.
+/// The reason why words do not encode an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
@@ -55,7 +55,7 @@ pub enum DecodeErrorKind {
     /// The lines, region grid or region of an output instruction are invalid.
     #[error("the copy's target is no region of a frame")]
     BadTarget,
-    /// The words are valid instructions, but their first label names a command with a different program.
+    /// The words are valid instructions, but differ from the program of the command that their first label states.
     #[error("labelled as command {0}, but not its program in this layout")]
     NotTheCommand(u8),
 }
@@ -64,7 +64,7 @@ impl ArrayInstruction {
     /// Decodes the instruction at word `position`. Returns the instruction and its length in words.
     ///
     /// # Errors
-    /// [`DecodeError`] with the position and the reason. Never panics.
+    /// Returns a [`DecodeError`] with the position and the reason. The function never panics.
     pub fn decode(words: &[Word], position: usize) -> Result<(Self, usize), DecodeError> {
         let rest = words.get(position..).unwrap_or(&[]);
         let word = rest.first().copied().unwrap_or(0);
@@ -87,7 +87,7 @@ impl ArrayInstruction {
     }
 }
 
-/// The parts of an instruction's first word, and the words after this one.
+/// The parts of an instruction's first word, and the following words.
 struct EncodedInstruction<'a> {
     opcode: u8,
     modifier: u8,
@@ -107,7 +107,7 @@ impl EncodedInstruction<'_> {
         checked_field(self.operand)
     }
 
-    /// Returns the field that the first word names. This field must be one bit wide.
+    /// Returns the field in the operand of the first word. This field must be one bit wide.
     fn bit(&self) -> Result<Operand, DecodeErrorKind> {
         width(self.field()?, 1)
     }
@@ -155,7 +155,7 @@ fn decode(words: &[Word]) -> Result<(ArrayInstruction, usize), DecodeErrorKind> 
     let Some((&first, tail)) = words.split_first() else {
         return Err(DecodeErrorKind::Truncated { expected: 1, found: 0 });
     };
-    // Split the first word; each group of opcodes then checks its own fields.
+    // Split the first word. Each group of opcodes then checks its own fields.
     let encoded = EncodedInstruction {
         opcode: (first >> 24) as u8,
         modifier: (first >> 16) as u8,
@@ -176,7 +176,7 @@ fn decode(words: &[Word]) -> Result<(ArrayInstruction, usize), DecodeErrorKind> 
 }
 
 fn control(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
-    // Only labels and context bases use the modifier; only fields use the operand.
+    // Only labels and context bases use the modifier, and only fields use the operand.
     if matches!(encoded.opcode, opcode::ENABLE_ALL | opcode::SELECT) {
         must_be_zero(encoded.operand)?;
     } else {

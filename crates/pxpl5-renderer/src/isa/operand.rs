@@ -29,7 +29,7 @@ impl Operand {
         Self { address, width, relative: false, signed: false }
     }
 
-    /// Returns the same field, read as two's complement.
+    /// Returns the same field as a field in two's complement.
     #[must_use]
     pub const fn signed(self) -> Self {
         Self { signed: true, ..self }

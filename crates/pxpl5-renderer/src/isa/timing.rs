@@ -5,11 +5,12 @@
 //! | [`CLOCK_HZ`] | Hz | 40,000,000 | published (F89, TR94) |
 //! | [`SET_UP_CLOCKS`] | clocks an instruction | 4 | derived, see the constant |
 //! | [`CONTROL_CLOCKS`] | clocks | 2 | assumed (1 to 4) |
-//! | [`BACKING_CLOCKS`] | clocks a block | 2,048 = 51.2 us | assumed: 64 chips x 4 bits a clock |
+//!
+//! The backing store works in parallel with the array. `RendererTiming::backing_block_clocks` has its time.
 //!
 //! One bit of one field takes one clock. Assumed: each pixel has one full adder, whose operands and result move in the
-//! same clock. An expression arrives with its least significant bit first. So a field of `w` bits takes `s + w` clocks
-//! if the lowest `s` bits of the expression are left out.
+//! same clock. An expression arrives with its least significant bit first. A field of `w` bits therefore takes `s + w`
+//! clocks if the lowest `s` bits of the expression are left out.
 
 use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, LINEAR_BITS, QUADRATIC_BITS};
 
@@ -22,22 +23,17 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 /// The budgets are 256 to 267 clocks (Gouraud) and 262 to 292 clocks (Phong).
 ///
 /// The formats on the wire need 222 clocks in 9 instructions: 2 (enable), 3 x 32 (edges), 32 (compare Z), 32 (store Z)
-/// and 3 x 20 (colour). With normals they need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks in
-/// 10. So 222 + 9 n >= 256 and 252 + 10 n <= 292.
+/// and 3 x 20 (colour). With normals, they need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks in 10
+/// instructions. For n clocks of set-up, this gives 222 + 9 n >= 256 and 252 + 10 n <= 292.
 ///
-/// The published rate of 150,000 triangles a second is 267 clocks for each triangle (TR94, without the kind of
-/// shading). It lies between the results 258 (Gouraud) and 292 (Phong). The range is 2 (Phong takes 272) to 5 (Gouraud
-/// takes 267).
+/// The published rate of 150,000 triangles per second means 267 clocks for each triangle (TR94, which does not state
+/// the kind of shading). This number lies between the results 258 (Gouraud) and 292 (Phong). The range is 2 (Phong
+/// takes 272 clocks) to 5 (Gouraud takes 267 clocks).
 pub const SET_UP_CLOCKS: u32 = 4;
 
-/// Number of clocks of an instruction that moves no field. Assumed: 2, as for "enable all" in the bit budget. The range
+/// Number of clocks of an instruction that moves no field. Assumed: 2, like "enable all" in the bit budget. The range
 /// is 1 to 4.
 pub const CONTROL_CLOCKS: u32 = 2;
-
-/// Number of clocks to move one 32-bit block of all pixels to or from the backing store, in the background.
-///
-/// Assumed: 16,384 pixels x 32 bits over 64 chips with 4 bits a clock each are 2,048 clocks = 51.2 us.
-pub const BACKING_CLOCKS: u32 = 2048;
 
 /// Returns the number of clocks of a square root with a result of `n` bits.
 ///
@@ -45,7 +41,7 @@ pub const BACKING_CLOCKS: u32 = 2048;
 /// 2 bits for the first digit and `j + 3` for digit `j`.
 #[must_use]
 pub const fn square_root_clocks(n: u32) -> u32 {
-    // Sum over all digits: 2 (2 + sum of j + 3 for j = 1 .. n - 1).
+    // The sum over all digits is 2 (2 + sum of j + 3 for j = 1 .. n - 1).
     match n {
         0 => 0,
         _ => 2 * (2 + (n - 1) * (n + 6) / 2),
@@ -54,8 +50,8 @@ pub const fn square_root_clocks(n: u32) -> u32 {
 
 /// Returns the number of clocks of a product of an `a`-bit factor and a `b`-bit factor, with a result of `w` bits.
 ///
-/// For each bit of the second factor, the first factor is added, with its carry. Then the result's bits above the
-/// product are filled.
+/// For each bit of the second factor, the first factor and a carry are added. Then the result's bits above the product
+/// are filled.
 #[must_use]
 pub fn multiply_clocks(w: u32, a: u32, b: u32) -> u32 {
     let additions: u32 = (0..b.min(w)).map(|j| (a + 1).min(w - j)).sum();
@@ -71,19 +67,10 @@ pub fn divide_clocks(w: u32, a: u32, b: u32) -> u32 {
 }
 
 impl ArrayInstruction {
-    /// Returns the number of clocks for which the array and its controller are busy.
+    /// Returns the number of clocks during which the array and its controller are busy.
     #[must_use]
     pub fn clocks(&self) -> u32 {
         SET_UP_CLOCKS + self.bit_clocks()
-    }
-
-    /// Returns the number of clocks for which the backing store is busy afterwards, in parallel with the array.
-    #[must_use]
-    pub const fn backing_clocks(&self) -> u32 {
-        match self {
-            Self::StoreBlock { .. } | Self::LoadBlock { .. } => BACKING_CLOCKS,
-            _ => 0,
-        }
     }
 
     /// Returns the number of clocks in which bits move: all clocks except [`SET_UP_CLOCKS`].

@@ -9,7 +9,7 @@ use pxpl5_wire::{LANES, Linear, LinearLanes};
 /// Number of columns of the array, and of its rows.
 const WIDTH: i32 = 128;
 const LAST: i64 = 127;
-/// Margin in pixels: greater than the rounding error of a quotient, but small enough to add few pixels.
+/// Margin in pixels. The margin is greater than the rounding error of a quotient, but small enough to add few pixels.
 const MARGIN: f64 = 1e-3;
 
 /// The pixels `left .. right` of the rows `top .. bottom`.
@@ -27,11 +27,12 @@ const WHOLE: Area = Area { left: 0, right: 128, top: 0, bottom: 128 };
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     pub(super) area: Area,
-    /// Limits on the columns of each row, one for each edge. They are computed only for wide triangles.
+    /// Limits on the columns of each row, one for each edge. The limits are computed only for wide triangles.
     limits: Option<[RowLimit; 3]>,
 }
 
-/// Limit that one edge sets on the x of row y: x >= or <= (b y + c) * scale. All numbers except `scale` are exact.
+/// Limit of x in row y because of one edge. With `from_left`, the limit is `x >= (b y + c) * scale`, else it is
+/// `x <= (b y + c) * scale`. All numbers except `scale` are exact.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
     b: f64,
@@ -55,7 +56,7 @@ impl Bounds {
         let Some(limits) = &self.limits else { return spans };
         let mut first = [self.area.left as f64; LANES];
         let mut last = [self.area.right as f64 - 1.0; LANES];
-        // Each edge limits every row from one side.
+        // Each edge limits every row at one side.
         for limit in limits {
             let mut at = [0.0; LANES];
             for (i, at) in at.iter_mut().enumerate() {
@@ -84,7 +85,7 @@ impl RowLimit {
     #[inline(always)]
     fn from_edge(e: &Linear) -> Self {
         let a = f64::from(e.a);
-        // A horizontal edge limits no row. The box already accounts for it.
+        // A horizontal edge limits no row, because the bounding box already has this limit.
         let scale = if e.a == 0 { 0.0 } else { -1.0 / a };
         Self { b: f64::from(e.b), c: f64::from(e.c), scale, from_left: e.a >= 0 }
     }
@@ -133,17 +134,18 @@ pub(super) struct Boxes {
     /// First column (0 to 128) and last column (-1 to 127) of each triangle inside the array.
     pub(super) x: [PerTriangle<i32>; 2],
     pub(super) y: [PerTriangle<i32>; 2],
-    /// True if the edges enclose a finite triangle. Then the normals of the edges turn in the same direction at all
-    /// corners.
+    /// True if the edges enclose a finite triangle. In this case, the normals of the edges turn in the same direction
+    /// at all corners.
     pub(super) closed: PerTriangle<bool>,
-    /// True if no edge value in the array exceeds 32 bits. Then no value wraps, and every edge is a straight line.
+    /// True if no edge value in the array exceeds 32 bits. In this case, no value wraps around, and every edge is a
+    /// straight line.
     straight: PerTriangle<bool>,
 }
 
 /// Distance from the array's first pixel, in pixels. Within this distance, edge values must fit 32 bits.
 ///
-/// Then each coefficient has at most 22 bits, and the constant has 31 bits. So their products are exact in the 53 bits
-/// of an `f64`.
+/// Each coefficient then has at most 22 bits, and the constant has 31 bits. Their products are therefore exact in the
+/// 53 bits of an `f64`.
 const REACH: f64 = 512.0;
 
 impl Boxes {
@@ -153,7 +155,7 @@ impl Boxes {
         let a = [doubles(&p.a), doubles(&q.a), doubles(&r.a)];
         let b = [doubles(&p.b), doubles(&q.b), doubles(&r.b)];
         let c = [doubles(&p.c), doubles(&q.c), doubles(&r.c)];
-        // Truth values are numbers until the end, since vectors of numbers are fastest.
+        // Truth values are numbers until the end, because vectors of numbers are fastest.
         let mut reach = [0.0_f64; LANES];
         let mut least = [f64::INFINITY; LANES];
         let mut greatest = [f64::NEG_INFINITY; LANES];
@@ -163,8 +165,8 @@ impl Boxes {
             let f = (e + 1) % 3;
             for i in 0..LANES {
                 reach[i] = reach[i].max(REACH * (a[e][i].abs() + b[e][i].abs()) + c[e][i].abs());
-                // The corner is the point where edges e and f are zero. Its coordinates are the products below, divided
-                // by the determinant.
+                // The corner is the point where edges e and f are zero. The coordinates of the corner are the products
+                // below, divided by the determinant.
                 let determinant = a[e][i] * b[f][i] - a[f][i] * b[e][i];
                 least[i] = least[i].min(determinant);
                 greatest[i] = greatest[i].max(determinant);
@@ -190,7 +192,7 @@ impl Boxes {
         Self { x: pixels(&low[0], &high[0]), y: pixels(&low[1], &high[1]), closed, straight }
     }
 
-    /// Returns the bounds of triangle `i`; `None` if no pixel can be inside. `edges` must be the edges of this
+    /// Returns the bounds of triangle `i`. Returns `None` if no pixel can be inside. `edges` must be the edges of this
     /// triangle.
     #[inline(always)]
     pub(super) fn bounds(&self, i: usize, edges: &[Linear; 3]) -> Option<Bounds> {
@@ -243,7 +245,7 @@ fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>;
 /// A cast with `as` would not compile to a single vector instruction.
 #[inline(always)]
 fn small(value: f64) -> i32 {
-    /// 1.5 * 2^52: after this number is added, the low bits of the sum hold the integer.
+    /// The number 1.5 * 2^52. After the addition of this number, the low bits of the sum hold the integer.
     const UNIT: f64 = 6_755_399_441_055_744.0;
     (value + UNIT).to_bits() as i32
 }
@@ -299,7 +301,7 @@ mod tests {
                 continue;
             };
             for (x, y) in pixels {
-                // The row is one of several whose spans are computed together.
+                // The spans of several rows are computed together.
                 let place = y % LANES;
                 let spans = bounds.spans(y - place);
                 let [left, right] = [spans.left[place], spans.right[place]].map(|x| x as usize);
@@ -339,7 +341,7 @@ mod tests {
         (area != 0).then(|| (corners, [edge(p, q), edge(q, r), edge(r, p)]))
     }
 
-    /// Uses integer corners and slopes. So no row ends within the margin around a pixel.
+    /// Uses integer corners and slopes, so that no row ends within the margin around a pixel.
     #[test]
     fn bounds_end_where_the_triangle_does() {
         let mut random = Random::new(6);

@@ -11,7 +11,7 @@ use crate::layout::Layout;
 #[repr(align(64))]
 pub(super) struct Values(pub(super) [u32; PIXELS]);
 
-/// A column: the bits `first .. first + width` of all pixels.
+/// A column, which holds the bits `first .. first + width` of all pixels.
 #[derive(Clone, Debug)]
 struct FieldColumn {
     first: usize,
@@ -23,11 +23,12 @@ struct FieldColumn {
 #[derive(Clone, Debug)]
 pub(super) struct PixelColumns {
     columns: Vec<FieldColumn>,
-    /// For each bit of pixel memory, the index of the column that holds it.
+    /// For each bit of pixel memory, the index of the column that holds the bit.
     column_of: [u8; MEMORY_BITS as usize],
 }
 
-/// The part of a field that lies in one column. Bit `low` of the column is bit `at` of the field; `width` bits follow.
+/// The part of a field that lies in one column. The part begins at bit `low` of the column and at bit `at` of the
+/// field, and has `width` bits.
 #[derive(Clone, Copy, Debug)]
 struct FieldPiece {
     column: usize,
@@ -46,7 +47,8 @@ impl PixelColumns {
         Self { columns, column_of }
     }
 
-    /// Returns the index of the column that holds exactly the given bits, or `None` if there is no such column.
+    /// Returns the index of the column that holds exactly the given bits, or `None` if no column holds exactly these
+    /// bits.
     pub(super) fn find(&self, first: usize, width: usize) -> Option<usize> {
         let index = usize::from(*self.column_of.get(first)?);
         let column = &self.columns[index];
@@ -61,7 +63,7 @@ impl PixelColumns {
         &mut self.columns[index].values
     }
 
-    /// Returns several columns at once, or `None` if two indices are equal.
+    /// Returns several columns for modification, or `None` if two indices are equal.
     pub(super) fn many_mut<const N: usize>(&mut self, indices: [usize; N]) -> Option<[&mut Values; N]> {
         let columns = self.columns.get_disjoint_mut(indices).ok()?;
         Some(columns.map(|column| &mut *column.values))
@@ -88,8 +90,8 @@ impl PixelColumns {
         }
     }
 
-    /// Reads a field of all pixels into `out`. The values are extended to 64 bits, by their signs if the field is
-    /// signed.
+    /// Reads a field of all pixels into `out`. Signed values are sign-extended to 64 bits, and unsigned values are
+    /// zero-extended.
     pub(super) fn gather(&self, field: FieldBits, out: &mut [u64]) {
         out.fill(0);
         for piece in self.pieces(field) {
@@ -133,7 +135,7 @@ impl PixelColumns {
     }
 }
 
-/// Returns bit `low` of 64 pixels as one word. The first pixel is the lowest bit of the result.
+/// Returns bit `low` of 64 pixels as one word. The bit of the first pixel is the lowest bit of the result.
 fn plane_word(pixels: &[u32], low: usize) -> u64 {
     pixels.iter().enumerate().fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
 }
@@ -146,8 +148,8 @@ fn column(first: usize, end: usize) -> FieldColumn {
     FieldColumn { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
 }
 
-/// Returns the first bits of all columns. A column begins wherever a field of the layout begins or ends. Longer columns
-/// are cut into columns of at most 32 bits.
+/// Returns the first bits of all columns. A column begins at every bit at which a field of the layout begins or ends.
+/// Longer columns are cut into columns of at most 32 bits.
 fn cuts(layout: &Layout) -> Vec<usize> {
     let mut cuts = vec![0, MEMORY_BITS as usize];
     // First and last bits of the layout's fields.
@@ -171,7 +173,8 @@ fn cuts(layout: &Layout) -> Vec<usize> {
     split_wide(&cuts)
 }
 
-/// Returns the fields that the commands' programs use in the scratch. Their addresses are absolute.
+/// Returns the fields of the scratch memory that the programs of commands use. The addresses of these fields are
+/// absolute.
 fn temporaries(layout: &Layout) -> Vec<Operand> {
     let sphere = SphereScratch::in_layout(layout).map(|s| vec![s.z, s.root]);
     let shade = ShadeFields::in_layout(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);

@@ -7,10 +7,11 @@ use std::ops::Range;
 
 const SIZE: usize = 128;
 const MARGIN: f64 = 1e-3;
-/// Bound on the rounding errors of a discriminant, as a share of its terms.
+/// Upper limit of the rounding errors of a discriminant, as a fraction of its terms.
 const ROUNDING: f64 = 1e-9;
 
-/// The pixels at which a quadratic can be positive. The quadratic's origin is the array's upper left pixel.
+/// The pixels at which a quadratic expression can be positive. The origin of the expression is the array's upper left
+/// pixel.
 pub(super) struct Ellipse {
     rows: Range<usize>,
     /// The quadratic that limits the columns of each row. `None` if no row is limited.
@@ -23,8 +24,8 @@ impl Ellipse {
             return Self { rows: 0..SIZE, quadratic: None };
         }
         let [xx, xy, yy, x, y, one] = [q.xx, q.xy, q.yy, q.x, q.y, q.one].map(|c| c as f64);
-        // A row has pixels inside if the discriminant of the quadratic in x is positive. As a function of y, the
-        // discriminant is a quadratic too.
+        // A row has pixels inside if the discriminant of the quadratic expression in x is positive. The discriminant is
+        // a quadratic function of y.
         let rows = positive(xy * xy - 4.0 * xx * yy, 2.0 * xy * x - 4.0 * xx * y, x * x - 4.0 * xx * one);
         Self { rows, quadratic: Some(*q) }
     }
@@ -33,7 +34,7 @@ impl Ellipse {
         self.rows.clone()
     }
 
-    /// Returns the columns of a row at which the quadratic can be positive.
+    /// Returns the columns of a row at which the quadratic expression can be positive.
     #[inline(always)]
     pub(super) fn columns(&self, row: usize) -> Range<usize> {
         let Some(q) = &self.quadratic else { return 0..SIZE };
@@ -42,8 +43,8 @@ impl Ellipse {
     }
 }
 
-/// Returns the coefficient of x and the constant of a quadratic in one row. The coefficient of x squared is the same in
-/// all rows.
+/// Returns the coefficient of x and the constant of a quadratic expression in one row. The coefficient of x squared is
+/// the same in all rows.
 #[inline(always)]
 pub(super) const fn along_row(q: &Quadratic, row: usize) -> (i64, i64) {
     let y = row as i64;
@@ -141,8 +142,8 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Uses coefficients whose squares are rounded. Where a circle has a single pixel or its last row, the difference
-    /// of the squares is small. Rounding can cancel this difference.
+    /// Uses coefficients whose squares are rounded. At a circle of a single pixel, or at the last row of a circle, the
+    /// difference of the squares is small. Rounding can cancel this difference.
     #[test]
     fn small_circles_reach_their_last_row_however_numbers_round() {
         let mut random = Random::new(13);

@@ -7,7 +7,8 @@ const WIDTH: usize = 128;
 
 /// One byte for each pixel: 255 if the pixel is enabled, else 0.
 ///
-/// The register remembers which rows can contain enabled pixels. So clearing it after a small primitive is fast.
+/// The register also records the rows that can contain enabled pixels. Clearing the register after a small primitive is
+/// therefore fast.
 #[derive(Clone, Debug)]
 pub(super) struct Enable {
     pixels: Box<[u8; PIXELS]>,
@@ -24,20 +25,22 @@ impl Enable {
         &self.pixels
     }
 
-    /// Returns all pixels, to change any of them.
+    /// Returns all pixels for modification.
     pub(super) fn pixels_mut(&mut self) -> &mut [u8; PIXELS] {
         self.used = 0..WIDTH;
         &mut self.pixels
     }
 
-    /// Disables all pixels, and returns them. The caller must change pixels only in the given rows.
+    /// Disables all pixels, and returns the pixels for modification. The caller must change pixels only in the given
+    /// rows.
     pub(super) fn emptied(&mut self, rows: Range<usize>) -> &mut [u8; PIXELS] {
         self.pixels[WIDTH * self.used.start..WIDTH * self.used.end].fill(0);
         self.used = rows;
         &mut self.pixels
     }
 
-    /// Returns all pixels. The caller must change pixels only in the rows of the last call of [`Self::emptied`].
+    /// Returns all pixels for modification. The caller must change pixels only in the rows of the last call of
+    /// [`Self::emptied`].
     #[inline(always)]
     pub(super) fn rows_in_use(&mut self) -> &mut [u8; PIXELS] {
         &mut self.pixels

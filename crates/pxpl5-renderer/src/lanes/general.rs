@@ -1,4 +1,4 @@
-//! General path of the fast array: it executes any instruction on all pixels, one field after the other.
+//! General path of the fast array, which executes any instruction on all pixels, one field after the other.
 
 use super::{Lanes, values};
 use crate::array::{Executed, FaultKind, OutputRegion, PIXELS};
@@ -7,7 +7,7 @@ use crate::isa::{ArithmeticOp, ArrayInstruction, ExpressionUse, Operand, Test};
 use pxpl5_wire::REGION_SIZE;
 
 impl Lanes {
-    /// Executes an instruction. Its operands must have been checked.
+    /// Executes an instruction whose operands were already checked.
     pub(super) fn instruction(
         &mut self,
         instruction: &ArrayInstruction,
@@ -42,7 +42,7 @@ impl Lanes {
             ArrayInstruction::EnableNone => self.enable.fill(false),
             ArrayInstruction::EnableInvert => self.enable.pixels_mut().iter_mut().for_each(|e| *e = !*e),
             ArrayInstruction::EnableLoad(bit) => {
-                // Enable all pixels, then disable those whose bit is not set.
+                // Enable all pixels, then disable the pixels whose bit is not set.
                 self.enable.fill(true);
                 self.disable_unless(bit, |v| v & 1 == 1)?;
             }
@@ -122,8 +122,8 @@ impl Lanes {
         self.store(destination)
     }
 
-    /// Computes two results from `source` and the second operand buffer. Stores the first result in `destination` and
-    /// the second result in `source`.
+    /// Computes two results from `source` and the second operand buffer, such as quotient and remainder. Stores the
+    /// first result in `destination` and the second result in `source`.
     fn two_results(
         &mut self,
         destination: Operand,
@@ -196,7 +196,7 @@ impl Lanes {
         }
     }
 
-    /// Computes first buffer := f(expression, shift, second buffer) for every pixel.
+    /// Sets the first operand buffer to f(expression, shift, second operand buffer) for every pixel.
     fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {

@@ -1,5 +1,5 @@
-//! Fast execution of spheres and shading. Each of these commands draws many pixels, so decoding all of its words costs
-//! little in comparison.
+//! Fast execution of spheres and shading. Each of these commands draws many pixels. In comparison, the decoding of all
+//! its words takes little time.
 
 use super::Lanes;
 use super::columns::ContextColumns;
@@ -22,7 +22,7 @@ struct SpherePlace {
 
 impl Lanes {
     /// Executes the sphere or shading command at the start of `words`, and returns its length in words. Returns `None`
-    /// if the words are no such command of this layout.
+    /// if the words are not such a command of this layout.
     pub(super) fn large_command(
         &mut self,
         kind: CommandKind,
@@ -109,7 +109,7 @@ impl Lanes {
         Some(())
     }
 
-    /// Stores the coefficients for a later reuse. Returns the sphere with the array's upper left pixel as origin, and
+    /// Stores the coefficients for later reuse. Returns the sphere with the array's upper left pixel as origin, and
     /// with shifts for this layout.
     fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);

@@ -1,5 +1,5 @@
-//! Steps common to triangles of all widths: values of expressions for a vector of pixels, the depth test, and the
-//! stores.
+//! Steps that triangles of all widths have in common: the values of expressions for a vector of pixels, the depth test,
+//! and the stores.
 
 use super::columns::Values;
 use super::enable::Enable;
@@ -7,7 +7,8 @@ use super::shape::Shape;
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Word};
 
-/// The values of a linear expression at the pixels of a vector, and the difference to the next vector in the row.
+/// The values of a linear expression at the pixels of a vector, and the increase from this vector to the next vector in
+/// the row.
 #[derive(Clone, Copy)]
 pub(super) struct Walk<V> {
     pub(super) value: V,
@@ -23,13 +24,13 @@ impl<V: SimdVector> Walk<V> {
     /// Returns the values at the pixels of a vector with groups of [four](crate::simd::FOUR) pixels. The first pixel
     /// has the value `first`.
     ///
-    /// The difference to the next vector is 0, since such vectors do not advance along a row.
+    /// The increase to the next vector is 0, because such vectors do not advance along a row.
     #[inline(always)]
     pub(super) fn fours(first: i32, a: i32, b: i32) -> Self {
         Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
     }
 
-    /// Returns the values for a vector some rows below. They are greater by `b`.
+    /// Returns the values for a vector some rows below, where all values are greater by `b`.
     #[inline(always)]
     pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }
@@ -43,7 +44,7 @@ impl<V: SimdVector> Walk<V> {
 
 /// A way to store surface values (colour or normal) in the pixels that pass the depth test.
 pub(super) trait PaintTriangle {
-    /// Sets the colour of the next triangle. It is ignored if colours are interpolated.
+    /// Sets the colour of the next triangle. The colour has no effect if colours are interpolated.
     fn begin(&mut self, colour: Word);
     /// Stores values in the pixels of a vector for which `mask` is true. `at` is the index of the vector's first pixel.
     fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
@@ -68,7 +69,7 @@ pub(super) struct DepthTest<V: SimdVector> {
 
 impl<P: PaintTriangle> TrianglePainter<'_, P> {
     /// Tests the pixels of a vector. A pixel passes if no edge is negative and its new depth is nearer than the stored
-    /// one.
+    /// depth.
     #[inline(always)]
     pub(super) fn test<V: SimdVector, S: Shape>(
         &self,

@@ -1,13 +1,13 @@
-//! Integer square roots and quotients. They are computed in floating point, then corrected to the exact integer.
+//! Integer square roots and quotients. The results are computed in floating point, then corrected to the exact integer.
 //!
 //! IEEE 754 requires correctly rounded square roots and quotients, so the results are the same on every host. All
 //! operands fit the 24 bits of a single-precision number, so they are exact.
 
-/// Returns the integer nearest to a number from 0 to 2^22. A cast with `as` would be slower, since it checks each lane
-/// for overflow.
+/// Returns the integer nearest to a number from 0 to 2^22. A cast with `as` would be slower, because it checks each
+/// lane for overflow.
 #[inline(always)]
 fn nearest(v: f32) -> u32 {
-    // Adding 2^23 leaves no fraction bits, so the mantissa holds the integer.
+    // The sum with 2^23 has no fraction bits, so its mantissa holds the integer.
     (v + 8_388_608.0).to_bits() & 0x7f_ffff
 }
 

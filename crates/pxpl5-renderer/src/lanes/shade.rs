@@ -1,7 +1,7 @@
 //! Fast shading, row by row.
 //!
-//! The code follows the program of [`crate::Shade`] instruction by instruction. So the scratch fields also end with the
-//! same values.
+//! The code follows the program of [`crate::Shade`] instruction by instruction. The scratch fields therefore also have
+//! the same values at the end.
 
 use super::columns::Values;
 use super::roots::{divide_10, square_root_24};
@@ -14,7 +14,7 @@ const WIDTH: usize = 128;
 /// Number of result columns: colour, a, b, c, root, diffuse, specular.
 const RESULTS: usize = 7;
 
-/// A kernel that shades all pixels whose depth differs from that of the far plane.
+/// A kernel that shades all pixels whose depth differs from the depth of the far plane.
 pub(super) struct ShadeAll<'a> {
     pub(super) shade: Shade,
     pub(super) far: u32,
@@ -54,7 +54,7 @@ impl ShadeAll<'_> {
         let [x, y, z] = [self.row_of(0, at), self.row_of(1, at), self.row_of(2, at)];
         let mut colour = [0; WIDTH];
         colour.copy_from_slice(&self.results[0].0[at..at + WIDTH]);
-        // Shade all pixels of the row, covered or not: a loop without branches is vectorized.
+        // Shade all pixels of the row, covered or not, because only a loop without branches is vectorized.
         for i in 0..WIDTH {
             let pixel = shade_pixel(&self.shade, [x[i], y[i], z[i]], colour[i]);
             out[0][i] = pixel[0];
@@ -90,7 +90,7 @@ const fn twelve(v: i16) -> i32 {
     (v as i32) << 20 >> 20
 }
 
-/// Returns `old` with its low `width` bits replaced by those of `low`.
+/// Returns `old` with its low `width` bits replaced by the low bits of `low`.
 #[inline(always)]
 const fn insert(old: u32, low: u32, width: u32) -> u32 {
     let mask = (1 << width) - 1;
@@ -126,7 +126,7 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     let c = insert(c, shine, 18);
     let mut rgb = 0;
     let mut shift = 16;
-    // Red, green and blue in turn.
+    // Compute red, green and blue.
     for _ in 0..3 {
         let product = (colour >> shift & 255) * light;
         let sum = (product >> 8) + (shine >> 10);
@@ -138,8 +138,8 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     [rgb, a, b, c, root, insert(diffuse, light, 8), specular]
 }
 
-/// Returns the cosine, which is 0 for surfaces that face away, and the final content of the field `c`. That field holds
-/// the remainder of the division, and the sign of the product in bit 23.
+/// Returns the cosine and the final content of the field `c`. The cosine is 0 for surfaces that face away. The field
+/// holds the remainder of the division, and the sign of the product in bit 23.
 #[inline(always)]
 fn cosine(vector: [i16; 3], n: [i32; 3], root: u32) -> (u32, u32) {
     let dot = n[0] * twelve(vector[0]) + n[1] * twelve(vector[1]) + n[2] * twelve(vector[2]);

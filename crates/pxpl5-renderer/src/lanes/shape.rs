@@ -1,9 +1,9 @@
-//! Arrangements in the array of the pixels that one vector holds.
+//! Arrangements of the pixels of one vector in the array.
 
 use super::columns::Values;
 use crate::simd::SimdVector;
 
-/// An arrangement in the array of a vector's pixels, relative to the first pixel.
+/// An arrangement of a vector's pixels in the array, relative to the first pixel.
 pub(super) trait Shape {
     fn load<V: SimdVector>(column: &Values, at: usize) -> V;
     /// Overwrites the pixels for which the mask is true. `old` must be the current content of the pixels.

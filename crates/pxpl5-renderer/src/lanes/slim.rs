@@ -1,7 +1,7 @@
-//! Fast drawing of triangles of at most four columns. In a dense scene, most triangles are so slim.
+//! Fast drawing of triangles of at most four columns. In a dense scene, most triangles have at most four columns.
 //!
-//! A vector covers four columns of several rows. So one vector holds nearly every slim triangle. The values at the
-//! first pixels are computed for all triangles of a batch at once.
+//! A vector covers four columns of several rows, so one vector is sufficient for nearly every slim triangle. The values
+//! at the first pixels are computed for all triangles of a batch at once.
 
 use super::bounds::{Boxes, Edges, PerTriangle};
 use super::painter::{PaintTriangle, TrianglePainter, Walk};
@@ -14,11 +14,12 @@ const WIDTH: i32 = 128;
 
 /// The slim triangles of a batch.
 pub(super) struct SlimTriangles {
-    /// First column of each triangle's vectors. If needed, it is moved left so that the vectors lie inside the array.
+    /// First column of each triangle's vectors. If needed, the column is moved left so that the vectors lie inside the
+    /// array.
     x: PerTriangle<i32>,
     y: PerTriangle<i32>,
-    /// Number of vectors for each triangle, one below the other. It is 0 for a triangle without pixels, and -1 for a
-    /// triangle that is not slim.
+    /// Number of vectors for each triangle, one below the other. The number is 0 for a triangle without pixels, and -1
+    /// for a triangle that is not slim.
     vectors: PerTriangle<i32>,
     /// Values of each triangle's edges at the first pixel of its first vector.
     edges: [PerTriangle<i32>; 3],
@@ -64,7 +65,7 @@ impl SlimTriangles {
             let held = if columns > 0 { vectors } else { 0 };
             all.vectors[i] = if columns <= FOUR as i32 { held } else { -1 };
         }
-        // A separate loop, so that this loop and the one above are both vectorized.
+        // This loop is separate, so that compilers can vectorize both this loop and the loop above.
         for i in 0..LANES {
             all.vectors[i] = if boxes.closed[i] { all.vectors[i] } else { -1 };
         }

@@ -14,7 +14,7 @@ const WIDTH: usize = 128;
 
 /// A sphere to draw. Its expressions have the array's upper left pixel as origin.
 pub(super) struct DrawSphere<'a, P> {
-    /// Silhouette and depth of the sphere. The shifts are those for the layout's width of roots.
+    /// Silhouette and depth of the sphere. The shifts match the layout's width of roots.
     pub(super) body: SphereBody,
     pub(super) root_bits: u8,
     pub(super) z_shift: u8,
@@ -79,8 +79,8 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         }
     }
 
-    /// Computes a mask of the pixels inside the silhouette. Also computes the square root of the silhouette's used bits
-    /// at each pixel.
+    /// Computes a mask of the pixels inside the silhouette, and the square root of the silhouette's used bits at each
+    /// pixel.
     #[inline(always)]
     fn roots(&self, y: usize, left: usize, inside: &mut [u32], roots: &mut [u32]) {
         let (x, one) = along_row(&self.body.silhouette, y);
@@ -123,7 +123,8 @@ impl PaintSphere for PaintGouraudSphere<'_> {
         for (linear, factor) in self.components.iter().zip(self.factors) {
             let first = linear.at(left as i32, y as i32);
             for i in 0..n {
-                // The product of the root's upper bits and the factor, as the program's multiplication leaves it.
+                // The product of the root's upper bits and the factor, with the same bits as after the program's
+                // multiplication.
                 let upper = (roots[i] >> (self.root_bits - 8)) as i32;
                 let low = upper * i32::from(factor);
                 let plane = first.wrapping_add(linear.a.wrapping_mul(i as i32)) >> COLOUR_FRACTION_BITS;

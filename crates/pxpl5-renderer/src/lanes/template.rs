@@ -5,11 +5,11 @@ use crate::isa::{head, opcode};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// A template of a command of `N` words. Each operand takes a whole word. The template compares all other words.
+/// A template of a command of `N` words. Each operand occupies a whole word. The template compares all other words.
 #[derive(Clone, Debug)]
 pub(super) struct Template<const N: usize> {
     words: [Word; N],
-    /// Comparison mask for each word: all ones for a word that is no operand, else zero.
+    /// Comparison mask for each word: zero for a word with an operand, and all ones for other words.
     fixed: [Word; N],
     pub(super) cost: CommandCost,
 }
@@ -88,7 +88,7 @@ impl Templates {
     }
 }
 
-/// Returns true if the next instruction is *enable all*, with any label. If it is, no instruction reads the current
+/// Returns true if the next instruction is *enable all*, with any label. In this case, no instruction reads the current
 /// Enable.
 pub(super) fn next_enables_all(next: Option<&Word>) -> bool {
     const LABEL: Word = 0xff << 16;

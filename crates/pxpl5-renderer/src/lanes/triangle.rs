@@ -1,4 +1,4 @@
-//! Fast drawing of triangles: a vector of pixels at a time, with masks instead of branches.
+//! Fast drawing of triangles. The code handles a vector of pixels at a time, with masks instead of branches.
 
 use super::bounds::{Area, Boxes, Edges, Spans};
 use super::columns::Values;
@@ -14,7 +14,7 @@ use std::ops::Range;
 
 const WIDTH: usize = 128;
 
-/// A linear expression that can be evaluated for a vector at any pixel of the array.
+/// A linear expression that can be evaluated for a vector of pixels at any place in the array.
 #[derive(Clone, Copy)]
 struct Slope<V> {
     /// Values at the first pixels of the array's top row, one for each lane.
@@ -53,19 +53,19 @@ pub(super) struct DrawTriangles<'a, const N: usize, P> {
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// A kernel that draws a batch of triangles without command words. It leaves Enable unchanged, since the next command
-/// overwrites Enable before any command reads it.
+/// A kernel that draws a batch of triangles without command words. The kernel leaves Enable unchanged, because the next
+/// command overwrites Enable before any command reads it.
 pub(super) struct DrawBatch<'a, P> {
     pub(super) batch: &'a TriangleBatch<'a>,
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Access to the depth, components and colour of a triangle, which are read only if needed. Expressions refer to the
-/// picture's upper left pixel.
+/// Access to the depth, components and colour of a triangle. These values are read only if needed. Expressions refer to
+/// the picture's upper left pixel.
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
-    /// Returns the object's colour. The result is meaningless for a triangle with interpolated colour.
+    /// Returns the object's colour. For a triangle with interpolated colour, the result has no meaning.
     fn colour(&self) -> Word;
 }
 
@@ -81,7 +81,7 @@ impl<const N: usize> Surface for &[Word; N] {
         [coefficients(self, p), coefficients(self, q), coefficients(self, r)]
     }
 
-    /// Returns the command's last word. In commands for Phong triangles it is the colour.
+    /// Returns the command's last word. In commands for Phong triangles, this word is the colour.
     #[inline(always)]
     fn colour(&self) -> Word {
         self[N - 1]
@@ -117,7 +117,7 @@ struct CurrentTriangle<S> {
     /// Edge expressions relative to the array's upper left pixel.
     edges: [Linear; 3],
     surface: S,
-    /// True if a later command reads the Enable values that this triangle leaves.
+    /// True if a later command reads the values of Enable after this triangle.
     keep: bool,
 }
 
@@ -128,7 +128,7 @@ impl<const N: usize, P: PaintTriangle> VectorKernel for DrawTriangles<'_, N, P> 
     fn run<V: SimdVector>(mut self) -> usize {
         let (commands, _) = self.words.as_chunks::<N>();
         let drawn = commands.iter().take_while(|command| self.template.fits(command)).count();
-        // After every triangle except the last, the next triangle sets Enable anew.
+        // Each triangle overwrites Enable, so only the Enable of the last triangle can be read later.
         let read_later = !next_enables_all(self.words.get(drawn * N));
         let mut left = drawn;
         for some in commands[..drawn].chunks(LANES) {
@@ -155,7 +155,7 @@ impl<P: PaintTriangle> VectorKernel for DrawBatch<'_, P> {
         let mut edges = Edges(*self.batch.edges);
         edges.localise(self.painter.origin);
         let boxes = Boxes::enclosing(&edges);
-        // Slim triangles are drawn by their own code, with the whole triangle in one or a few vectors.
+        // Slim triangles have their own code, with the whole triangle in one or a few vectors.
         let slim = SlimTriangles::among::<V>(&boxes, &edges, self.batch.planes, self.painter.origin);
         for i in 0..self.batch.len.min(LANES) {
             if slim.has(i) {
@@ -228,7 +228,8 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
 
     /// Draws a triangle whose rows each fit in one vector. The vectors begin at column `x`.
     ///
-    /// The function draws two rows at a time. A mispredicted branch costs more time than a row outside the triangle.
+    /// The function draws two rows at a time, because a mispredicted branch takes more time than a row outside the
+    /// triangle.
     #[inline(always)]
     fn narrow<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);
@@ -300,8 +301,8 @@ fn components_below<V: SimdVector>(surface: &impl Surface, [p, q, r]: &[Walk<V>;
     [p.below(i.b), q.below(j.b), r.below(k.b)]
 }
 
-/// Reads the edges of several commands. It must not be inlined: the compiler would then assemble the vectors from
-/// single numbers.
+/// Reads the edges of several commands. The function must not be inlined, because the compiler would then assemble the
+/// vectors from single numbers.
 #[inline(never)]
 fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     for (i, words) in commands.iter().enumerate().take(LANES) {
@@ -325,8 +326,8 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
-/// Returns the start values of three expressions. The three calls are written out. The compiler would not use the
-/// vector unit in a closure.
+/// Returns the start values of three expressions. The three calls are written out, because the compiler would not use
+/// the vector unit in a closure.
 #[inline(always)]
 fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
     let x = x as i32;

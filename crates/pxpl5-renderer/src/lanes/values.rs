@@ -1,4 +1,5 @@
-//! Operations on values, which are fields extended to 64 bits, by the sign if the field is signed.
+//! Operations on values. A value is a field that is extended to 64 bits: sign-extended if the field is signed,
+//! otherwise zero-extended.
 
 use crate::isa::{ArithmeticOp, Test};
 

@@ -16,8 +16,8 @@ impl Lanes {
     /// Executes the command at the start of `words`, and returns its length in words. Returns `None` if the words are
     /// not a command of this layout.
     ///
-    /// If the command is a triangle, the triangles of the same kind that directly follow it are executed too. The
-    /// length includes them.
+    /// If the command is a triangle, the function also executes the triangles of the same kind that directly follow.
+    /// The length includes these triangles.
     #[inline]
     pub(super) fn whole_command(&mut self, words: &[Word], executed: &mut Executed) -> Option<usize> {
         let kind = CommandKind::from_opcode((words[0] >> 16) as u8)?;
@@ -33,7 +33,7 @@ impl Lanes {
         Some(commands * kind.words() as usize)
     }
 
-    /// Returns the columns of the selected context. They are cached until another context is selected.
+    /// Returns the columns of the selected context. The result is cached until another context is selected.
     #[inline]
     fn context_columns(&mut self) -> Option<ContextColumns> {
         if self.selected.is_none_or(|known| known.base != self.controller.base) {
@@ -61,14 +61,14 @@ impl Lanes {
         Some([x, y, z])
     }
 
-    /// Returns the index of the column that holds exactly this field, or `None` if there is no such column.
+    /// Returns the index of the column that holds exactly this field, or `None` if no column holds exactly this field.
     pub(super) fn column(&self, operand: Operand) -> Option<usize> {
         let FieldBits { first, width, .. } = self.controller.bits(operand).ok()?;
         self.columns.find(first, width)
     }
 
-    /// Executes a clear. It reads the depth from the words, since words can also clear Z to a depth other than that of
-    /// [`crate::Clear`].
+    /// Executes a clear. The function reads the depth from the words, because words can also clear Z to a depth that
+    /// [`crate::Clear`] does not use.
     fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.clear.as_ref()?;
         let (&[_, _, colour, _, depth], behind) = template.split(words)?;
@@ -120,8 +120,8 @@ impl Lanes {
         Some((template.cost, drawn))
     }
 
-    /// Draws a batch of triangles like the corresponding commands. Enable and the stored coefficients can differ
-    /// afterwards. Returns `None` if the layout does not support the command.
+    /// Draws a batch of triangles like the corresponding commands. However, Enable and the stored coefficients can
+    /// differ from the result of these commands. Returns `None` if the layout does not support the command.
     pub(super) fn batch(&mut self, batch: &TriangleBatch<'_>) -> Option<()> {
         let columns = self.context_columns()?;
         let origin = self.controller.origin();

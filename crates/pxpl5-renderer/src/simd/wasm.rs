@@ -6,7 +6,7 @@
 use super::{FOUR, ROW, SimdVector};
 use std::arch::wasm32::*;
 
-/// Eight lanes; the first vector holds the first four.
+/// Eight lanes. The first of the two vectors holds the first four lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Simd128([v128; 2]);
 
@@ -108,7 +108,7 @@ impl SimdVector for Simd128 {
 
     #[inline(always)]
     fn shift_right(self, by: u32) -> Self {
-        // The vector unit's own shift takes the count modulo 32.
+        // The shift of the vector unit uses the count modulo 32.
         if by < 32 { self.map(|v| u32x4_shr(v, by)) } else { Self::splat(0) }
     }
 

@@ -72,7 +72,8 @@ impl Bench {
         self.bench.run_until(until, |event, context| device.handle(event, context));
     }
 
-    /// Returns, for each message, the time of the board's notice and the time at which its last word is in the FIFO.
+    /// Returns two times for each message: the time of the board's notice, and the time at which the last word is in
+    /// the FIFO.
     pub(crate) fn accepted(&self) -> Vec<(Time, Time)> {
         let accepted = self.bench.outputs.iter().filter_map(|(at, output)| match output {
             RendererOutput::Accept { last_word_at } => Some((*at, *last_word_at)),
@@ -102,7 +103,7 @@ pub(crate) fn list(runs: &[CommandRun], copies: &[CopyOrder]) -> CommandList {
     CommandList { runs: runs.to_vec(), context: 0, copies: copies.to_vec(), content: None }
 }
 
-/// Returns a list of commands with their words; equal consecutive commands form one run.
+/// Returns a list of commands with their words. Equal consecutive commands form one run.
 pub(crate) fn list_of(commands: &[Command], copies: &[CopyOrder]) -> CommandList {
     let mut words: Vec<Word> = Vec::new();
     commands.iter().for_each(|command| command.encode(&LAYOUT(), &mut words).expect("it fits"));

@@ -16,9 +16,9 @@ pub(crate) enum Receiver {
         words: usize,
         /// Time that each word takes to leave the FIFO.
         drain: Span,
-        /// No word enters before this time after the announcement.
+        /// Time from the announcement to the first possible entry of a word.
         opens_after: Span,
-        /// Time from the announcement to the answer, one tick at least.
+        /// Time from the announcement to the answer, at least one tick.
         answers_after: Span,
     },
 }
@@ -31,7 +31,7 @@ impl Receiver {
 
 pub(crate) const ELASTIC: [Receiver; 64] = [Receiver::Elastic; 64];
 
-/// Times of each message by its number in the traffic: entry of the last word, and answer to the sender.
+/// Times of each message, by its number in the traffic: the entry of its last word, and the answer to its sender.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Times {
     pub(crate) accepted: BTreeMap<u64, Time>,
@@ -127,8 +127,9 @@ struct WordSlots {
     n: u32,
 }
 
-/// Returns the entry of the last word by recurrence. A word enters one slot after the previous word, when there is room
-/// and the receiver is open. `departures` has the times at which the last words leave the FIFO.
+/// Returns the time at which the last word enters, computed by a recurrence. A word enters one slot after the previous
+/// word, or later, when the FIFO has room and the receiver is open. `departures` has the times at which the last words
+/// leave the FIFO.
 fn last_word(receiver: Receiver, departures: &mut VecDeque<Time>, slots: WordSlots) -> Time {
     let Receiver::Fifo { words, drain, .. } = receiver else { unreachable!() };
     let mut entered = slots.begins;

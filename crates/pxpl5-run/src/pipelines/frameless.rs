@@ -18,10 +18,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::view::RandomOrder;
 
-/// The pipeline of frameless rendering. It draws blocks of the frame in a random order, each block once per pass.
+/// The pipeline of frameless rendering, which draws blocks of the frame in a random order, each block once per pass.
 ///
-/// Each batch of blocks uses the newest view and is shown at once. A *pass* draws every block once. The papers update
-/// single pixels, but a message with a single pixel would take 17 words on the ring.
+/// Each batch of blocks uses the newest view and is shown immediately, without a swap. A *pass* draws every block once.
+/// The papers update single pixels, but a message with a single pixel would take 17 words on the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frameless {
     /// Width and height of a block, 4 to 128 pixels.
@@ -41,8 +41,8 @@ impl Frameless {
         Self { block: 16, batch: 0, seed: 1 }
     }
 
-    /// Returns the number of blocks in a batch. While one slave processor transforms, the blocks of the others pass
-    /// through the frame buffer's port.
+    /// Returns the number of blocks in a batch. While one slave processor transforms, the blocks of the other slave
+    /// processors pass through the frame buffer's port.
     ///
     /// A run of i860 code uses a fixed number, because the time of code is unknown in advance.
     fn batch(&self, record: &Record, pass: TransformCost, runs_code: bool) -> u32 {
@@ -85,15 +85,15 @@ impl Default for Frameless {
     }
 }
 
-/// Smallest number of blocks in a batch (assumed). With fewer blocks, the master's 24 us per order would limit the
-/// rate.
+/// Smallest number of blocks in a batch (assumed). With fewer blocks, the master would limit the rate, because each of
+/// its orders to a slave takes 24 us.
 ///
 /// With more blocks than [`MOST_BATCH`], a view would be in use for too long (assumed).
 const LEAST_BATCH: u64 = 4;
 const MOST_BATCH: u64 = 64;
 
-/// Number of blocks in a batch if i860 code runs (assumed; see pphigs, kernels/order_rules.md). A fixed number is used,
-/// because the time of the code is unknown in advance.
+/// Number of blocks in a batch if i860 code runs (assumed; see kernels/order_rules.md in the crate pphigs). A fixed
+/// number is used, because the time of the code is unknown in advance.
 const BATCH_OF_CODE: u32 = 16;
 
 /// Returns the first time after an instant at which the display's beam reaches a region.
@@ -153,13 +153,14 @@ impl Pipeline for Frameless {
 }
 
 impl PictureRules for Frameless {
-    /// Returns the updates. The last block of an update defines the times of the whole update.
+    /// Returns the updates, each of which draws one batch of blocks. The last block of an update defines the times of
+    /// the whole update.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
         let video = display.video();
         let last = last_blocks(&observation.arrivals);
-        // An update is complete when as many blocks have arrived as the largest update has.
+        // An update is complete when its number of arrived blocks equals the number of blocks of the largest update.
         let batch = observation.most_regions_of_a_picture().max(1);
         let times = samples(record).filter_map(|mark| {
             let (blocks, copied_at, target) = last.get(&mark.picture)?;
@@ -174,7 +175,7 @@ impl PictureRules for Frameless {
             })
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
-        // Updates may be shown in another order than that of their numbers.
+        // The order in which updates are shown may differ from the order of their numbers.
         times.sort_by_key(|times| (times.shown_at, times.picture));
         times
     }
@@ -195,7 +196,7 @@ impl PictureRules for Frameless {
         "no picture is ever due: each block is shown when it arrives, and there are no frames"
     }
 
-    /// Returns the number of updates in a pass, because a pass draws a whole picture.
+    /// Returns the number of updates (batches of blocks) in a pass, because a pass draws a whole picture.
     fn updates_per_picture(&self, record: &Record) -> f64 {
         f64::from(self.blocks()) / f64::from(record.observation().most_regions_of_a_picture().max(1))
     }
@@ -203,8 +204,8 @@ impl PictureRules for Frameless {
 
 /// Returns, for each update, the number of arrived blocks, and the arrival time and target of the last block.
 ///
-/// Blocks may arrive at two frame buffers at the same instant. The block with the higher port and region is then the
-/// last one, independent of the order of the records.
+/// Blocks may arrive at two frame buffers at the same instant. The block with the higher port and region then counts as
+/// the last block, independent of the order of the records.
 fn last_blocks(arrivals: &[Arrival]) -> BTreeMap<PictureNumber, (u32, Time, CopyTarget)> {
     let mut last: BTreeMap<PictureNumber, (u32, Time, CopyTarget)> = BTreeMap::new();
     for Arrival { last_part_at, target, .. } in arrivals {

@@ -19,13 +19,14 @@ use std::sync::Arc;
 
 pub use jitp::{Interpolation, Viewpoint};
 
-/// The pipeline of just-in-time pixels (JITP). It divides a picture into strips of lines and draws each strip for the
-/// instant at which the strip is displayed.
+/// The pipeline of just-in-time pixels (JITP). The pipeline divides a picture into strips of lines and draws each strip
+/// for the instant at which the strip is displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jitp {
     /// The instants for which the parts of a picture are computed.
     pub viewpoint: Viewpoint,
-    /// True if strips reach the frame buffer just before the display's beam. False if strips arrive one field earlier.
+    /// True if strips arrive at the frame buffer just before the display's beam scans them. False if strips arrive one
+    /// field earlier.
     pub racing: bool,
     /// Number of lines in a strip, 1 to 128.
     pub strip_rows: u32,
@@ -120,7 +121,7 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     for (level, program) in master(&gp, config, pass, view_of) {
         machine.load(config.master, level, program);
     }
-    // Slaves have the same list and views, so the simulator transforms each field once for all of them.
+    // Slaves have the same list and views, so the simulator transforms each field once for all slaves.
     let transforms = Transforms::default();
     for (index, node) in config.slaves.iter().enumerate() {
         let gp = machine.processor(*node, Priority::Foreground);
@@ -136,8 +137,8 @@ fn due(video: &Video, target: &CopyTarget) -> Time {
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions: the number before the field's end, the number before the display's beam, and the time
-/// of the middle strip.
+/// Arrivals of a field's regions. Two numbers count the regions that arrived before the field's end, and before the
+/// beam reached them. The time is the arrival time of the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,

@@ -2,7 +2,7 @@
 //! order.
 //!
 //! One graphics processor draws frames for a single eye and shows each frame as soon as it is finished. TRANSFORM ends
-//! before the policy is called, so the policy knows the number of primitives in every region.
+//! before the policy is called, so the policy receives the final number of primitives in every region.
 
 use crate::keys::KeyValue;
 use crate::picture_ends::PictureResult;
@@ -67,8 +67,8 @@ pub trait RegionPolicy: Debug + Send + Sync {
     /// Returns every region once with its renderer, in the order in which the regions are sent. Returns `None` to end
     /// the drawing; the run then continues without further pictures.
     ///
-    /// The same frame must always get the same answer, because a run may be repeated: to detect a deadlock, or as the
-    /// dry run of a predicted head.
+    /// The same frame must always get the same answer, because a run may be repeated. Reasons are the detection of a
+    /// deadlock, and the dry run of an experiment with a predicted head.
     fn assign(&self, frame: &PolicyFrame) -> Option<Vec<RegionAssignment>>;
 }
 

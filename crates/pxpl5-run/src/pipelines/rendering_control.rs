@@ -42,7 +42,8 @@ pub enum FinishedRegions {
 }
 
 impl FinishedRegions {
-    /// All actions. The first one is the default.
+    /// All actions of a renderer with a finished region whose frame buffer is not available. The first action is the
+    /// default.
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
     /// Returns the name of the action in experiment files.
@@ -218,7 +219,8 @@ fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {
     (0..ports).map(|port| port_span(record, surface, port, ports)).max().unwrap_or(Span::ZERO)
 }
 
-/// Returns the transfer time of every `ports`-th region of a surface, starting with the region `first`.
+/// Returns the transfer time of the regions that go to one port: every `ports`-th region of a surface, beginning with
+/// the region `first`.
 fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span {
     let timing = record.ring().timing();
     let grid = surface.grid();

@@ -24,14 +24,14 @@ pub enum Code {
     Of1994,
     /// Code of 1995 (I3D95).
     Of1995,
-    /// Code that fits in the instruction cache. It takes a third of the time of the 1994 code (I3D95).
+    /// Code that fits in the instruction cache and takes a third of the time of the 1994 code (I3D95).
     Optimised,
 }
 
 pxpl5_sim::parameters::named!(Code, "version of the code", Code::ALL);
 
 impl Code {
-    /// All versions with their names in experiment files.
+    /// All versions of the graphics processor's code, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("1994", Self::Of1994), ("1995", Self::Of1995), ("optimised", Self::Optimised)];
 
     const fn timing(self) -> GpTiming {
@@ -63,7 +63,7 @@ pub enum SlatsLighting {
 pxpl5_sim::parameters::named!(SlatsLighting, "lighting", SlatsLighting::ALL);
 
 impl SlatsLighting {
-    /// Both choices with their names in experiment files.
+    /// Both sources of vertex colours, with their names in experiment files.
     pub const ALL: [(&str, Self); 2] = [("precomputed", Self::Precomputed), ("gp", Self::OnGp)];
 
     const fn shading(self) -> Shading {
@@ -221,7 +221,7 @@ impl PictureRules for Slats {
             let whole = copied.regions == 2 * RegionGrid::FIELD.regions() as usize;
             let field = mark.picture.period_drawn_for();
             let in_its_period = whole && copied.at <= record.tick(field.next());
-            // Under a backup, the swaps tell in which period the picture was shown.
+            // Under a backup, the swaps determine in which period the picture was shown.
             let shown = backup.as_ref().filter(|_| whole).and_then(|backup| backup.shown(record, field, &copied));
             let picture_end = match (&backup, shown) {
                 (None, _) => PictureResult::of(in_its_period, !late.contains(&field)),
@@ -240,14 +240,14 @@ impl PictureRules for Slats {
         });
         // A picture is evaluated only after its last possible period. The bottom half of a split copy is scanned in
         // that period. Under a backup, a later retrace of the same lines may show the picture.
-        let judged = |times: &PictureTimes| {
+        let evaluated = |times: &PictureTimes| {
             let field = times.picture.period_drawn_for();
             let shown = record.display().period_at(times.shown_at);
             let last =
                 if backup.is_some() && times.end != PictureResult::Shown { field.0 + LATER_RETRACES } else { shown.0 };
             record.tick(PeriodNumber(last).next()) <= end
         };
-        times.filter(judged).collect()
+        times.filter(evaluated).collect()
     }
 
     fn can_discard_records(&self) -> bool {
@@ -286,11 +286,11 @@ impl PictureRules for Slats {
     }
 }
 
-/// Largest number of retraces from a late field's own retrace to the last retrace at which the field can still be shown
-/// under a backup. The lines of the field are scanned twice more within this number.
+/// Number of retraces after a late field's own retrace within which [`Slats::backup`] can still show the field. Within
+/// these retraces, the display scans the lines of the field twice more.
 const LATER_RETRACES: u64 = 4;
 
-/// State of the copy of a field to the display.
+/// Progress of the copy of a field to the display.
 #[derive(Clone, Copy, Debug, Default)]
 struct Copied {
     regions: usize,
@@ -311,7 +311,7 @@ impl Copied {
     }
 }
 
-/// Buffers that each frame buffer displayed, for runs with a backup.
+/// The buffer that each eye's frame buffer displayed over time, for runs of [`Slats::backup`].
 struct Backup {
     /// For each surface, the first period and the buffer of each swap, in order.
     swaps: [Vec<(PeriodNumber, u8)>; 2],
@@ -414,8 +414,8 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
 
 /// Returns the criterion by which the largest scene is found.
 ///
-/// If clumps go to all regions, the test scene has full-screen triangles. If clumps go only to touched regions, the
-/// test scene has small triangles.
+/// If clumps (groups of triangles) go to all regions, the test scene has full-screen triangles. If clumps go only to
+/// touched regions, the test scene has small triangles.
 fn limit(settings: &PipelineSettings) -> LimitCriterion {
     let touched = settings.name("binning") == Some(BINNINGS[1].0);
     let scene = if touched { TestScene::Typical } else { TestScene::FullScreen };

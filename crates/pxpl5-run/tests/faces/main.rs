@@ -250,10 +250,10 @@ fn optimizations_and_pixels_change_no_time_and_no_texel() {
     let all = after(&ball().pixels(Pixels::All), 16);
     assert!(memory(all.record(), 0).shown_faces() == faces);
     let off = after(&ball().pixels(Pixels::Off), 16);
-    for saving in pxpl5_machine::Optimization::ALL {
-        let without = after(&ball().without(saving), 16);
-        assert_eq!(without.record().trace_hash(), lazy.record().trace_hash(), "{saving}");
-        assert!(memory(without.record(), 0).shown_faces() == faces, "{saving}");
+    for optimization in pxpl5_machine::Optimization::ALL {
+        let without = after(&ball().without(optimization), 16);
+        assert_eq!(without.record().trace_hash(), lazy.record().trace_hash(), "{optimization}");
+        assert!(memory(without.record(), 0).shown_faces() == faces, "{optimization}");
     }
     for other in [all, off] {
         assert_eq!(other.record().trace_hash(), lazy.record().trace_hash());

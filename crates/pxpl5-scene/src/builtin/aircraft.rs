@@ -1,4 +1,5 @@
-//! A swept-wing jet with a closed surface of 100 triangles. The Slats method can draw so few triangles in time.
+//! A swept-wing jet with a closed surface of 100 triangles. Slats, a rendering method of Pixel-Planes 5 with a new
+//! picture in every field, can draw this number of triangles in time.
 //!
 //! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are roughly metres.
 //! The finished aircraft is scaled to the radius of the scene `mig` and uses the same flight path. Every part is a
@@ -131,8 +132,8 @@ fn reversed(mut face: Vec<DVec3>) -> Vec<DVec3> {
     face
 }
 
-/// Adds a solid of flat faces with outward normals. If the volume is negative, the faces face inwards (the solid is a
-/// mirror image), so they are reversed.
+/// Adds a solid of flat faces with outward normals. If the volume of the solid is negative, the solid is a mirror image
+/// with inward normals, so all faces are reversed.
 fn add_flat(mesh: &mut Mesh, faces: Vec<Vec<DVec3>>, colour: Colour) {
     let six_volumes =
         |face: &Vec<DVec3>| -> f64 { face[1..].windows(2).map(|pair| face[0].dot(pair[0].cross(pair[1]))).sum() };

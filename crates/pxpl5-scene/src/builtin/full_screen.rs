@@ -18,8 +18,8 @@ const COVERED: f64 = 1.0;
 /// Distance of each eye from the centre of the head, metres: half of the greatest distance between two eyes, 74 mm.
 const EYES_M: f64 = 0.037;
 
-/// Distance along one axis from the centre of a square to the farthest corner of the smallest triangle around the
-/// square. The unit is half the square's side. The value is 1 + sqrt(2).
+/// Greatest distance, along x or y, from the centre of a square to a corner of the triangle that [`push`] draws around
+/// the square. The unit is half the side of the square. The value is 1 + sqrt(2).
 const REACH: f64 = 1.0 + std::f64::consts::SQRT_2;
 
 pub(super) fn scene(count: u32) -> Scene {
@@ -33,16 +33,15 @@ pub(super) fn scene(count: u32) -> Scene {
     one_structure::scene(&name, &name, Frame::Head, mesh.vertices(), mesh.triangles)
 }
 
-/// Adds the smallest triangle that covers a square: no other has its farthest corner nearer to the square's centre. The
-/// corners reach 1 + sqrt(2) times half of the square's side, horizontally and vertically.
+/// Adds a triangle that covers a square and extends as little as possible beyond the square.
 ///
-/// The corners lie at (-r, -r), (r, -s) and (-s, r). Here r = (1 + sqrt(2)) h, s = (sqrt(2) - 1) h, and h is half of
-/// the side. Two sides of the triangle run through the lower right and the upper left corner of the square. The third
-/// side runs through the upper right corner.
+/// Let h be half the side of the square, r = (1 + sqrt(2)) h and s = (sqrt(2) - 1) h. The square's centre is the
+/// origin. The corners of the triangle lie at (-r, -r), (r, -s) and (-s, r), so no coordinate exceeds r. The lower
+/// right, the upper left and the upper right corner of the square each lie on one side of the triangle.
 ///
-/// The triangle is never clipped in pictures of up to 1,500 pixels across. At 60 degrees its corners are at most 4.4
-/// times half of the picture's width from the centre of the picture. The guard band ends 4,095 pixels minus half of the
-/// width from the centre.
+/// No triangle is clipped in pictures of up to 1,500 pixels across. At a field of view of 60 degrees, a corner is at
+/// most 4.4 times half of the picture's width away from the picture's centre. The guard band ends 4,095 pixels minus
+/// half of the width from the centre.
 fn push(mesh: &mut Mesh, depth: f64, colour: [u8; 3]) {
     let half = COVERED * depth + EYES_M;
     let far = REACH * half;

@@ -1,8 +1,9 @@
-//! An art gallery with a path through it. Floor, ceiling, walls and partitions of the hall are large quadrangles, which
-//! priority rendering cuts into segments.
+//! An art gallery with a path through it. Floor, ceiling, walls and partitions of the hall are large quadrangles.
+//! Priority rendering (the method that redraws each part of a scene only when its image is outdated) cuts these
+//! quadrangles into segments.
 //!
 //! All numbers are assumed, because the papers print neither size nor plan. The path runs 1 m beside the partitions.
-//! This path is the worst case for a method that redraws only outdated segments.
+//! Such a path is the worst case for priority rendering, because images of near surfaces become outdated soonest.
 
 use glam::{DVec3, Vec3};
 
@@ -27,8 +28,8 @@ const THICKNESS_M: f64 = 0.1;
 /// Beginning and end of a partition, as fractions of the straight part of the path beside it.
 const BESIDE_LEG: [f64; 2] = [0.2, 0.8];
 
-/// Corners of the path, x and z in metres. The straight parts are slanted, so the distances to the borders of cells
-/// change all the time.
+/// Corners of the path, x and z in metres. The straight parts are slanted, so the head's distances to the borders of
+/// the cells (squares of the floor) change all the time.
 const CORNERS: [[f64; 2]; 10] = [
     [-16.0, -15.0],
     [-3.0, -17.0],

@@ -82,20 +82,21 @@ fn push_parallel(mesh: &mut Mesh, down: f64) {
     }
 }
 
-/// Adds a vertex where a ray from the spine meets the surface, and returns its index.
+/// Adds a vertex where a ray from inside the head meets the surface, and returns its index.
 fn push_hit(mesh: &mut Mesh, ray: Ray) -> u32 {
     let point = ray.hit();
     mesh.push(point, normal(point), colour(point))
 }
 
-/// A ray from a point on the spine outwards, which meets the surface of the head at one vertex.
+/// A ray from a point on the spine (a curve inside head and neck, see [`SPINE`]) outwards. The ray meets the surface of
+/// the head at one vertex.
 struct Ray {
     origin: DVec3,
     direction: DVec3,
 }
 
-/// Origins and inclinations of rays from crown to base. Each row has a fraction of the parallels, the height of the
-/// origin, and the degrees below the horizon.
+/// Origins and inclinations of rays from crown to base. Each row has three numbers: the position from crown (0) to base
+/// (1), the height of the origin in centimetres, and the downward angle of the ray in degrees.
 const SPINE: [(f64, f64, f64); 8] = [
     (0.0, 2.5, -90.0),
     (0.24, 2.5, -24.0),
@@ -108,8 +109,8 @@ const SPINE: [(f64, f64, f64); 8] = [
 ];
 
 impl Ray {
-    /// Creates a ray. `down` runs from 0 at the crown to 1 at the base. `round` is the fraction of a turn from the back
-    /// of the head. Rays are denser at the face.
+    /// Creates a ray. `down` runs from 0 at the crown to 1 at the base. `round` is the angle around the vertical axis,
+    /// as a fraction of a turn from the back of the head. Rays are denser at the face.
     fn new(down: f64, round: f64) -> Self {
         // Interpolate origin and inclination between two rows of the spine.
         let above = SPINE.windows(2).find(|pair| down <= pair[1].0);

@@ -53,7 +53,8 @@ fn nose(p: DVec3) -> f64 {
     join(join(bridge, tip, 0.5), wing, 0.9)
 }
 
-/// Returns the distance `d` from skull, neck and nose, extended by brows, eye sockets, eyes, cheekbones and mouth.
+/// Returns the distance from the face. `d` is the distance from skull, neck and nose. The function adds brows, eye
+/// sockets, eyes, cheekbones and mouth.
 fn face(d: f64, p: DVec3) -> f64 {
     let brow = capsule(p, xyz(1.3, 2.2, 7.7), xyz(5.0, 2.3, 5.9), 0.75, 0.5);
     let cheekbone = ellipsoid(p, xyz(4.0, -2.4, 4.9), xyz(1.9, 1.4, 1.9));
@@ -84,8 +85,8 @@ fn mouth(d: f64, p: DVec3) -> f64 {
     carve(d, parting, 0.25)
 }
 
-/// Returns the distance `d` extended by the ears. Each is a bowl whose front edge lies on the skull and whose rear edge
-/// stands away from the skull.
+/// Returns the distance from the head with ears. `d` is the distance from the head without ears. Each ear is a bowl
+/// whose front edge lies on the skull and whose rear edge stands away from the skull.
 fn ears(d: f64, p: DVec3) -> f64 {
     let q = p - xyz(7.35, -0.2, -1.3);
     // The ear leans back, so its top is further behind than its lobe. Its rear edge is turned outwards.

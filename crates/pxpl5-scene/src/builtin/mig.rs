@@ -168,8 +168,8 @@ impl Cut {
     }
 }
 
-/// Adds a wing or fin between cross-sections that run from root to tip. A surface on the right side needs `turned`
-/// cross-sections, in reverse order of points.
+/// Adds a wing or fin between cross-sections that run from root to tip. `turned` reverses the points of each
+/// cross-section, as a surface on the right side needs.
 fn surface(solid: &mut Solid, sections: Vec<Vec<DVec3>>, turned: bool, colour: Colour, tip: Colour) {
     let sections: Vec<Vec<DVec3>> = if turned { sections.into_iter().map(reversed).collect() } else { sections };
     let first = solid.mesh.positions.len();
@@ -201,8 +201,9 @@ fn wing(solid: &mut Solid, side: f64) {
     surface(solid, sections, side < 0.0, SILVER, RED);
 }
 
-/// Adds a control surface: a wedge behind the blunt edge that runs from `root` to `tip`. Returns a point and the
-/// direction of its hinge, which is this edge.
+/// Adds a control surface: a wedge behind the blunt trailing edge of a wing or fin. `cuts` are the cross-sections at
+/// both ends of the wedge, and `chords` the wedge's lengths there. Returns a point and the direction of the hinge,
+/// which is the blunt edge.
 fn flap(solid: &mut Solid, cuts: [&Cut; 2], chords: [f64; 2], turned: bool) -> (DVec3, DVec3) {
     let mut sections = [cuts[0].wedge_behind(chords[0]), cuts[1].wedge_behind(chords[1])];
     if turned {

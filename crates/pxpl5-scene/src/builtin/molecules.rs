@@ -15,12 +15,13 @@ static MYOGLOBIN: &[u8] = include_bytes!("../../assets/1mbn.pdb");
 /// Number of cross-sections of the ribbon: (2,620 triangles - 2 for each of 2 ends) / 8 + 1.
 const SECTIONS: usize = 328;
 
-/// Half the distance between the centres of the two myoglobin molecules, Ångström. Each has a radius of about 25.
+/// Half the distance between the centres of the two myoglobin molecules, Ångström. The radius of each molecule is
+/// about 25.
 const APART: f64 = 25.0;
 
 /// Greatest distance between alpha carbons three residues apart that counts as a helix, Ångström. The distance is 5.0
-/// in an ideal alpha helix and above 8 in an extended chain. Both are derived from a rise of 1.5 and 100 degrees per
-/// residue, at a radius of 2.3.
+/// in an ideal alpha helix and above 8 in an extended chain. The distance in a helix is derived from a rise of 1.5 and
+/// a turn of 100 degrees per residue, at a radius of 2.3.
 const HELIX_STEP: f64 = 6.2;
 
 pub(super) fn scene() -> Scene {
@@ -172,8 +173,8 @@ fn fitted(mut solid: Solid, mut spheres: Vec<Sphere>) -> Scene {
         spheres,
         structures: Vec::new(),
         lighting: Lighting::over_the_shoulder(),
-        // The molecules are half as high as wide, so the head can be nearer than it is to a ball. They then fill the
-        // width of the view.
+        // The molecules are half as high as wide, so the head can be nearer than it is to a ball. The molecules then
+        // fill the width of the view.
         motion: HeadMotion::looking_at(glam::Vec3::ZERO, 0.8 * FIT_RADIUS_M),
         path: Vec::new(),
     };

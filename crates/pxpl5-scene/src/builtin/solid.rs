@@ -18,7 +18,7 @@ pub(super) struct Solid {
 }
 
 impl Solid {
-    /// Ends the current structure. It contains everything added since the end of the previous structure.
+    /// Ends the current structure. The structure contains everything added since the end of the previous structure.
     pub(super) fn end_structure(&mut self, name: &str, hinge: Option<Hinge>) {
         let (vertex, triangle) = self.structures.last().map_or((0, 0), |s| (s.vertices.end, s.triangles.end));
         self.structures.push(Structure {

@@ -10,7 +10,7 @@ use crate::trig;
 /// Generates a sphere of `count` triangles. `count` must be even and at least
 /// [`crate::config::LEAST_SPHERE_TRIANGLES`].
 pub(super) fn scene(count: u32) -> Scene {
-    // Add the parallels from pole to pole, and join each with the one above.
+    // Add the parallels from pole to pole, and join each with the parallel above.
     let rings = rings(count);
     let mut mesh = Mesh::default();
     let top = push(&mut mesh, DVec3::Y);
@@ -32,9 +32,9 @@ struct Ring {
     points: u32,
 }
 
-/// Returns the number of points on each parallel of a sphere with `count` triangles. Between two parallels lie as many
-/// triangles as the two have points together. The parallels between the poles therefore have half as many points as
-/// there are triangles. The points are distributed by the lengths of the parallels.
+/// Returns the number of points on each parallel of a sphere with `count` triangles. A parallel with n points is
+/// divided into n edges. Each edge belongs to one triangle above the parallel and one triangle below. The parallels
+/// between the poles therefore have `count` / 2 points in total. Each parallel gets points in proportion to its length.
 fn rings(count: u32) -> Vec<u32> {
     // An equilateral triangle with side s has the area s^2 sqrt(3)/4, and rows of such triangles are s sqrt(3)/2 apart.
     let side = (16.0 * std::f64::consts::PI / (3f64.sqrt() * f64::from(count))).sqrt();

@@ -1,4 +1,4 @@
-//! Triangles of the size that the papers call typical. They are fixed to the head.
+//! Triangles of the size that the papers call typical. The triangles are fixed to the head.
 
 use glam::Vec3;
 

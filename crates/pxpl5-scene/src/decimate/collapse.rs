@@ -10,7 +10,7 @@ use super::surface::{Surface, is_degenerate};
 /// Assumed, 45 to 90 degrees.
 const LEAST_COSINE: f64 = 0.2;
 
-/// The rules of one pass over a surface that collapses edges.
+/// The rules for the collapses of edges in one pass over a surface.
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
     /// True if a collapse may turn triangles over.
@@ -25,8 +25,8 @@ struct Candidate {
     cost: f64,
     from: u32,
     onto: u32,
-    /// Numbers of changes that the two points had undergone when the cost was computed. If a point has changed again,
-    /// the cost is outdated.
+    /// For each of the edge's two end points, the number of changes before the cost was computed. If a point has
+    /// changed again, the cost is outdated.
     changes: [u32; 2],
 }
 
@@ -53,8 +53,8 @@ impl PartialEq for Candidate {
 
 impl Eq for Candidate {}
 
-/// A surface during decimation. For each point it has the quadric, which measures the error of moving the point, and
-/// the number of changes.
+/// A surface during decimation. For each point, the decimator stores a quadric, which measures the error of moving the
+/// point, and the number of changes.
 pub(super) struct Decimator<'s, 'a> {
     surface: &'s mut Surface<'a>,
     quadrics: Vec<Quadric>,
@@ -88,7 +88,7 @@ impl<'s, 'a> Decimator<'s, 'a> {
         Self { surface, quadrics, changes: vec![0; points] }
     }
 
-    /// Collapses edges, the cheapest first. It ends when `wanted` triangles remain or no edge can be collapsed.
+    /// Collapses edges, the cheapest first, until at most `wanted` triangles remain or no edge can be collapsed.
     pub(super) fn until(&mut self, wanted: usize, rules: Rules) {
         while self.surface.left > wanted {
             let before = self.surface.left;

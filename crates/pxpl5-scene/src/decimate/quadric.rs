@@ -1,5 +1,5 @@
-//! The quadric error metric (Garland and Heckbert, SIGGRAPH 97). It measures the weighted sum of squared distances from
-//! a point to planes.
+//! The quadric error metric (Garland and Heckbert, SIGGRAPH 97). The metric is the weighted sum of squared distances
+//! from a point to planes.
 
 use std::ops::{Add, AddAssign};
 

@@ -150,7 +150,7 @@ impl<'a> Surface<'a> {
     pub(super) fn pieces(&self) -> Vec<Vec<u32>> {
         let mut pieces: Vec<Vec<u32>> = Vec::new();
         let mut met = vec![false; self.triangles.len()];
-        // Collect all triangles that share points with the first one, directly or through others.
+        // Collect all triangles that share points with the first triangle, directly or through other triangles.
         for (first, _) in self.all() {
             if std::mem::replace(&mut met[first as usize], true) {
                 continue;

@@ -25,8 +25,9 @@ use super::model::{Model, Places, counted, direction, push_with_slow_growth};
 use crate::config::{DEFAULT_COLOUR, MAX_COORDINATE};
 use crate::error::LoadError;
 
-/// Extensions that a file may require although the importer does not read them. They change only materials, textures
-/// and lights. `KHR_mesh_quantization` allows other types of numbers, which the importer can read.
+/// Extensions that a file may require although the importer does not read them. All but one of these extensions change
+/// only materials, textures and lights. `KHR_mesh_quantization` allows other types of numbers, which the importer can
+/// read.
 const HARMLESS: [&str; 6] = [
     "KHR_mesh_quantization",
     "KHR_texture_transform",
@@ -58,7 +59,7 @@ fn check_version(source: &Source<'_>, root: &Root) -> Result<(), LoadError> {
     let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     match needed.as_str() {
         "2.0" => Ok(()),
-        // A later version 2.x without a least version can be read as 2.0.
+        // A file of a later version 2.x that states no minimum version can be read as 2.0.
         later if later.starts_with("2.") && root.asset.min_version.is_none() => Ok(()),
         other => Err(source.part("asset.version", "2.0", super::source::excerpt(other))),
     }
@@ -99,7 +100,8 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// Reads all meshes of the default scene.
     ///
-    /// The first scene replaces a missing default scene. A file without scenes gives all nodes that have no parent.
+    /// If the file names no default scene, the first scene is read. If the file has no scenes, all nodes without a
+    /// parent are read.
     fn scene(&mut self) -> Result<(), LoadError> {
         let Document { source, root, .. } = self.document;
         let number = root.scene.map_or(0, |scene| scene.value());
@@ -115,7 +117,8 @@ impl<'a> Reader<'a> {
         let mut is_known = vec![false; root.nodes.len()];
         let mut known = |number: usize| match is_known.get_mut(number).map(|known| std::mem::replace(known, true)) {
             Some(false) => Ok(number),
-            // Nodes form trees. A node with two parents could otherwise multiply the model, and a circle has no end.
+            // Nodes form trees. A node with two parents could otherwise multiply the model, and a circle of nodes would
+            // have no end.
             Some(true) => {
                 let found = "a second parent or a circle";
                 Err(source.part(format!("nodes[{number}]"), "a node with at most one parent", found))
@@ -191,7 +194,7 @@ impl<'a> Reader<'a> {
         let base = self.base_colour(part, primitive, colours.is_some())?;
         let vertices = PrimitiveVertices { positions, normals, colours, base, to_world, part };
         let corners = Corners { indices, vertices: vertices.positions.count, mode };
-        // Nothing may be added before it is known that there is memory for all of it.
+        // Check that there is memory for the whole primitive before any part of the primitive is added.
         let flat = vertices.normals.is_none();
         let triangles = corners.triangles(document.source, part)?;
         let points = if flat { triangles.saturating_mul(3) } else { vertices.positions.count };
@@ -376,10 +379,10 @@ impl PrimitiveVertices<'_> {
         self.to_world.transform_point3(DVec3::from_array(self.positions.vector(vertex)))
     }
 
-    /// Returns the unit normal of a vertex in world coordinates, or zero if there is none.
+    /// Returns the unit normal of a vertex in world coordinates, or zero for a vertex without a normal.
     ///
-    /// Normals are transformed by the matrix of cofactors, which is the transposed inverse times the determinant. It
-    /// exists for every transform. The determinant's sign is removed, so that a mirrored normal points outwards.
+    /// Normals are transformed by the matrix of cofactors, which is the transposed inverse times the determinant. This
+    /// matrix exists for every transform. The determinant's sign is removed, so that a mirrored normal points outwards.
     fn normal(&self, vertex: usize) -> glam::Vec3 {
         let Some(normals) = &self.normals else { return glam::Vec3::ZERO };
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = DMat3::from_mat4(self.to_world);
@@ -448,7 +451,7 @@ impl Corners<'_> {
     ///
     /// Fails if a vertex does not exist.
     fn triangle(&self, source: &Source<'_>, part: &str, n: usize) -> Result<[u32; 3], LoadError> {
-        // The order of the corners is that of section 3.7.2.1 of the specification.
+        // The corners have the order that section 3.7.2.1 of the specification defines.
         let corners = match self.mode {
             Mode::TriangleStrip => [n, n + 1 + n % 2, n + 2 - n % 2],
             Mode::TriangleFan => [n + 1, n + 2, 0],

@@ -40,8 +40,8 @@ impl Mesh {
         }
     }
 
-    /// Computes a unit normal for every vertex that has none. It is the mean of the normals of the vertex's triangles,
-    /// weighted by area. If these triangles have no area, the normal is +z.
+    /// Computes a unit normal for every vertex that has none. The computed normal is the mean of the normals of the
+    /// vertex's triangles, weighted by area. If these triangles have no area, the normal is +z.
     pub(crate) fn complete_normals(&mut self) {
         let sums = self.sums_of_areas();
         self.normals.resize(self.positions.len(), DVec3::ZERO);
@@ -82,7 +82,8 @@ pub(super) fn unit(v: DVec3) -> Option<DVec3> {
     DVec3::from_array(v.to_array().map(|x| libm::ldexp(x, -exponent))).try_normalize()
 }
 
-/// Returns a vector along the normal of a triangle whose length is twice the triangle's area.
+/// Returns the area vector of a triangle. The vector has the direction of the normal, and twice the triangle's area as
+/// its length.
 pub(super) fn area([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
@@ -103,7 +104,7 @@ pub(super) fn still_at_origin() -> HeadMotion {
     HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range")
 }
 
-/// Makes a scene of a model with one structure and a head motion.
+/// Makes a scene from the vertices, triangles and spheres of a model and a head motion. The scene has one structure.
 pub(super) fn seen_by(
     motion: HeadMotion,
     name: &str,
@@ -124,8 +125,8 @@ pub(super) fn seen_by(
     Scene::new(parts).expect("pxpl5-scene: readers check what they make")
 }
 
-/// A transformation that fits a model into the default view. It moves the model's centre to the origin and scales its
-/// radius to [`IMPORT_RADIUS_M`].
+/// A transformation that fits a model into the default view. The transformation moves the model's centre to the origin
+/// and scales the model's radius to [`IMPORT_RADIUS_M`].
 pub(crate) struct Fit {
     centre: DVec3,
     pub(crate) scale: f64,

@@ -1,4 +1,4 @@
-//! The common result of the readers of mesh formats. A model has lists only for data that its file contains. It
+//! The common result of the readers of mesh formats. A model has lists only for data that its file contains. A model
 //! therefore needs at most seven times the memory of the file.
 
 use std::hash::{BuildHasher, RandomState};
@@ -13,7 +13,8 @@ use crate::config::{DEFAULT_COLOUR, MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
 use crate::error::LoadError;
 use crate::scene::{Scene, Vertex};
 
-/// Positions of points, in single precision if this is exact and otherwise in double precision.
+/// Positions of points. The positions are in single precision if this precision is exact for the file, and otherwise in
+/// double precision.
 pub(super) enum Places {
     Single(Vec<Vec3>),
     Double(Vec<DVec3>),
@@ -76,11 +77,11 @@ impl Places {
 /// because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
-/// The meaning of the second number of a [`Corner`], which distinguishes vertices at one point.
+/// The meaning of the second number of a [`Corner`]. This number distinguishes vertices at one point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
-    /// The index of a normal, counted from 1. For a corner without a normal it is the smoothing group of the face: 0,
-    /// or a number from 2^31 on.
+    /// The index of a normal, counted from 1. For a corner without a normal, the number is the smoothing group of the
+    /// face: 0, or a number from 2^31 on.
     Normal,
     /// The colour of a face: red, green and blue, packed with red in the lowest byte.
     Colour,
@@ -132,7 +133,8 @@ pub(super) struct Model {
     pub(super) triangles: Vec<[u32; 3]>,
     /// Warnings about content of the file that is ignored or may be misinterpreted.
     pub(super) warnings: Vec<String>,
-    /// Number of bytes of other files that belong to the model. They count as part of the model's file.
+    /// Number of bytes of other files that belong to the model, for example glTF buffers beside the model's file. These
+    /// bytes count as part of the model's file.
     pub(super) more_file_bytes: usize,
     /// Number of concave polygons that have too many corners to be cut into triangles correctly.
     too_long: usize,
@@ -158,8 +160,8 @@ impl Model {
         }
     }
 
-    /// Replaces the triangles of a concave polygon. The triangles from index `first` on all share its first corner and
-    /// cover its notches. The new triangles leave the notches open.
+    /// Replaces the triangles of a concave polygon, which begin at index `first`. The old triangles all share the
+    /// polygon's first corner and also cover areas outside the polygon. The new triangles cover only the polygon.
     pub(super) fn cut_polygon(&mut self, first: usize) {
         match polygon::cut(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))) {
             Cut::Fan => {}
@@ -286,8 +288,8 @@ impl Model {
         vertices
     }
 
-    /// Returns the number of the group of vertices that share one mean normal with this vertex. Faces of different
-    /// colours share groups at their common points. Faces of different smoothing groups do not.
+    /// Returns the index of this vertex's group. All vertices of a group share one mean normal. Faces of different
+    /// colours share groups at their common points. Faces of different smoothing groups share no group.
     fn shading(&self, vertex: usize) -> usize {
         if self.detail == Detail::Colour { self.point(vertex) } else { vertex }
     }
@@ -297,8 +299,8 @@ impl Model {
         if self.detail == Detail::Colour { self.places.len() } else { self.vertices() }
     }
 
-    /// Returns the number of groups whose mean normals are computed at a time. The sums are in double precision. All of
-    /// them together would need as much memory as the positions.
+    /// Returns the number of groups whose mean normals are computed at a time. The sums are in double precision. The
+    /// sums of all groups together would need as much memory as the positions.
     fn shadings_per_pass(&self) -> usize {
         (self.shaded() / 8).max(1 << 16)
     }
@@ -326,8 +328,8 @@ impl Model {
         }
     }
 
-    /// Removes the vertices that no triangle uses. They would change the model's position and size and cost time in
-    /// every frame.
+    /// Removes the vertices that no triangle uses. Unused vertices would change the model's position and size, and
+    /// would cost time in every frame.
     fn remove_unused_points(&mut self) {
         let mut used = vec![false; self.places.len()];
         for &corner in self.triangles.iter().flatten() {

@@ -45,7 +45,8 @@ struct Counts {
     points: usize,
     normals: usize,
     triangles: usize,
-    /// Largest component of any colour in the file. It shows whether colours are fractions up to 1 or bytes up to 255.
+    /// Largest component of any colour in the file. The value shows whether colours are fractions up to 1 or bytes up
+    /// to 255.
     brightest: f64,
     has_materials: bool,
 }
@@ -178,7 +179,7 @@ impl<'a> Reader<'a> {
     /// Reads a face with any number of corners and cuts it into triangles.
     fn face<'w>(&mut self, at: FilePlace, line: &[u8], words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
         let first = self.model.triangles.len();
-        // The normal of a flat face is computed after its corners are read. It will then get this index.
+        // The normal of a flat face is computed after its corners are read. The normal will then get this index.
         let flat = self.model.normals.len() as u32 + 1;
         let mut needs_normal = false;
         let mut known = [0; 2];

@@ -35,7 +35,7 @@ const fn element(symbol: &'static str, radius: f64, colour: [u8; 3]) -> Element 
 }
 
 /// The elements with radii and colours. The radii from H to I are published by Bondi 1964. Bondi has no radii for Fe,
-/// Ca, Mn and Co: 2.0 is assumed (1.4 to 2.5). Colours follow the custom of molecular graphics: assumed, any.
+/// Ca, Mn and Co: 2.0 is assumed (1.4 to 2.5). Colours follow the custom of molecular graphics (assumed).
 const ELEMENTS: [Element; 20] = [
     element("H", 1.20, [255, 255, 255]),
     element("D", 1.20, [255, 255, 255]),

@@ -64,7 +64,8 @@ struct Rows<'a> {
     /// Line number of the next line of an ASCII file.
     line: u64,
     text: &'a str,
-    /// Greatest allowed length of a list. Valid faces and strips with this number of vertices need no longer lists.
+    /// Greatest allowed length of a list, computed from the number of vertices in the file. No valid face or strip of
+    /// these vertices needs a longer list.
     longest_list: usize,
     /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
@@ -79,12 +80,12 @@ struct Rows<'a> {
 const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 
-/// Number of bytes at the start of a file in which an error is searched if the header has no end. Assumed, a few lines
-/// or more.
+/// Number of bytes at the start of the file that the reader searches for the error if the header has no end. Assumed:
+/// at least a few lines.
 const HEADER: usize = 1 << 16;
 
 /// Returns the header with LF at its line ends, the position after the header, and the byte that ends its lines. Bytes
-/// that are not ASCII become underscores. They occur only in comments and names.
+/// that are not ASCII become underscores. Such bytes occur only in comments and names.
 fn header_of(bytes: &[u8]) -> (String, usize, u8) {
     let begin = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
     // If the first CR has no LF after it, lines end in CR alone.
@@ -492,8 +493,8 @@ fn message(error: &ParseError) -> String {
     words.join(" ").chars().take(200).collect()
 }
 
-/// Returns the least size of an element's row in bytes. It is at least one, even for rows without properties. Otherwise
-/// a header could announce any number of them.
+/// Returns the least size of an element's row in bytes. The size is at least 1, even for rows without properties.
+/// Otherwise a header could announce any number of such rows.
 fn least_row_bytes(element: &ElementDef, encoding: Encoding) -> u64 {
     let widths = element.properties.values().map(|p| match (&p.data_type, encoding) {
         // In ASCII a number takes at least a digit and a space or line end.

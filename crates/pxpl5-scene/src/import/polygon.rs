@@ -89,8 +89,8 @@ fn is_convex(fan: &[[u32; 3]], flat: impl Fn(u32) -> DVec2) -> bool {
     true
 }
 
-/// A projection of a polygon onto a plane of two coordinate axes. It is seen along the third axis, which is nearest to
-/// the normal, from the side where the polygon is anticlockwise.
+/// A projection of a polygon onto a plane of two coordinate axes. The direction of view is the third axis, the axis
+/// nearest to the normal, from the side where the polygon is anticlockwise.
 struct Projection {
     origin: DVec3,
     /// Factor that brings the farthest corner near a distance of 1. Otherwise squares of very small or large numbers
@@ -135,8 +135,8 @@ fn near_one(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<(DVec3, f6
     Some((origin, scale_to_one(farthest)?))
 }
 
-/// Returns a vector along the normal of a polygon whose length is twice the area. `from_first` returns the position of
-/// a corner relative to the first corner.
+/// Returns the area vector of a polygon. The vector has the direction of the normal, and twice the polygon's area as
+/// its length. `from_first` returns the position of a corner relative to the first corner.
 fn area(fan: &[[u32; 3]], from_first: impl Fn(u32) -> DVec3) -> DVec3 {
     fan.iter().map(|&[_, b, c]| from_first(b).cross(from_first(c))).sum()
 }

@@ -1,7 +1,7 @@
 //! Reader of STL files, ASCII and binary.
 //!
-//! The existing library stl_io is not used. Its errors lack the line number. It takes a binary file for text if the header
-//! begins with `solid`. It refuses normals that are not numbers.
+//! The existing library stl_io is not used, for three reasons. Its errors lack the line number. The library reads a
+//! binary file as text if the header begins with `solid`. The library also refuses normals that are not numbers.
 
 use glam::DVec3;
 
@@ -17,7 +17,8 @@ const TRIANGLE: usize = 50;
 
 pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     match announced_bytes(source.bytes) {
-        // Some programs begin the header of a binary file with `solid`. The length of the file decides.
+        // Some programs begin the header of a binary file with `solid`, so only the length of the file shows the
+        // format.
         Some(bytes) if bytes == source.bytes.len() as u64 => read_binary(source),
         _ if begins_as_text(source.bytes) => read_text(source),
         Some(bytes) if bytes > source.bytes.len() as u64 => {
@@ -48,7 +49,8 @@ fn begins_as_text(bytes: &[u8]) -> bool {
     bytes.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
 }
 
-/// Adds a triangle with vertices of its own. The scene's normals are then those of the triangle.
+/// Adds a triangle with three new vertices, which no other triangle shares. The normal of each of these vertices is
+/// then the normal of the triangle.
 fn push_flat(model: &mut Model, corners: [[f64; 3]; 3]) {
     let first = model.places.len() as u32;
     corners.into_iter().for_each(|corner| model.places.push(DVec3::from_array(corner)));

@@ -36,7 +36,7 @@ pub enum ParameterError {
 }
 
 impl ParameterError {
-    /// Makes the error of a table that has no parameter called `name`. Tables that are written without the macro can
+    /// Makes the error for a table that has no parameter called `name`. Tables that are written without the macro can
     /// also use this function.
     #[must_use]
     pub fn unknown(name: &str, infos: &[ParameterInfo]) -> Self {

@@ -6,22 +6,22 @@ use serde::{Deserialize, Serialize};
 /// The provenance of a parameter's value: printed, calculated or assumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Standing {
+pub enum Provenance {
     /// The value is printed in a paper or manual that the authors of this program have read.
     Published,
     /// The value follows by arithmetic from published figures.
     Derived,
-    /// The value is recollected or estimated. Its range is as wide as the published figures allow.
+    /// The value comes from memory or from an estimate. Its range is as wide as the published figures allow.
     Assumed,
 }
 
-impl Standing {
-    /// Every provenance with its name, the best first.
+impl Provenance {
+    /// Every kind of provenance with its name, the best kind first.
     pub const ALL: [(&str, Self); 3] =
         [("published", Self::Published), ("derived", Self::Derived), ("assumed", Self::Assumed)];
 }
 
-crate::parameters::named!(Standing, "provenance", Standing::ALL);
+crate::parameters::named!(Provenance, "provenance", Provenance::ALL);
 
 /// Unit, provenance, range and source of one parameter of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -31,8 +31,8 @@ pub struct ParameterInfo {
     /// Unit of the value, the range and the limits. The unit "1" stands for a pure number.
     pub unit: &'static str,
     /// Provenance of the parameter's value: printed, calculated or assumed.
-    pub standing: Standing,
-    /// Initial value of the parameter. The papers print this value or allow it.
+    pub provenance: Provenance,
+    /// Initial value of the parameter. The papers print or allow this value.
     pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),

@@ -2,8 +2,9 @@
 
 /// Declares a struct of parameters. Each parameter has an initial value, unit, provenance, range, limits and source.
 ///
-/// The upper limit can be written as `MAX`, which stands for [`MAX`](crate::parameters::MAX). The calling crate must depend on
-/// `serde`: a table is serialized by field names, and unknown names are rejected.
+/// The upper limit can be written as `MAX`, which stands for [`MAX`](crate::parameters::MAX). The calling crate must
+/// depend on `serde`, because the macro makes the table serializable by field names. Deserialization rejects unknown
+/// names.
 ///
 /// ```
 /// pxpl5_sim::parameters::parameter_table! {
@@ -27,7 +28,7 @@ macro_rules! parameter_table {
     ($(#[$meta:meta])* $vis:vis struct $name:ident {
         $(
             $(#[$doc:meta])*
-            $field:ident : $($real:ident =)? $value:literal, $unit:literal, $standing:ident,
+            $field:ident : $($real:ident =)? $value:literal, $unit:literal, $provenance:ident,
             $low:literal ..= $high:literal $(in $least:literal ..= $most:tt)?, $source:literal;
         )*
     }) => {
@@ -38,7 +39,7 @@ macro_rules! parameter_table {
             $(
                 $(#[$doc])*
                 #[doc = concat!(
-                    "\n\nUnit: ", $unit, ". ", stringify!($standing), ", ", stringify!($low), " to ", stringify!($high),
+                    "\n\nUnit: ", $unit, ". ", stringify!($provenance), ", ", stringify!($low), " to ", stringify!($high),
                     $(" (possible: ", stringify!($least), " to ", stringify!($most), ")",)? ": ", $source, "."
                 )]
                 pub $field: $crate::number!(type $($real)?),
@@ -46,14 +47,14 @@ macro_rules! parameter_table {
         }
 
         impl $name {
-            /// The initial values of all parameters. The papers print these values or allow them.
+            /// The initial values of all parameters. The papers print or allow these values.
             $vis const PAPERS: Self = Self { $($field: $value,)* };
 
             /// Unit, provenance, range and source of each parameter, in the order of the fields.
             $vis const INFOS: &'static [$crate::parameters::ParameterInfo] = &[$($crate::parameters::ParameterInfo {
                 name: stringify!($field),
                 unit: $unit,
-                standing: $crate::parameters::Standing::$standing,
+                provenance: $crate::parameters::Provenance::$provenance,
                 papers: $crate::number!(value $($real)? : $value),
                 range: $crate::number!(pair $($real)? : $low, $high),
                 limits: $crate::number!(pair $($real)? : $low, $high $(, $least, $most)?),
@@ -84,7 +85,7 @@ macro_rules! parameter_table {
                 }
             }
 
-            // Compares constants without looking names up, because programs check many machines.
+            // The comparison uses constants and looks up no names, because programs check many machines.
             fn check(&self) -> ::core::result::Result<(), $crate::parameters::ParameterError> {
                 $($crate::parameters::check_value(
                     stringify!($field),
@@ -111,7 +112,7 @@ macro_rules! parameter_table {
     };
 }
 
-/// Expands to the type or value of a field: a whole number, or a real number if the declaration says `f64`.
+/// Expands to the type or value of a field: a whole number, or a real number if the declaration contains `f64`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! number {

@@ -1,20 +1,20 @@
-//! Values with names: reading a name, writing a name, and the error for an unknown name.
+//! Values with names: conversion from and to a name, and the error for an unknown name.
 
 use crate::parameters::nearest;
 use std::error::Error;
 use std::fmt;
 
-/// Largest number of names that an error lists. A longer list is replaced by the most similar name.
+/// Largest number of names that an error lists. For a longer list, the error states only the most similar name.
 const MAX_LISTED: usize = 12;
 
 /// An error for a text that is not one of the valid names.
 ///
-/// The message lists the valid names. If there are many, the message states only the most similar name.
+/// The message lists the valid names. If there are more than 12 names, the message states only the most similar name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameError {
-    /// The kind of thing that was named, such as `pipeline`.
+    /// Kind of thing that has such names, such as `pipeline`.
     pub what: &'static str,
-    /// The text that was given.
+    /// Text that is not a valid name.
     pub found: String,
     /// All valid names.
     pub valid: Vec<&'static str>,
@@ -54,7 +54,7 @@ impl Error for NameError {}
 ///
 /// # Errors
 ///
-/// [`NameError`] if no value has the name. `what` is the kind of value in the message.
+/// Returns [`NameError`] if no value has the name. The message uses `what` as the kind of value.
 pub fn find_named<T>(
     what: &'static str,
     text: &str,
@@ -74,7 +74,7 @@ pub fn find_named<T>(
 ///
 /// # Errors
 ///
-/// Fails only if the formatter fails.
+/// Returns an error only if the formatter returns an error.
 pub fn write_name<T: PartialEq>(
     f: &mut fmt::Formatter<'_>,
     value: &T,
@@ -83,7 +83,8 @@ pub fn write_name<T: PartialEq>(
     f.pad(all.into_iter().find(|(_, other)| other == value).map_or("", |(name, _)| name))
 }
 
-/// Implements `Display` and `FromStr` for a type whose values have names. The error of `FromStr` is [`NameError`].
+/// Implements `Display` and `FromStr` for a type whose values have names, from a list of names and values. The error of
+/// `FromStr` is [`NameError`].
 ///
 /// ```
 /// #[derive(Clone, Copy, Debug, PartialEq)]

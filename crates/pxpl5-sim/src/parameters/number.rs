@@ -1,4 +1,4 @@
-//! Types of parameter values in code, and the check of a value against its limits.
+//! Number types of parameters, and the check of a value against its limits.
 
 use crate::parameters::{ParameterError, Value};
 
@@ -30,8 +30,8 @@ impl Number for f64 {
     }
 }
 
-/// Checks a number against its limits. Use this function for a number outside all tables, or for limits that depend on
-/// other numbers.
+/// Checks a number against its limits. Use this function for a number that belongs to no table, or for limits that
+/// depend on other numbers.
 ///
 /// # Errors
 ///
@@ -40,8 +40,8 @@ pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<
     check_value(name, found.into(), (limits.0.into(), limits.1.into()))
 }
 
-/// Checks a [`Value`] against its smallest and largest allowed value. If the limits are constants, the check compiles
-/// to two comparisons.
+/// Checks a [`Value`] against `limits`, the smallest and largest allowed value. If the limits are constants, the check
+/// compiles to two comparisons.
 #[doc(hidden)]
 #[inline]
 pub fn check_value(name: &'static str, found: Value, limits: (Value, Value)) -> Result<(), ParameterError> {

@@ -27,8 +27,8 @@ impl Entry {
     }
 }
 
-/// A table made by [`parameter_table!`](crate::parameters::parameter_table). A machine can hold tables of different types
-/// as `&dyn ParameterTable`.
+/// A table made by [`parameter_table!`](crate::parameters::parameter_table). A machine can hold tables of different
+/// types as `&dyn ParameterTable`.
 pub trait ParameterTable {
     /// Returns unit, provenance, range and source of each parameter, in the order of the fields. The constant `INFOS`
     /// of the table's type has the same contents.
@@ -41,12 +41,13 @@ pub trait ParameterTable {
     /// Returns [`ParameterError::Unknown`] if no parameter has this name.
     fn get(&self, name: &str) -> Result<Value, ParameterError>;
 
-    /// Changes the value of a parameter. Range and limits are not checked here: call [`ParameterTable::check`].
+    /// Changes the value of a parameter. This function does not check the range and the limits. To check them, call
+    /// [`ParameterTable::check`].
     ///
     /// # Errors
     ///
-    /// Returns [`ParameterError::Unknown`] if no parameter has this name. [`ParameterError::NotWhole`] if the field
-    /// holds whole numbers and the value is not whole.
+    /// Returns [`ParameterError::Unknown`] if no parameter has this name. Returns [`ParameterError::NotWhole`] if the
+    /// field holds whole numbers and the value is not whole.
     fn set(&mut self, name: &str, value: Value) -> Result<(), ParameterError>;
 
     /// Returns all parameters with their current values, in the order of the fields.

@@ -1,4 +1,4 @@
-//! Conversion of users' files to text, and the error in a text.
+//! Conversion of users' files to text, and the type of errors in such texts.
 
 use std::fmt;
 
@@ -35,11 +35,11 @@ impl std::error::Error for TextError {}
 ///
 /// # Errors
 ///
-/// Returns a [`TextError`] if a byte is not UTF-8. The error gives the line of the byte and the position of the byte within
-/// the line, both counted from 1.
+/// Returns a [`TextError`] if a byte is not UTF-8. The error gives the line of the byte and the position of the byte
+/// within the line, both counted from 1.
 pub fn text_of(bytes: &[u8]) -> Result<&str, TextError> {
     std::str::from_utf8(bytes).map_err(|error| {
-        // Only the valid text before the error gives its line and place.
+        // The valid text before the error suffices to compute the line and the position.
         let before = &bytes[..error.valid_up_to()];
         let lines = before.iter().filter(|byte| **byte == b'\n').count();
         let begin = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn a_byte_that_is_no_text_is_told_by_line_and_byte() {
         assert_eq!(text_of("a\né".as_bytes()), Ok("a\né"));
-        // The e with an acute of Latin-1, and a character of UTF-8 that ends early.
+        // The letter e with an acute accent in Latin-1, and an incomplete UTF-8 character.
         for (bytes, place, byte) in [
             (&b"\xe9"[..], "line 1, byte 1", "0xe9"),
             (b"a\nb\ncaf\xe9\n", "line 3, byte 4", "0xe9"),

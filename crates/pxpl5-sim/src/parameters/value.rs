@@ -7,8 +7,8 @@ use std::hash::{Hash, Hasher};
 
 /// The value of a parameter. Files and reports contain only the number, without the name of the variant.
 ///
-/// A whole value never equals a real value, and the two have no order. Real values are compared in IEEE's total order.
-/// NaN therefore lies outside every range, and tables can be compared for equality.
+/// A whole value never equals a real value, and neither is greater than the other. Two real values are compared in
+/// IEEE's total order. NaN therefore lies outside every range, and two tables can be compared for equality.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -95,8 +95,8 @@ impl From<f64> for Value {
     }
 }
 
-/// The greatest whole number for a limit: 10^12. A model can add and multiply a few such times, in nanoseconds or
-/// clocks, within 64 bits.
+/// The greatest whole number for a limit: 10^12. With this limit, a model can add and multiply a few times in
+/// nanoseconds or clocks within 64 bits.
 pub const MAX: u64 = 1_000_000_000_000;
 
 #[cfg(test)]

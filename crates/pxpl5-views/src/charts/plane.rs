@@ -21,7 +21,7 @@ pub struct MarkedPoint {
     pub at: (f64, f64),
     /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),
-    /// True for a hollow marker. It shows that the value cannot be compared with the others.
+    /// True for a hollow marker, which shows that the value cannot be compared with the other values.
     pub is_hollow: bool,
 }
 
@@ -73,8 +73,8 @@ mod tests {
         found.filter_map(|node| node.attribute(name)).map(str::to_owned).collect()
     }
 
-    /// Returns the corners of the curves in whole drawing units. The first curve is black like the axes, so the stroke
-    /// width selects the curves.
+    /// Returns the corners of the curves in whole drawing units. The first curve and the axes are black, so the
+    /// function recognizes curves by the width of their strokes.
     fn courses(svg: &str) -> Vec<Vec<(f64, f64)>> {
         let document = roxmltree::Document::parse(svg).expect("XML");
         let lines = document.descendants().filter(|node| node.has_tag_name("polyline"));
@@ -103,7 +103,8 @@ mod tests {
         assert!(svg.contains("a &lt; b") && svg.contains("error, px"));
     }
 
-    /// 0.1 to 100 are three decades: 1 lies at a third of the height, and 0 has no position.
+    /// The axis from 0.1 to 100 has three decades. The value 1 therefore lies at a third of the height, and the value 0
+    /// has no position.
     #[test]
     fn decades_are_equally_high() {
         let points = vec![(0.0, 0.1), (1.0, 1.0), (2.0, 0.0), (3.0, 100.0), (4.0, 10.0)];

@@ -4,7 +4,7 @@ use pxpl5_measure::Report;
 use std::fmt::Write;
 
 /// Returns the origin of a report as pairs of key and value: preset, configuration hash, version, commit, level, seed
-/// and experiment. The commit is missing if the program does not know its commit.
+/// and experiment. The commit is missing if the program did not state its commit.
 #[must_use]
 pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
     let overrides: Vec<String> = report.overrides.iter().map(|(path, value)| format!("{path}={value}")).collect();

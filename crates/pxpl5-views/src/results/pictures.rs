@@ -8,14 +8,14 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Name and version of the table's schema. Adding a column at the end does not change the version.
 pub const SCHEMA: &str = "pxpl5-pictures/2";
 
-/// A column of the table. The values are whole numbers, and some of them may be missing.
+/// A column of the table. The values are whole numbers, and some values may be missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Name of the column, with the unit.
     pub name: String,
     /// Definition of the values, in a sentence.
     pub definition: String,
-    /// True if a value may be missing, which CSV shows as an empty field.
+    /// True if a value may be missing, which CSV shows as an empty cell.
     pub optional: bool,
 }
 
@@ -29,7 +29,8 @@ impl Column {
     }
 }
 
-/// Returns the columns in order: first the fields of [`PictureTimes`], then the parts in [`LATENCY_PARTS`].
+/// Returns the columns in order: first the members of [`PictureTimes`], then the parts of the latency in
+/// [`LATENCY_PARTS`].
 #[must_use]
 pub fn columns() -> Vec<Column> {
     // Identity, state and times of a picture come first.

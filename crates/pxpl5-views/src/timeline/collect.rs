@@ -12,7 +12,7 @@ use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
-/// Bars share a lane if they overlap by less than the drawn time divided by this number.
+/// Divisor of the drawn time span. Two bars that overlap by less than the quotient can share a lane.
 const TOUCHING: u64 = 300;
 
 /// Smallest number of display periods in a drawing, if the user gives no number.

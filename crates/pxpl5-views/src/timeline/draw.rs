@@ -25,7 +25,7 @@ const SHOWN: i64 = 18;
 /// Number of periods from which the axis omits the word `field`, because space is short.
 const CROWDED: usize = 10;
 
-/// A timeline with the vertical positions of its parts.
+/// A timeline that is being drawn, with the vertical positions of its rows.
 struct Drawing<'a> {
     timeline: &'a Timeline,
     out: Element,
@@ -35,7 +35,7 @@ struct Drawing<'a> {
     beam: i64,
 }
 
-/// Texts around a timeline: title and origin.
+/// Texts around a timeline: the title, and the origin of the drawing.
 pub(super) struct Words {
     pub(super) title: String,
     pub(super) subtitle: String,
@@ -46,7 +46,7 @@ pub(super) struct Words {
 pub(super) fn document(timeline: &Timeline, words: &Words) -> String {
     let mut drawing = Drawing::new(timeline);
     drawing.begin(words);
-    // Later elements cover earlier ones: background, axis, bars, then arrows.
+    // Later elements cover earlier elements: background, axis, bars, then arrows.
     drawing.for_each_row(Drawing::row);
     drawing.axis();
     drawing.for_each_row(Drawing::bars);

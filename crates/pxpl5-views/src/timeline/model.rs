@@ -11,16 +11,16 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 pub struct Bar {
     /// Stage of the work.
     pub stage: Stage,
-    /// Number of the picture. If the host sends views independently of pictures, a bar of SEND has the view's number
-    /// instead.
+    /// Number of the picture. If the host sends head poses (views) independently of pictures, a bar of SEND has the
+    /// number of the view instead.
     pub picture: PictureNumber,
     /// Surface for which the stage works. `None` for work on all surfaces, or if the display has only one surface.
     pub surface: Option<SurfaceId>,
     /// True for the bottom half of a picture whose halves are copied separately, false for the top half. `None` for a
     /// whole picture.
     pub bottom: Option<bool>,
-    /// First line of the surface that the work of this bar fills, such as the first line of a bottom half. 0 for work that
-    /// fills no lines.
+    /// First line that the work of this bar fills on the surface, for example the first line of a bottom half. The
+    /// value is 0 for work that fills no lines.
     pub first_line: u32,
     /// Time at which the first board began this work.
     pub begin: Time,
@@ -32,16 +32,17 @@ pub struct Bar {
     pub receiving: Vec<(Time, Time)>,
 }
 
-/// A row of a timeline, for a resource that works independently of the others.
+/// A row of a timeline, for a resource that works independently of other resources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineRow {
-    /// Name on the left of the row.
+    /// Name of the resource, drawn on the left of the row.
     pub name: String,
     /// Bars, in the order of their start.
     pub bars: Vec<Bar>,
     /// Number of lanes, which is the largest number of overlapping bars.
     pub lanes: usize,
-    /// Pictures that the port of this row showed. Empty unless the row belongs to a port that swaps independently.
+    /// Pictures that the port of this row showed. The list is empty unless the row belongs to a port that swaps
+    /// independently.
     pub shown: Vec<ShownPicture>,
 }
 
@@ -67,7 +68,8 @@ pub struct Timeline {
     pub to: Time,
     /// Retraces of the first display, each with the period that begins at the retrace.
     pub retraces: Vec<(PeriodNumber, Time)>,
-    /// Sampled poses, each with the number of its picture or view. `None` if samples are not drawn.
+    /// Sampled head poses, each with the number of the picture or update for which the pose was sampled. `None` if
+    /// samples are not drawn.
     pub samples: Option<Vec<(PictureNumber, Time)>>,
     /// Rows, from top to bottom.
     pub rows: Vec<TimelineRow>,
@@ -77,7 +79,7 @@ pub struct Timeline {
     pub surfaces: Vec<Surface>,
     /// Picture whose dependencies are drawn.
     pub picture: Option<PictureNumber>,
-    /// Number of the SEND that supplied the view of the picture whose dependencies are drawn.
+    /// Number of the SEND that supplied the head pose of the picture whose dependencies are drawn.
     pub update: Option<PictureNumber>,
     /// Dependencies of the picture in the field `picture`.
     pub arrows: Vec<Arrow>,
@@ -110,7 +112,7 @@ pub struct Arrow {
     pub end: Time,
 }
 
-/// A row of a drawing, with the lane if it is a row of boards.
+/// One end of an arrow: a row of the drawing, and the lane if the row belongs to boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawingPlace {
     /// The row of the tracker.

@@ -4,7 +4,7 @@ use pxpl5_machine::Record;
 use pxpl5_wire::display::{Display, Surface};
 use pxpl5_wire::{NodeId, SurfaceId};
 
-/// A group of tracks with a heading. It stands for a board at a port of the ring or for a surface of a display.
+/// A group of tracks with a heading. The group stands for a board at a port of the ring or for a surface of a display.
 ///
 /// A frame buffer is both a board and a surface, and has one group.
 pub(super) struct Group {
@@ -19,7 +19,7 @@ impl Group {
     }
 }
 
-/// Returns all boards and surfaces of a machine, in the order of the schematic.
+/// Returns all boards and surfaces of a machine, in the order host, graphics processors, renderers, displays.
 pub(super) fn groups(record: &Record) -> Vec<Group> {
     let ports = record.ports();
     let mut groups = vec![Group::of_port("host".to_owned(), ports.host)];

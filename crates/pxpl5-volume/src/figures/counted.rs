@@ -20,8 +20,8 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError>
     Ok(rows)
 }
 
-/// Width and height in pixels of the small slices on which passes are counted. At the rim, the slab of such a slice is
-/// thicker than the taper of half a pixel on each side.
+/// Width and height in pixels of the small slices on which passes are counted. The exact volume of such a slice is more
+/// than one pixel thick at the rim. A taper from one pixel at the axis is therefore possible.
 const SMALL: u64 = 192;
 
 /// Returns figure P5: the number of draws of one triangle per slice, without bins.
@@ -54,8 +54,8 @@ fn small_triangle() -> Result<CommandBuffer, VolumeError> {
     Ok(context.present())
 }
 
-/// Returns figures D8, P9 and D7: queries and clears of a volume with and without batches, and the number of words in a
-/// slice.
+/// Returns figures D8, P9 and D7. These figures are the numbers of queries and clears for a volume, with and without
+/// batches, and the number of words in a slice.
 fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let drawn = |batch| {
         // The same triangle is drawn with batches of one slice and of four slices.
@@ -78,7 +78,7 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>,
     ])
 }
 
-/// Returns figures D1, D2 and D5 from the matrices of the views and the instants of the strobes.
+/// Returns figures D1, D2 and D5 from the matrices of the views and the instants of the strobes (flashes).
 fn planes(views: &[SliceView]) -> Vec<Figure> {
     let across = |k: usize| views[k].view.transpose().x_axis.truncate();
     let angle = |k: usize| {
@@ -140,12 +140,13 @@ fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// Number of steps on a circle around the axis. The first step is half a step off, so no step lies in a plane between
-/// bins.
+/// Number of steps on a circle around the axis. The circle is tested in the middle of each step, so no tested point
+/// lies in a plane between bins.
 const STEPS: u32 = 3_600;
 
-/// Returns figure P14: for each region, the number of planes that bound it. Two conditions make a plane a bound. Its
-/// sign changes where a circle around the axis enters or leaves the region, and the layout lists it as a bound.
+/// Returns figure P14: for each region, the number of planes that bound it. Two conditions make a plane a bound. The
+/// plane's sign changes where a circle around the axis enters or leaves the region, and the layout lists the plane as a
+/// bound.
 fn bounds() -> Vec<Figure> {
     let layout = BinLayout::double_wedges(0.0);
     let code = |step: u32| {

@@ -6,8 +6,8 @@ use crate::settings::VolumeSettings;
 use pxpl5_sim::parameters::Entry;
 use std::fmt::Write as _;
 
-/// Returns the text of docs/volumetric.md. It has every figure, the definitions, the statements without numbers, the
-/// scenes, and our own numbers with their ranges.
+/// Returns the text of docs/volumetric.md. The text has every figure, the definitions, the statements without numbers,
+/// the scenes, and our own numbers with their ranges.
 #[must_use]
 pub fn markdown(figures: &Figures) -> String {
     let mut text = String::new();
@@ -55,16 +55,16 @@ fn line(text: &mut String, row: &FigureRow) {
         figure.id,
         figure.statement,
         row.source,
-        standing(row),
+        provenance(row),
         expected(figure.interval, figure.published),
         figure.unit,
         number(figure.computed),
     );
 }
 
-fn standing(row: &FigureRow) -> String {
-    let standing = row.figure.standing;
-    if row.scene.is_some() { format!("{standing}, measured") } else { standing.to_string() }
+fn provenance(row: &FigureRow) -> String {
+    let provenance = row.figure.provenance;
+    if row.scene.is_some() { format!("{provenance}, measured") } else { provenance.to_string() }
 }
 
 /// Returns the expected value as text. If the paper says "over", "about" or "most", the text includes the interval.
@@ -95,7 +95,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
     }
 }
 
-/// Returns the known cause for which the model misses the figure with this identifier.
+/// Returns the known reason why the model misses the figure with this identifier.
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {
@@ -122,7 +122,7 @@ fn definitions(text: &mut String, all: &[DefinitionRow]) {
         let _ = writeln!(
             text,
             "| {} | {} | {source} | {} | {value} {} |",
-            definition.id, definition.statement, definition.standing, definition.unit
+            definition.id, definition.statement, definition.provenance, definition.unit
         );
     }
 }
@@ -190,7 +190,7 @@ fn numbers(text: &mut String) {
         let _ = writeln!(
             text,
             "| `{path}` | {value} | {} | {} | {low} to {high} | {} |",
-            info.unit, info.standing, info.source
+            info.unit, info.provenance, info.source
         );
     }
 }

@@ -113,8 +113,8 @@ fn place(x: u32, y: u32) -> [f64; 3] {
     [(f64::from(x) + 0.5 - half) * scale, 0.0, (half - f64::from(y) - 0.5) * scale]
 }
 
-/// Draws the volume of slice 1, seen from above, bright and the volumes of its neighbours darker. Overlaps of enlarged
-/// volumes are white.
+/// Draws the volumes of three neighbouring slices, seen from above. The volume of slice 1 is bright, and the volumes of
+/// its neighbours are darker. Overlaps of enlarged volumes are white.
 fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
     let display = few(clip)?;
     let views = display.views();
@@ -134,7 +134,8 @@ fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
 }
 
 /// Draws points red where the distance from the first plane is positive, and green where the distance from the second
-/// plane is positive. The lobe with two positive distances is yellow, and the lobe with two negative distances dark.
+/// plane is positive. The lobe (half of the double wedge) with two positive distances is yellow, and the lobe with two
+/// negative distances dark.
 fn orientation() -> Result<RgbImage, VolumeError> {
     let display = few(ClipKind::Exact)?;
     let spatialgl::SliceVolume::Wedge(planes, _) = display.views()[1].volume else {

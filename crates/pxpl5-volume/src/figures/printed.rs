@@ -1,7 +1,7 @@
-//! Figures of the paper that need single slices: rules of the clip, bits of a pixel, stencil, jitter.
+//! Figures of the paper that are measured on single slices: rules of the clip, bits of a pixel, stencil, jitter.
 
 use crate::error::VolumeError;
-use pxpl5_sim::parameters::Standing;
+use pxpl5_sim::parameters::Provenance;
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::perspecta::figures::Figure;
 use spatialgl::{
@@ -10,8 +10,8 @@ use spatialgl::{
     WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
 };
 
-const P: Standing = Standing::Published;
-const D: Standing = Standing::Derived;
+const P: Provenance = Provenance::Published;
+const D: Provenance = Provenance::Derived;
 
 /// A triangle parallel to the axis, corners in pixels: the first triangle of the specification.
 pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
@@ -20,7 +20,7 @@ pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150
 /// triangle (derived from the area of the intersection).
 const SLICE: usize = 13;
 
-/// Returns all figures that need single slices.
+/// Returns all figures of the paper that are measured on single slices.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let frame = draw(&exact, workers)?;
@@ -42,8 +42,8 @@ pub(super) fn row(
     computed: f64,
 ) -> Figure {
     let interval = [published - half_digit, published + half_digit];
-    let standing = if id.starts_with('P') { P } else { D };
-    Figure { id, statement, unit, published, interval, computed, standing }
+    let provenance = if id.starts_with('P') { P } else { D };
+    Figure { id, statement, unit, published, interval, computed, provenance }
 }
 
 pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, VolumeError> {
@@ -63,8 +63,8 @@ fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, Vo
     Ok(render_volume(display, &recording()?, &config, &HostRenderer, workers)?)
 }
 
-/// Returns figure P2. Points on a circle around the axis meet each plane on both sides, and points on the axis are in
-/// both planes.
+/// Returns the two rows of figure P2. The first row counts the planes of a slice that a circle around the axis crosses,
+/// each twice. The second row counts the slices whose planes both contain the axis.
 fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     let view = &display.views()[7];
     let steps = 100_000;
@@ -91,7 +91,7 @@ fn has_axis(view: &SliceView) -> bool {
     closed.contains([0.0, 33.0, 0.0], 0.0, 0.0) && !closed.contains([1e-6 * across.x, 33.0, 1e-6 * across.z], 0.0, 1e-6)
 }
 
-/// Returns points of a grid beside the axis. Many of them lie in boundary planes.
+/// Returns points of a grid beside the axis. Many points lie in boundary planes.
 fn grid() -> impl Iterator<Item = [f64; 3]> {
     let side = -60..=60i32;
     let places = side.clone().flat_map(move |x| side.clone().map(move |z| [f64::from(x), 7.0, f64::from(z)]));
@@ -102,8 +102,9 @@ fn percent(total: usize, agreeing: usize) -> f64 {
     100.0 * agreeing as f64 / total as f64
 }
 
-/// Returns figures P3 and P4. P3 compares the codes of bins. P4 compares the printed product with the clip, for the
-/// normals of figure 5 left and right.
+/// Returns figures P3 and P4. P3 is the percentage of grid points whose bin code agrees with the printed rule. P4 is
+/// the percentage of grid points at which the clip agrees with the printed sign of the product of distances. There are
+/// two rows for P4, with the normals of the left and of the right part of the paper's figure 5.
 fn signs() -> Vec<Figure> {
     let layout = BinLayout::double_wedges(0.0);
     let rule = |plane: &[f64; 4], p: [f64; 3]| plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] >= 0.0;
@@ -161,7 +162,7 @@ fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
             marked(99),
         ),
         Figure {
-            standing: D,
+            provenance: D,
             ..row("P15", "pixels equal to 1 after 209 fragments", "pixels", 209.0, 2.0, marked(SLICE))
         },
         row("D8", "queries between two clears", "queries", f64::from(queries), 0.0, per_batch),

@@ -43,7 +43,7 @@ impl DefinitionRow {
 pub struct Figures {
     /// Name and version of this record's layout.
     pub schema: &'static str,
-    /// One row for each figure that the code computes or counts: printed figures by number, then derived ones.
+    /// One row for each figure that the code computes or counts: printed figures by number, then derived figures.
     pub figures: Vec<FigureRow>,
     /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
     pub definitions: Vec<DefinitionRow>,
@@ -100,8 +100,8 @@ impl FigureRow {
     }
 }
 
-/// Returns a sort key for the identifier of a figure: printed figures first, then derived figures, then figures without
-/// a number.
+/// Returns a sort key for the identifier of a figure: printed figures first, then derived figures, then identifiers
+/// without a number.
 pub(super) fn order(id: &str) -> (u8, u32) {
     let number = id.get(1..).and_then(|digits| digits.parse().ok());
     match (id.chars().next(), number) {

@@ -1,4 +1,4 @@
-//! Statements of the paper that contain no numbers. The model confirms or refutes each of them by measurements.
+//! Statements of the paper that contain no numbers. The model confirms or refutes each statement by measurements.
 
 use super::plain::plain;
 use crate::choices::{ClipKind, ProjectionKind};
@@ -38,7 +38,7 @@ pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Sh
     Ok(shown)
 }
 
-/// Compares the lit pixels of the prism with those of the exact clip, in rings of 8 px.
+/// Compares the lit pixels of the prism with the lit pixels of the exact clip, in rings of 8 px.
 fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
     let rings = |clip| {
         let volume = Volume::draw(&VolumeSettings { clip, ..plain() }, scene, workers)?;
@@ -64,7 +64,7 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
 }
 
 /// Measures the radius around the axis within which no point is accepted if planes have few fraction bits. The derived
-/// radius is 2^-(bits + 1) / S.
+/// radius is 2^-(bits + 1) / S, where S is the sine of half the angle between slices.
 fn dead_zone() -> Shown {
     let radius = |bits: u32| {
         let wedge = HalfWedge::new(396, 384.0);
@@ -151,7 +151,7 @@ fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     })
 }
 
-/// Compares the parts of the modelled GPU time, and the bus time with that without packing and tiles.
+/// Compares the parts of the modelled GPU time. Also compares the bus times with and without packing and tiles.
 fn limits(volume: &Volume) -> Shown {
     let stats = &volume.frame.stats;
     let model = volume.settings.time_model();

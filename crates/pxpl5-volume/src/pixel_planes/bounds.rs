@@ -36,7 +36,7 @@ pub struct SliceBounds {
     pub copies: u64,
 }
 
-/// The time of each part for certain numbers of boards. Each is a lower bound of the time for a volume.
+/// The time of each part for certain numbers of boards. Each of these times is a lower bound of the time for a volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BoundRow {
     /// Number of renderers that share the slices.
@@ -48,7 +48,7 @@ pub struct BoundRow {
     /// Volumes per second if only the slowest part limits this rate.
     pub volumes_hz: f64,
     /// Name of the slowest part: `renderers`, `ring`, `port` or `processors`. If several parts are equally slow, the
-    /// name is that of the first of these parts.
+    /// first of these parts is named.
     pub limited_by: &'static str,
 }
 

@@ -1,5 +1,5 @@
 //! The command that draws a triangle in a slice: three edges, the hyperbola and three colours. The renderers' trees
-//! evaluate all of them.
+//! evaluate all these functions.
 
 use pxpl5_renderer::Layout;
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse};
@@ -7,8 +7,9 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, SUBPIXEL_BITS};
 use pxpl5_wire::{Linear, Quadratic, Word};
 use spatialgl::{ClipQuadratic, HalfWedge, Size};
 
-/// Number of fraction bits in the hyperbola's coefficients. With the usual 16 bits, S^2 would be only 4 units. With 26
-/// bits it is 4,224, and values inside a display of 768 px fit into 48 bits (derived).
+/// Number of fraction bits in the hyperbola's coefficients. A coefficient contains the term S^2, where S is the sine of
+/// half the angle between slices. With the usual 16 bits, S^2 would be only 4 units. With 26 bits, S^2 is 4,224 units,
+/// and values inside a display of 768 px fit into 48 bits (derived).
 pub const CLIP_FRACTION_BITS: u32 = 26;
 
 /// A corner of a triangle, with its position rounded to the sub-pixel grid of the machine.
@@ -22,15 +23,17 @@ pub struct SliceCorner {
     pub colour: [f64; 3],
 }
 
-/// A triangle in one slice, without depth. It covers the pixels that lie inside all edges and at which the hyperbola is
-/// not negative.
+/// A triangle in one slice, without depth. The triangle covers the pixels that lie inside all edges and at which the
+/// hyperbola is not negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SliceTriangle {
-    /// Edge functions, which are `>= 0` inside the triangle. They include the rule for pixels exactly on an edge.
+    /// Edge functions, which are `>= 0` inside the triangle. The functions include the rule for pixels exactly on an
+    /// edge.
     pub edges: [Linear; 3],
     /// The hyperbola A B + b as a function on the triangle's plane, with [`CLIP_FRACTION_BITS`].
     pub clip: Quadratic,
-    /// Linear functions for red, green and blue, with as many fraction bits as colours on the ring have.
+    /// Linear functions for red, green and blue. Their number of fraction bits is the number that colours have on the
+    /// ring.
     pub colour: [Linear; 3],
 }
 
@@ -73,7 +76,7 @@ impl SliceTriangle {
         program
     }
 
-    /// Returns the number of clocks in which an array executes the command. It is the same for all operands.
+    /// Returns the number of clocks in which an array executes the command. The number is the same for all operands.
     #[must_use]
     pub fn clocks(layout: &Layout) -> u32 {
         Self::default().program(layout).iter().map(ArrayInstruction::clocks).sum()

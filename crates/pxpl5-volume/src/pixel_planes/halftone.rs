@@ -5,7 +5,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_renderer::isa::{ArrayInstruction, Operand, Test};
 use pxpl5_wire::Word;
 
-/// Number of bits of a threshold. It equals the number of bits of a channel.
+/// Number of bits of a dither threshold, the same as of a colour channel.
 const THRESHOLD_BITS: u8 = 8;
 
 /// Returns the location of the threshold in pixel memory: the first bits of the scratch memory. Clears and slice
@@ -33,8 +33,8 @@ fn scratch(layout: &Layout) -> Operand {
     layout.plan().scratch.expect("pxpl5-volume: slices are drawn in a layout with scratch")
 }
 
-/// Returns the halftone program. For each channel, it enables all pixels, disables those with threshold >= channel, and
-/// stores the Enable bit.
+/// Returns the halftone program. For each channel, the program enables all pixels, disables the pixels with threshold
+/// >= channel, and stores the Enable bit.
 #[must_use]
 pub fn halftone_program(layout: &Layout) -> Vec<ArrayInstruction> {
     let of_channel = |channel: u8| {

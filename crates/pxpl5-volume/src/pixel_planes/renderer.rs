@@ -16,10 +16,10 @@ use std::sync::{Mutex, PoisonError};
 /// The pixel array that draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayKind {
-    /// The fast array. It computes whole values, only for the pixels that a command touches.
+    /// The fast array, which computes whole values, only for the pixels that a command touches.
     Lanes,
-    /// The reference model of the array. It executes one bit of one instruction at a time, and skips only steps that
-    /// cannot change a result.
+    /// The reference model of the array, which executes one bit of one instruction at a time. The model skips only
+    /// steps that cannot change a result.
     BitSerial,
 }
 
@@ -32,8 +32,8 @@ pub struct RendererWork {
     pub triangles: u64,
     /// Number of triangle commands. A triangle counts once for each region that it touches in a slice.
     pub commands: u64,
-    /// Number of omitted triangles. They have no area on the sub-pixel grid, or planes whose coefficients do not fit
-    /// the words.
+    /// Number of omitted triangles. A triangle is omitted if it has no area on the sub-pixel grid, or if the
+    /// coefficients of its planes do not fit the words.
     pub left_out: u64,
     /// Number of clocks for clears, triangles and halftones.
     pub clocks: u64,
@@ -42,7 +42,7 @@ pub struct RendererWork {
 }
 
 /// A renderer of slices with a hyperbolic clip and an orthographic projection. If several triangles cover a pixel, the
-/// last one determines its colour.
+/// last triangle determines its colour.
 ///
 /// A pixel counts as drawn if its colour is not black, because the arrays have no stencil.
 #[derive(Debug)]
@@ -206,7 +206,7 @@ impl PixelPlanesRenderer {
     }
 }
 
-/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so all of them are
+/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so all commands are
 /// legal.
 fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> (u64, std::sync::Arc<[Word]>) {
     let clocks = array.execute(words).expect("pxpl5-volume: commands of our own").clocks;

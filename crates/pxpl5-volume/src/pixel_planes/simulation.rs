@@ -11,9 +11,9 @@
 //! - Slice k goes to processor k mod G and to renderer k mod R. A processor computes the commands of a slice and hands
 //!   them to its port as one transfer. The transfer occupies the renderer's port until the last word. Meanwhile the
 //!   processor computes the commands of at most one more slice.
-//! - A renderer is a complete board. A full input FIFO stops the sender. The controller needs as many clocks as the
-//!   programs have. A region with at least one occupied tile is copied to the backing store, and sent from there while
-//!   the next region's commands arrive.
+//! - A renderer is a complete board. A full input FIFO stops the sender. The instructions of the programs determine the
+//!   clocks of the controller. A region with at least one occupied tile is copied to the backing store, and sent from
+//!   there while the next region's commands arrive.
 //! - Instead of 32-bit pixels, the tiles of the region are sent, one message each, in the format of the display.
 //!
 //! # Not modelled
@@ -49,7 +49,7 @@ pub struct SimulatedRow {
     pub processors: u64,
     /// Time from the start of the first command to the arrival of the last tile, in milliseconds.
     pub ms: f64,
-    /// Volumes per second if each volume begins after all tiles of the previous one have arrived.
+    /// Volumes per second if each volume begins after all tiles of the previous volume have arrived.
     pub volumes_hz: f64,
     /// Lower bound of the time for the same messages, given by the slowest part of the machine.
     pub bound: BoundRow,
@@ -362,7 +362,7 @@ impl<'a> Machine<'a> {
         let slice = pixels.target.picture.0 as usize;
         let region = usize::from(pixels.target.region.0);
         let tiles: Vec<Arc<[Word]>> = self.traffic.slices[slice].tiles[region].clone();
-        // The last tile has the ticket, so the renderer learns when its region has left.
+        // The last tile has the ticket, which notifies the renderer that its region has left.
         let last = tiles.len().saturating_sub(1);
         for (i, words) in tiles.into_iter().enumerate() {
             let body = Body::Words(words);
@@ -373,7 +373,8 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Requests a swap of the display's stores, and shows the volume at the first strobe 0 after the last tile.
+    /// Requests a swap of the display's stores, and shows the volume at the first strobe 0 (first flash of a turn)
+    /// after the last tile.
     fn swap(&mut self) {
         let body = Body::Words(swap_request(1));
         self.deliver(self.last_tile_at, body);

@@ -10,16 +10,17 @@ pub struct LightTimes {
     pub tick: Time,
     /// Time at which the first pixel of the picture starts to shine.
     pub first: Time,
-    /// Time at which the last pixel of the picture starts to shine for the last time.
+    /// Last time at which the last pixel of the picture starts to shine.
     pub last: Time,
 }
 
-/// The instant of a [`LightTimes`], the times at which a picture is shown, for which the view is predicted. All
-/// pipelines use the same choice.
+/// The instant for which the view of a picture is predicted. All pipelines use the same choice. The instant follows
+/// from the [`LightTimes`] of the picture, the times at which the display shows it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {
-    /// Half-way between the first and the last pixel. This instant gives the least error while the head turns steadily.
+    /// The middle of the time between the first and the last pixel. This instant gives the least error while the head
+    /// turns at a constant rate.
     #[default]
     Middle,
     /// The time at which the first pixel of the picture starts to shine.
@@ -39,7 +40,8 @@ impl Aim {
         ("retrace", Self::Retrace),
     ];
 
-    /// Returns the instant for which a view is predicted. `shown` has the times at which the view's picture is shown.
+    /// Returns the instant for which a view is predicted. `shown` has the times at which the display shows the picture
+    /// of the view.
     #[must_use]
     pub fn instant(self, shown: &LightTimes) -> Time {
         match self {

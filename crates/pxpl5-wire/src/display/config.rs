@@ -11,13 +11,14 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     /// Returns the name of this kind of display, as given to `--display`.
     fn name(&self) -> &'static str;
 
-    /// Returns a description of the display that names its source.
+    /// Returns a description of the display, with the source of its numbers.
     fn about(&self) -> &'static str;
 
-    /// Returns the parameter tables, each with its path prefix, such as `video` in `video.frame_lines`.
+    /// Returns the parameter tables, each with the prefix of its parameters' paths. An example is `video` in
+    /// `video.frame_lines`.
     fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)>;
 
-    /// Returns the parameter tables for modification, each with its path prefix.
+    /// Returns the parameter tables for modification, each with the prefix of its parameters' paths.
     fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)>;
 
     /// Returns the number of ring ports that the display needs. `pictures` is the number of pictures that the pipeline
@@ -31,7 +32,7 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// [`DisplayError`] with the name of the parameter, the expected range and the found value.
+    /// Returns [`DisplayError`] with the name of the parameter, the expected range and the found value.
     fn check(&self) -> Result<(), DisplayError> {
         let mut tables = self.tables().into_iter();
         tables.try_for_each(|(name, table)| table.check().map_err(|error| DisplayError(format!("{name}.{error}"))))
@@ -41,18 +42,18 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// The errors of [`DisplayConfig::check`].
+    /// Returns the errors of [`DisplayConfig::check`].
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError>;
 
     /// Returns a copy of the configuration in a box.
     fn boxed(&self) -> Box<dyn DisplayConfig>;
 
-    /// Sets the number of past periods whose pictures the display remembers. The default is 2. Displays without such a
-    /// memory ignore the call.
+    /// Sets the number of past periods whose pictures the display keeps. The default is 2. Displays that keep no past
+    /// pictures ignore the call.
     fn remember(&mut self, _periods: u64) {}
 
-    /// Sets the background colour 0x00RRGGBB of pixels where nothing is drawn. Displays whose pictures contain a
-    /// background of their own ignore the call.
+    /// Sets the background colour 0x00RRGGBB, the colour of pixels where nothing is drawn. Displays whose pictures have
+    /// their own background ignore the call.
     fn set_background(&mut self, _background: u32) {}
 
     /// Returns true if the display shows the faces of a cube around the head, with depth. Returns false if the display

@@ -1,4 +1,4 @@
-//! A double buffer of whole regions, for displays that swap buffers at the begin of a period.
+//! A double buffer of whole regions, for displays that swap buffers at the start of a period.
 
 use crate::{Body, MAX_MESSAGE_WORDS, RegionId, RegionPixels, Word, read_swap_request};
 use image::{Rgb, RgbImage};
@@ -26,8 +26,8 @@ type Regions = BTreeMap<RegionId, PartialRegion>;
 
 /// Two buffers for one surface. One of the buffers is shown.
 ///
-/// **Not modelled:** pixels that arrive while the display lights them. A display that models such pixels must keep the
-/// arrival times of all messages, as the NTSC frame buffer does.
+/// **Not modelled:** pixels that arrive while the display scans their place. A display that models such pixels must
+/// keep the arrival times of all messages, like the NTSC frame buffer.
 #[derive(Clone, Debug)]
 pub struct DoubleBuffer {
     width: u32,
@@ -45,7 +45,7 @@ pub struct DoubleBuffer {
 /// The effect of an arriving message on a [`DoubleBuffer`].
 #[derive(Clone, Debug)]
 pub enum BufferReceipt {
-    /// The message was the last one of its region. The time is the arrival of the region's first message.
+    /// The message completed its region. The time is the arrival of the region's first message.
     Region(RegionPixels, Time),
     /// The message was a swap request, or a message of a region that is still incomplete.
     Part,
@@ -104,7 +104,7 @@ impl DoubleBuffer {
             return Err(format!("expected one of {expected} messages of a region, found message {part} of {parts}"));
         }
         let buffer = self.buffers.get_mut(usize::from(target.buffer)).ok_or_else(|| no_such_buffer(target.buffer))?;
-        // The first message of a new copy replaces the old region.
+        // The first message of a new copy replaces the earlier copy of the region.
         let fresh = PartialRegion { pixels, rectangle, arrived: 0, first_part_at: now };
         let region = buffer.entry(target.region).or_insert_with(|| fresh.clone());
         if region.pixels.target != target || region.is_complete() {
@@ -129,8 +129,8 @@ impl DoubleBuffer {
         Ok(BufferReceipt::Part)
     }
 
-    /// Shows the buffer that was requested last, and returns its number. Returns `None` without a request. A request
-    /// that arrives exactly at `now`, the time of the tick, waits for the next tick.
+    /// Shows the buffer that was requested last, and returns the number of this buffer. Returns `None` without a
+    /// request. A request that arrives exactly at `now`, the time of the tick, has its effect at the next tick.
     pub fn swap(&mut self, now: Time) -> Option<u8> {
         // Keep the old picture, which was visible until this tick.
         self.scanned.clone_from(&self.buffers[usize::from(self.shown)]);
@@ -139,7 +139,7 @@ impl DoubleBuffer {
         Some(buffer)
     }
 
-    /// Returns the picture in the shown buffer. Incomplete regions are included; the picture is black where no region
+    /// Returns the picture in the shown buffer. Incomplete regions are included. The picture is black where no region
     /// has arrived.
     #[must_use]
     pub fn picture(&self) -> RgbImage {
@@ -204,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Returns one of the two messages of a 64 x 32 region on a surface of 100 x 60.
+    /// Returns one of the two messages of a 64 x 32 region. The surface has 100 x 60 pixels.
     fn part(region: u16, part: u32, picture: u64, colour: Word) -> RegionPixels {
         let grid = RegionGrid { width: 100, height: 60, region_width: 64, region_height: 32 };
         let target = CopyTarget {
@@ -254,7 +254,7 @@ mod tests {
         let mut buffers = DoubleBuffer::new(100, 60);
         receive(&mut buffers, part(0, 0, 1, 1), 1);
         let wrong = [
-            // A repeated message, a wrong number of messages, a message, a buffer and a region that do not exist.
+            // A repeated message, a wrong number of messages, and a message, a buffer and a region that do not exist.
             part(0, 0, 1, 1),
             RegionPixels { parts: 3, ..part(0, 1, 1, 1) },
             part(0, 2, 1, 1),

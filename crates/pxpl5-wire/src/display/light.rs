@@ -7,7 +7,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scan {
-    /// Line by line from the top, and from left to right in each line, as the beam of a cathode-ray tube.
+    /// Line by line from the top, and from left to right in each line, like the beam of a cathode-ray tube.
     #[default]
     Down,
     /// Line by line from the bottom, and from left to right in each line.
@@ -16,7 +16,7 @@ pub enum Scan {
     Right,
     /// Column by column from the right, and from top to bottom in each column.
     Left,
-    /// All pixels start to shine at once.
+    /// All pixels start to shine at the same time.
     Global,
 }
 
@@ -25,7 +25,7 @@ pub enum Scan {
 pub struct Light {
     /// Order in which the pixels start to shine.
     pub scan: Scan,
-    /// Time for which a pixel is driven in each period. Zero means that the pixel shines only for an instant.
+    /// Time for which the display drives a pixel in each period. Zero means that the pixel shines only for an instant.
     pub persistence: Span,
     /// Time constant of the first-order lag with which a pixel's brightness follows its drive. Zero means no lag.
     pub response: Span,
@@ -39,7 +39,7 @@ impl Light {
         Span(self.persistence.0 / 2 + self.response.0)
     }
 
-    /// Returns the duration of a constant brightness whose variance over time equals that of this light.
+    /// Returns the duration of a constant brightness that has the same variance over time as this light.
     ///
     /// The duration is the square root of p^2 + 12 r^2 for a persistence p and a time constant r. A constant brightness
     /// of duration p has the variance p^2 / 12, a first-order lag has the variance r^2, and variances add.
@@ -71,8 +71,8 @@ mod tests {
         assert!(light(0, 0).is_instant() && !light(0, 1).is_instant());
     }
 
-    /// Computes mean and variance of a pixel's light by a sum over its brightness. The brightness rises as 1 - e^(-t/r)
-    /// while the pixel is driven, and falls as e^(-t/r) afterwards.
+    /// Computes the mean and the variance of a pixel's light by a sum over the pixel's brightness. The brightness rises
+    /// as 1 - e^(-t/r) while the pixel is driven, and falls as e^(-t/r) afterwards.
     #[test]
     fn centre_and_width_are_those_of_the_sum_over_the_brightness() {
         let (persistence, response) = (2_000.0_f64, 400.0_f64);

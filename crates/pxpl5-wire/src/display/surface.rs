@@ -17,8 +17,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Returns the surfaces of `count` frame buffers of the same size. One frame buffer shows a single picture, two
-    /// show the two eyes.
+    /// Returns the surfaces of `count` frame buffers of the same size. A single frame buffer shows one picture, and two
+    /// frame buffers show the pictures of the two eyes.
     #[must_use]
     pub fn of_frame_buffers(count: usize, width: u32, height: u32) -> Vec<Self> {
         let titles = if count == 1 { ["frame buffer"; 2] } else { ["left frame buffer", "right frame buffer"] };
@@ -38,8 +38,8 @@ impl Surface {
         self.label.chars().next().unwrap_or(' ').to_ascii_uppercase()
     }
 
-    /// Returns the name of the surface for legends that have no room for the title. For the picture of an eye the name
-    /// is `left eye` or `right eye`, else the name is the label.
+    /// Returns the name of the surface for legends that are too narrow for the title. For the picture of an eye, the
+    /// name is `left eye` or `right eye`. For other surfaces, the name is the label.
     #[must_use]
     pub fn legend(&self) -> String {
         let is_eye = Eye::BOTH.into_iter().any(|eye| eye.name() == self.label);
@@ -57,7 +57,7 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// Name of the counter of overwritten lines: lines that new pixels replaced before the display had shown them.
+    /// Name of the counter of overwritten lines. New pixels replaced such a line before the display had shown the line.
     /// Displays that show only whole buffers do not have this counter.
     pub const LINES_NEVER_SHOWN: &'static str = "lines never shown";
 }

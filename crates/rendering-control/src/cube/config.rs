@@ -10,24 +10,24 @@ use std::sync::Arc;
 /// The boards that run Cube control, and the kind of faces they draw.
 #[derive(Clone, Debug)]
 pub struct CubeControlConfig {
-    /// Node of the host interface, which sends updates.
+    /// Ring port of the host, which sends updates.
     pub host: NodeId,
-    /// Node of the master GP, which begins every stage.
+    /// Ring port of the master GP, which begins every stage.
     pub master: NodeId,
-    /// Nodes of the slave GPs, at least one.
+    /// Ring ports of the slave GPs, at least one.
     pub slaves: Vec<NodeId>,
-    /// Nodes of the renderers, at least one.
+    /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,
     /// Format and destination of the faces.
     pub faces: Faces,
-    /// Cache of warped display lists, shared by all slaves. Empty at first.
+    /// Cache of warped display lists, which all slaves share. The cache is empty at first.
     pub warped: WarpedLists,
 }
 
 /// Format of the faces in the memories of a display.
 #[derive(Clone, Debug)]
 pub struct Faces {
-    /// Node of each display memory.
+    /// Ring port of each display memory.
     pub memories: Vec<NodeId>,
     /// Viewport and shading of each face.
     pub picture: Picture,

@@ -11,8 +11,8 @@ use pxpl5_wire::{PictureNumber, RegionId};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Returns the view from an eye through a face of the cube. `ahead` is the view of the eye in its initial orientation;
-/// the function rotates it to the axes of the face.
+/// Returns the view from an eye through a face of the cube. `ahead` is the view of the eye in its initial orientation.
+/// The function rotates this view to the axes of the face.
 ///
 /// Structures that are fixed to the head are drawn as for a head in its initial orientation.
 #[must_use]
@@ -32,20 +32,22 @@ fn to_face(face: CubeFace) -> Mat4 {
     Mat4::from_cols(column(0), column(1), column(2), Vec4::W)
 }
 
-/// Bins of an update: the primitives of one slave that touch each region of the six faces.
+/// Bins of an update (new content of one display memory) for one slave. The bin of each region on the six faces has the
+/// slave's primitives that touch the region.
 #[derive(Clone, Debug)]
 pub struct CubePass {
     update: Arc<FaceUpdate>,
     /// Bin context of the update, 0 or 1.
     context: u8,
     faces: Vec<Arc<Pass>>,
-    /// Counted work at the beginning of the pass: the structures of the update are placed once for each face.
+    /// Work at the beginning of the pass. The structures of the update are placed once for each face.
     begin: TransformCost,
     transformed: PrimitiveCounts,
 }
 
 impl CubePass {
-    /// Transforms those primitives of a share that the update's display memory holds, for all six faces.
+    /// Transforms primitives of a share for all six faces. Primitives that the update's display memory does not hold
+    /// are left out.
     ///
     /// Vertices have the positions of the list that [`CubePass::placed`] returns.
     #[must_use]
@@ -57,7 +59,7 @@ impl CubePass {
         let share = &Self::placed(config, share, update);
         let pass = |face: usize| share.transform_chosen(&view, face, config.faces.picture, &update.structures);
         let faces: Vec<Arc<Pass>> = (0..view.eyes.len()).map(pass).collect();
-        // Count the transformations and the structures, for the time that the pass takes.
+        // Count the transformations and the structures to compute the time of the pass.
         let held = share.chosen_counts(&update.structures);
         let transformed = PrimitiveCounts {
             triangles: transformed(&faces, 0, held.triangles),
@@ -121,7 +123,7 @@ pub(crate) const fn context_of(update: PictureNumber) -> usize {
 }
 
 /// Returns the number of transformations of the slave's triangles (`kind` 0) or spheres (`kind` 1). `held` is the
-/// number of these primitives in the update.
+/// number of triangles or spheres in the update.
 fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
     let touching = || faces.iter().filter_map(|pass| Some(&pass.touching()?[kind]));
     let anywhere: BTreeSet<u32> = touching().flatten().copied().collect();
@@ -132,7 +134,8 @@ fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
 impl Work for CubePass {
     /// Returns the TRANSFORM time by the timing table.
     ///
-    /// It covers the structures for each face, each primitive once for each face that it touches, and each bin entry.
+    /// The time covers the structures of each face, each primitive (once for each face that it touches), and each bin
+    /// entry.
     fn by_table(&self, timing: &GpTiming) -> Span {
         let PrimitiveCounts { triangles, spheres } = self.transformed;
         let primitives = TransformCost { triangles: triangles.into(), spheres: spheres.into(), ..self.begin };

@@ -1,4 +1,4 @@
-//! Program of the host: it chooses the next update and performs SEND.
+//! Program of the host, which chooses the next update and performs SEND.
 
 use crate::cube::config::CubeControlConfig;
 use crate::cube::protocol::UpdateOrder;
@@ -7,7 +7,7 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 
-/// Action that the host takes when it is ready for an update.
+/// An action of the host. The host chooses an action whenever it is ready for an update.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HostAction {
     /// Send this update now.
@@ -20,8 +20,8 @@ pub enum HostAction {
 
 /// Runs the host program, which sends updates over the host's link and the ring to all GPs.
 ///
-/// SEND of an update begins after EDIT of the previous update has finished (TR94). Whenever the host is ready, it calls
-/// `plan` with the number of the next update and the current time.
+/// SEND of an update begins after EDIT of the previous update has finished (TR94). Whenever the host is ready for an
+/// update, it calls `plan` with the number of the next update and the current time.
 ///
 /// # Errors
 ///
@@ -43,7 +43,7 @@ pub async fn host(
             }
             HostAction::Nothing => return Ok(()),
         };
-        // Send it, and wait until all slaves have applied its edits.
+        // Send the update, and wait until all slaves have applied its edits.
         send(&gp, &config, timing, update).await;
         let received = gp.receive().await;
         if UpdateOrder::read(&received, gp.node())? != UpdateOrder::EditsDone(next) {

@@ -9,7 +9,7 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyOrder, CopyPath, CopyTarget, PictureNumber, RegionId, SurfaceId};
 use std::collections::VecDeque;
 
-/// State of a renderer, as far as the master knows it.
+/// State of a renderer, as it follows from the messages that the master has received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
@@ -23,24 +23,24 @@ enum RendererUse {
 #[derive(Debug)]
 struct UpdateProgress {
     update: FaceUpdate,
-    /// Number of earlier updates of the same display memory. When the memory has swapped as many times, its hidden
-    /// buffer is free.
+    /// Number of earlier updates of the same display memory. When the number of swaps of the memory reaches this value,
+    /// its hidden buffer is free.
     before: u64,
     /// Number of slaves that have applied the edits.
     edited: usize,
     /// Number of slaves that have transformed the update.
     transformed: usize,
-    /// Number of entries in each region's bin, summed over the slaves that have transformed the update.
+    /// Number of entries in each region's bin. The number is a sum over the slaves that have transformed the update.
     entries: Vec<u64>,
     /// True if the regions that will arrive have been announced to the display memory.
     announced: bool,
-    /// Number of regions that have not arrived in the display memory. `None` before RENDER begins.
+    /// Number of regions of this update that have not arrived in the display memory. `None` before RENDER begins.
     missing: Option<u64>,
 }
 
 impl UpdateProgress {
-    /// Returns the regions that contain primitives, heaviest first. If the update has no primitives, returns one
-    /// region.
+    /// Returns the regions that contain primitives, heaviest first. For an update without primitives, the function
+    /// returns one region.
     fn regions(&self) -> VecDeque<RegionId> {
         let mut regions: Vec<usize> = (0..self.entries.len()).filter(|region| self.entries[*region] > 0).collect();
         if regions.is_empty() {
@@ -55,7 +55,7 @@ impl UpdateProgress {
 #[derive(Debug)]
 struct Rendering {
     number: PictureNumber,
-    /// Regions that no renderer has been assigned to yet, heaviest first.
+    /// Regions without an assigned renderer, heaviest first.
     unassigned: VecDeque<RegionId>,
     /// Number of regions of the update.
     regions: u16,
@@ -67,16 +67,16 @@ struct CubeMaster {
     gp: Gp,
     config: CubeControlConfig,
     completed: Completed,
-    /// The first update whose EDIT has not been ordered yet.
+    /// The first update for which the master has not ordered EDIT.
     next_edit: PictureNumber,
-    /// Updates that are not complete. The first one has the number `completed.copied`.
+    /// Updates that are not complete. The first update in the list has the number `completed.copied`.
     under_way: VecDeque<UpdateProgress>,
     /// For each memory, the number of updates that the host has sent so far.
     of_memories: Vec<u64>,
     rendering: Option<Rendering>,
     renderers: Vec<RendererUse>,
     next_slave: usize,
-    /// Number of swaps of all memories at the master's last check.
+    /// Number of buffer swaps of all display memories together at the master's last check.
     swaps_known: u64,
 }
 
@@ -119,7 +119,7 @@ impl CubeMaster {
     }
 
     /// Returns `Some(Some(message))` if a message has arrived. Returns `Some(None)` if a memory has swapped since the
-    /// last check.
+    /// last check. Otherwise returns `None`.
     fn message_or_swap(&self) -> Option<Option<Received>> {
         match self.gp.take_message() {
             Some(received) => Some(Some(received)),
@@ -144,7 +144,7 @@ impl CubeMaster {
         update.0.checked_sub(self.completed.copied).map(|place| place as usize)
     }
 
-    /// Begins the most urgent action that the rules permit. Returns false if they permit none.
+    /// Begins the most urgent action that the rules permit. Returns false if the rules permit no action.
     async fn begin_one(&mut self) -> bool {
         self.swaps_known = self.swaps();
         // Order of urgency: announce, copy, token, edit.
@@ -170,8 +170,8 @@ impl CubeMaster {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Returns the first update that can be announced to its memory: it is transformed, and the memory shows its
-    /// previous update. The result is an index of `under_way`.
+    /// Returns the first update that the master can announce to its memory, as an index of `under_way`. All slaves must
+    /// have transformed the update, and the memory must show its previous update.
     fn next_announcement(&self) -> Option<usize> {
         self.under_way.iter().position(|one| {
             let is_known = one.transformed == self.config.slaves.len();
@@ -180,7 +180,7 @@ impl CubeMaster {
         })
     }
 
-    /// Tells a display memory which regions will arrive, and requests the swap.
+    /// Sends a display memory the list of regions that will arrive, and requests the swap.
     async fn announce(&mut self, place: usize) {
         let texels = self.config.faces.face_texels();
         let one = &mut self.under_way[place];
@@ -219,7 +219,7 @@ impl CubeMaster {
         let update = rendering.number;
         let of = rendering.regions;
         self.renderers[renderer] = RendererUse::Receiving;
-        // Slaves take turns to receive a token first, which balances their load.
+        // The slaves take turns as the first holder of a token, to balance their load.
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
         let slaves_left = self.config.slaves.len() as u16;
@@ -343,7 +343,7 @@ mod tests {
     use pxpl5_sim::Span;
     use pxpl5_wire::NodeId;
 
-    /// The last region may arrive before the master learns that its commands were accepted.
+    /// The last region can arrive before the message that its commands were accepted.
     #[test]
     fn an_update_is_over_when_its_regions_have_arrived_and_its_commands_were_accepted() {
         for accepted_first in [true, false] {

@@ -12,7 +12,7 @@ const TOKEN: Word = 0x106;
 const ACCEPTED: Word = 0x107;
 const EDITS_DONE: Word = 0x108;
 
-/// A token. The slave that holds the token may send the slave's commands of one region to one renderer.
+/// A token. While a slave holds the token, it may send its commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) update: PictureNumber,
@@ -34,7 +34,7 @@ pub(crate) struct Token {
 pub(crate) enum UpdateOrder {
     /// Host to all GPs: an update.
     Send(FaceUpdate),
-    /// Master to slaves: apply the edits of an update, and transform.
+    /// Master to slaves: apply the edits of an update, then transform.
     Edit(PictureNumber),
     /// Slave to master: the edits of an update are applied.
     Edited(PictureNumber),
@@ -79,7 +79,7 @@ impl UpdateOrder {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// Decodes words. Returns `None` if the words are no message of this protocol.
+    /// Decodes words. Returns `None` if the words are not a message of this protocol.
     fn from_words(words: &[Word]) -> Option<Self> {
         match *words.first()? {
             SEND => FaceUpdate::from_words(&words[1..]).map(Self::Send),

@@ -1,10 +1,10 @@
 //! Rules that decide when a stage of an update may begin.
 //!
-//! They are the rules of Rendering Control for mono frames (TR94), with updates instead of frames.
+//! These rules are the rules of Rendering Control for mono frames (TR94), applied to updates instead of frames.
 
 use pxpl5_wire::PictureNumber;
 
-/// Number of updates that have passed each stage. Every stage processes updates in order.
+/// For each stage, the number of updates that have passed the stage. Every stage processes updates in order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Completed {
     pub(crate) sent: u64,
@@ -19,8 +19,8 @@ pub(crate) struct Completed {
 impl Completed {
     /// Returns true if EDIT of an update may begin.
     ///
-    /// Four stages must be complete: SEND of this update, TRANSFORM of the previous one, RENDER of the one before that,
-    /// and COPY of the third previous one. RENDER matters because there are only two bin contexts.
+    /// Four stages must be complete: SEND of this update, TRANSFORM of the previous update, RENDER of the second
+    /// previous update, and COPY of the third previous update. RENDER matters because there are only two bin contexts.
     pub(crate) const fn may_edit(&self, update: PictureNumber) -> bool {
         let n = update.0;
         self.sent > n && self.transformed >= n && self.rendered + 1 >= n && self.copied + 2 >= n

@@ -13,20 +13,21 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// State that both programs of a slave share.
+/// State that the two programs of a slave share.
 #[derive(Debug, Default)]
 struct SlaveState {
     updates: VecDeque<FaceUpdate>,
-    /// The first update that the master has not permitted for EDIT.
+    /// The first update for which the master has not permitted EDIT.
     next_edit: PictureNumber,
-    /// The bins of both contexts. A context is one of two sets of bins. `None` for an empty context.
+    /// The bins of both contexts. A context is one of two sets of bins. An empty context has the value `None`.
     bins: [Option<CubePass>; 2],
     /// For each context, the number of tokens that this slave has received for its bins.
     tokens: [u16; 2],
 }
 
 impl SlaveState {
-    /// Counts a token for the bins of a context. After the last of `of` tokens, empties the context and returns true.
+    /// Counts a token for the bins of a context. After the last of the update's `of` tokens, the function empties the
+    /// context and returns true.
     fn count_token(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;
@@ -110,11 +111,11 @@ fn next_edit(state: &mut SlaveState) -> Option<FaceUpdate> {
     if may_begin { state.updates.pop_front() } else { None }
 }
 
-/// Performs TRANSFORM: makes commands of an update's primitives, and puts them into the bins of each face that they
-/// touch.
+/// Performs TRANSFORM. The slave makes commands of an update's primitives, and puts the commands into the bins of the
+/// faces.
 ///
-/// If the bins of two updates do not fit into memory, TRANSFORM waits. It begins when RENDER of the previous update has
-/// freed its bins.
+/// If the bins of two updates do not fit into memory, TRANSFORM waits until RENDER of the previous update has freed its
+/// bins.
 async fn transform(
     gp: &Gp,
     config: &CubeControlConfig,
@@ -143,12 +144,12 @@ async fn transform(
     Ok(())
 }
 
-/// Runs the interrupt program: it stores updates and permissions to edit when they arrive, and handles tokens.
+/// Runs the interrupt program. The program stores updates and permissions for EDIT, and handles tokens.
 async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: SharedSlaveState) -> Result<(), Fault> {
     loop {
         let received = gp.next_message().await;
         let order = UpdateOrder::read(&received, gp.node());
-        // `walk` charges the cost of receiving a token. Other messages are paid for below.
+        // `walk` spends the time to receive a token. The time to receive other messages is spent below.
         if let Ok(UpdateOrder::Token(token)) = order {
             walk(&gp, &config, index, &state, &received, token).await?;
             continue;
@@ -223,8 +224,8 @@ fn envelope(config: &CubeControlConfig, update: &FaceUpdate, token: Token) -> Re
     }
 }
 
-/// Returns the message that passes a token to the next slave. The last slave's message tells the master that the region
-/// is finished.
+/// Returns the message that passes a token to the next slave. The last slave's message reports to the master that the
+/// region is finished.
 fn passed_on(config: &CubeControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };

@@ -1,4 +1,4 @@
-//! An update, which draws the content of one display memory anew.
+//! An update, which replaces the content of one display memory.
 
 use crate::cube::warp::{FaceWarp, WARP_WORDS};
 use address_recalculation::{begin_update, swap_together};
@@ -6,16 +6,16 @@ use pphigs::FrameView;
 use pxpl5_wire::{PictureNumber, RegionId, Word, swap_request};
 use std::sync::Arc;
 
-/// An update of one display memory, as the host requests it.
+/// An update of one display memory, as requested by the host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceUpdate {
-    /// Number of the update. Updates of all memories are counted together, from 0.
+    /// Number of the update. The updates of all memories share one sequence of numbers, from 0.
     pub number: PictureNumber,
     /// Index of the display memory.
     pub memory: u8,
     /// Buffer of the memory that receives the update, 0 or 1.
     pub buffer: u8,
-    /// Bit mask of the memories that must swap together with this one. 0 if this memory swaps alone.
+    /// Bit mask of the memories that must swap together with this memory. The mask is 0 if this memory swaps alone.
     pub together: u8,
     /// The view of an eye in its initial orientation, with the projection of a face. The view also contains the edits
     /// of structures.
@@ -26,15 +26,15 @@ pub struct FaceUpdate {
     pub warp: Option<FaceWarp>,
 }
 
-/// Bit in the third word of an encoded update. If it is set, a warp follows the bits of the structures.
+/// Bit in the third word of an encoded update. If this bit is set, a warp follows the bits of the structures.
 const WARPED: Word = 1 << 24;
 
 /// Number of words before the bits of the structures.
 const HEADER: usize = 4;
 
 impl FaceUpdate {
-    /// Returns the two messages that announce the update to its memory: the regions that will arrive, and the swap
-    /// request.
+    /// Returns the two messages that announce the update to its memory: the list of regions that will arrive, and the
+    /// swap request.
     #[must_use]
     pub fn announcement(&self, face_texels: u32, regions: &[RegionId]) -> [Arc<[Word]>; 2] {
         let map = begin_update(face_texels, self.buffer, regions);
@@ -46,7 +46,7 @@ impl FaceUpdate {
     /// Encodes the update as words.
     ///
     /// The order is: number (two words), memory with buffer and group, number of structures, one bit for each
-    /// structure, warp if there is one, view.
+    /// structure, the warp if the update has a warp, and the view.
     pub(crate) fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
         let place = u32::from(self.memory) | u32::from(self.buffer) << 8 | u32::from(self.together) << 16;

@@ -1,14 +1,14 @@
-//! Region warping: vertices are displaced before a slave transforms them.
+//! Region warping: the displacement of vertices before a slave transforms them.
 
 use address_recalculation::priority::{Cell, CellAssignment, Falloff, PriorityError, RegionWarp};
 use glam::DVec3;
 use pxpl5_wire::Word;
 
 /// Displacement of an update's vertices near the border to the next slower memory. The slower memory was drawn from
-/// another eye position, so the two images would not meet at the border.
+/// another eye position. Without the displacement, the two images would not meet at the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWarp {
-    /// Assignment of cells (squares of the floor) to memories.
+    /// Assignment of cells (squares of the floor) to display memories.
     pub dealing: CellAssignment,
     /// Shape of the falloff: how the displacement decreases with the distance from the border to the slower memory.
     pub falloff: Falloff,
@@ -22,8 +22,8 @@ pub struct FaceWarp {
 
 /// Number of words of an encoded warp.
 ///
-/// The words are home cell, rings (growth in the upper half), number of memories, falloff, two lengths and two
-/// positions.
+/// The words are: home cell (four words), one word with `inner_rings` in the lower half and `ring_growth` in the upper
+/// half, number of memories, and falloff. Two lengths and two positions follow, with two words for each real number.
 pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
 
 impl FaceWarp {
@@ -51,7 +51,7 @@ impl FaceWarp {
     /// Decodes a warp, or returns `None` for invalid words.
     pub(crate) fn from_words(words: &[Word; WARP_WORDS]) -> Option<Self> {
         let (whole, reals) = words.split_first_chunk::<7>()?;
-        // Integers come first, then floating-point numbers in two words each.
+        // The words of integers come first, then floating-point numbers with two words each.
         let [x_low, x_high, z_low, z_high, rings, memories, falloff] = *whole;
         let cell = |low: Word, high: Word| joined(low, high) as i64;
         let reals: Vec<f64> = reals.chunks_exact(2).map(|pair| f64::from_bits(joined(pair[0], pair[1]))).collect();

@@ -6,15 +6,15 @@ use pxpl5_wire::PictureNumber;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A cache of display lists with displaced vertices. All slaves use equal lists, so the cache only shortens the run
-/// time of the simulator.
+/// A cache of display lists with displaced vertices. All slaves use equal lists. The cache shortens the run time of the
+/// simulator and changes no result.
 #[derive(Clone, Debug, Default)]
 pub struct WarpedLists(Arc<Mutex<Kept>>);
 
 /// Display lists with the numbers of their updates, newest first.
 type Kept = VecDeque<(PictureNumber, Arc<DisplayList>)>;
 
-/// Number of lists in the cache. A fast slave can be one update ahead of a slow one, so two lists are in use.
+/// Number of lists in the cache. A fast slave can be one update ahead of a slow slave, so two lists can be in use.
 const KEPT: usize = 2;
 
 impl WarpedLists {
@@ -58,7 +58,8 @@ mod tests {
     use pxpl5_geometry::Culling;
     use pxpl5_wire::ViewNumber;
 
-    /// Returns structures of one triangle each, half a metre inside the border to the slower memory at x = 10 m.
+    /// Returns structures with one triangle each. The triangles are half a metre inside the border to the slower memory
+    /// at x = 10 m.
     fn list() -> Arc<DisplayList> {
         let mut list = DisplayList::default();
         let frames = [ModelFrame::World, ModelFrame::Head, ModelFrame::World, ModelFrame::World, ModelFrame::World];
@@ -79,7 +80,7 @@ mod tests {
         Arc::new(list)
     }
 
-    /// Returns an update whose memory holds all structures but the third. An edit moves the fourth structure.
+    /// Returns an update whose memory holds all structures except the third. An edit moves the fourth structure.
     fn update(number: u64) -> FaceUpdate {
         let dealing =
             CellAssignment { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, ring_growth: 1, memories: 2 };

@@ -1,4 +1,4 @@
-//! Tests of a leading processor that is alone on its board: its messages and their times, for different
+//! Tests of a leading processor without other processors. The tests check its messages and their times, for different
 //! acknowledgements of the renderers.
 
 use super::*;
@@ -95,7 +95,7 @@ impl Rig {
     }
 }
 
-/// A request that names one of the two buffers, to frame buffers or renderers.
+/// A request for one of the two buffers. The receiver is a frame buffer or a renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Asked {
     Show(u8),
@@ -110,16 +110,16 @@ fn asked(message: &Message) -> Option<Asked> {
     }
 }
 
-/// At each retrace, the processor requests the last complete field of those lines that the next period scans. A new
-/// field is written into the other buffer. Its display is requested if its top regions have been copied before its
-/// retrace. This request precedes the copies of the bottom regions, which occupy the ports of the frame buffers. After
-/// a late field, the next field has the other lines.
+/// At each retrace, the processor requests a field for the next period: the last complete field with the lines of this
+/// period. A new field is written into the other buffer. Its display is requested if its top regions have been copied
+/// before its retrace. This request precedes the copies of the bottom regions, which occupy the ports of the frame
+/// buffers. After a late field, the next field has the lines of the other parity.
 #[test]
 fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     use Asked::{Show, Write};
     let mut rig = Rig::new(CopySchedule::Backup, 3);
-    // Fields are 2 and 3 (in time), 4 (late), 5 and 6 (in time), 7 (late by more than a field), 8 (therefore late) and
-    // 11.
+    // The fields are 2 and 3 (in time), 4 (late), 5 and 6 (in time), 7 (late by more than a field), 8 (late because of
+    // field 7) and 11.
     for copied_ms in [30, 50, 85, 95, 110, 165, 175, 190] {
         rig.run_to(copied_ms * 1_000, 0);
         (0..REGIONS / 2).for_each(|_| rig.deliver(Body::Words([COPY_ACKNOWLEDGEMENT, 0, 0, 0].into())));
@@ -151,8 +151,8 @@ fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     assert_eq!(found, expected.concat());
 }
 
-/// There is one clump buffer. The next clump is made when all receivers have begun to take the previous one. It takes
-/// 30 us for each triangle and eye.
+/// There is one clump buffer. The next clump is made when all receivers have begun to take the previous clump. A clump
+/// takes 30 us for each triangle and eye.
 #[test]
 fn the_next_clump_is_made_while_the_one_before_is_drained() {
     const SECOND: usize = 7;

@@ -17,7 +17,8 @@ pub struct PlaneStack {
 }
 
 impl PlaneStack {
-    /// Creates a stack of `planes` planes. They divide a range of z around 0, `depth` pixels long, into equal slabs.
+    /// Creates a stack of `planes` planes. The planes divide a range of z around 0, `depth` pixels long, into equal
+    /// slabs.
     ///
     /// # Errors
     ///
@@ -31,8 +32,8 @@ impl PlaneStack {
     }
 }
 
-/// Returns the s at which slab `i` begins. It is exactly the end of the previous slab, so no point lies between two
-/// slabs.
+/// Returns the position along s at which slab `i` begins. The previous slab ends at exactly this position, so no point
+/// lies between two slabs.
 fn face(planes: u32, depth: f64, i: u32) -> f64 {
     depth * (f64::from(i) / f64::from(planes) - 0.5)
 }

@@ -34,7 +34,7 @@ pxpl5_sim::parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
 pub struct SweptConfig {
     /// Number of slices per turn, even.
     pub slices: u32,
-    /// Width of an image in pixels, a multiple of 8. Half of it is the radius of the display.
+    /// Width of an image in pixels, a multiple of 8. Half of the width is the radius of the display.
     pub width: u32,
     pub height: u32,
     /// Angle of slice 0, radians.
@@ -74,7 +74,7 @@ impl SweptConfig {
         f64::from(self.width) / 2.0
     }
 
-    /// Returns half of the wedge between two slices of this display.
+    /// Returns half of the wedge (part of space) that one slice of this display represents.
     #[must_use]
     pub fn half_wedge(&self) -> HalfWedge {
         HalfWedge::new(self.slices, self.radius())
@@ -98,7 +98,7 @@ impl SweptConfig {
     }
 }
 
-/// A display whose slices are arranged around an axis: the published display, or one with other numbers.
+/// A display whose slices are arranged around an axis: the published display, or a display with other numbers.
 #[derive(Clone, Debug)]
 pub struct SweptDisplay {
     config: SweptConfig,
@@ -175,7 +175,8 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
 
 /// Returns sine and cosine of the angle that lies `half_slices` times half the angle between slices after slice 0.
 ///
-/// Opposite directions are exact negatives of each other at every phase, because only one of them is computed.
+/// Opposite directions are exact negatives of each other at every phase, because sine and cosine are computed for only
+/// one of the two directions.
 fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     let signed = if config.rotation == Rotation::XToZ { half_slices } else { -half_slices };
     if config.phase == 0.0 {

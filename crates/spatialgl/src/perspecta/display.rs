@@ -90,7 +90,7 @@ impl Display for Perspecta {
                 }
             }
             DisplayEvent::Delivered { body, .. } => {
-                // Unusable messages are counted, and the first one is described.
+                // Unusable messages are counted, and the first of these messages is described.
                 if let StoreReceipt::Fault(what) = self.receive(&body, context.now()) {
                     self.faults += 1;
                     self.first_fault.get_or_insert(what);

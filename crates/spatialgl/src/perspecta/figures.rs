@@ -7,7 +7,7 @@ use crate::{
     BinLayout, HalfWedge, PIXELS_PER_WORD, SliceClip, SpatialDisplay, SweptDisplay, Tiling, VolumeStats, pack_dense,
     packed_word,
 };
-use pxpl5_sim::parameters::Standing;
+use pxpl5_sim::parameters::Provenance;
 use serde::Serialize;
 
 /// A number of the paper that is an input of the model, or that follows from inputs of the model by arithmetic alone.
@@ -23,7 +23,7 @@ pub struct Definition {
     pub value: f64,
     pub unit: &'static str,
     /// Provenance of the value: printed or derived.
-    pub standing: Standing,
+    pub provenance: Provenance,
 }
 
 /// A figure of the paper, and the value that the model gives for it.
@@ -35,14 +35,15 @@ pub struct Figure {
     pub statement: &'static str,
     /// Unit of both values and of the interval.
     pub unit: &'static str,
-    /// Printed or derived value. If the paper says "over" or "about", it is the middle or the end of the interval.
+    /// Printed or derived value. If the paper prints only a bound or an approximate value ("over", "about"), the value
+    /// is an end or the middle of `interval`.
     pub published: f64,
     /// Least and greatest computed value that count as agreement with the figure.
     pub interval: [f64; 2],
     /// Value of the figure that this model computes.
     pub computed: f64,
     /// Provenance of the published value: printed or derived.
-    pub standing: Standing,
+    pub provenance: Provenance,
 }
 
 impl Figure {
@@ -64,7 +65,7 @@ const fn row(
     id: &'static str,
     statement: &'static str,
     unit: &'static str,
-    standing: Standing,
+    provenance: Provenance,
     (published, half_digit): (f64, f64),
     computed: f64,
 ) -> Figure {
@@ -75,7 +76,7 @@ const fn row(
         published,
         interval: [published - half_digit, published + half_digit],
         computed,
-        standing,
+        provenance,
     }
 }
 
@@ -85,8 +86,8 @@ pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
 /// Number of months in which the performance of CPUs doubles (published, P20).
 pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
 
-const P: Standing = Standing::Published;
-const D: Standing = Standing::Derived;
+const P: Provenance = Provenance::Published;
+const D: Provenance = Provenance::Derived;
 
 /// Returns the inputs of the model that the paper prints, and the numbers that follow from them by arithmetic.
 #[must_use]
@@ -98,9 +99,9 @@ pub fn definitions() -> Vec<Definition> {
     all
 }
 
-/// Returns a definition. Its number is printed in the paper if `id` begins with P, and otherwise derived.
+/// Returns a definition. The number is printed in the paper if `id` begins with P. Otherwise the number is derived.
 fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
-    Definition { id, statement, value, unit, standing: if id.starts_with('P') { P } else { D } }
+    Definition { id, statement, value, unit, provenance: if id.starts_with('P') { P } else { D } }
 }
 
 /// Number of bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).

@@ -5,9 +5,9 @@
 //! tile  TILE  slice       | tile     tile size   eight pixels a word, row by row
 //! ```
 //!
-//! Empty tiles are not sent, so the map must make them dark. Without this rule (derived), the store would still show
-//! the tiles of the volume before the last one. Messages consist of ring words, at most [`MAX_MESSAGE_WORDS`] per
-//! message. All messages write to the store that is not shown.
+//! Empty tiles are not sent, so the map must make these tiles dark. Without this rule (derived), the store would still
+//! show old tiles: the tiles of the volume that the same store held before. Messages consist of ring words, at most
+//! [`MAX_MESSAGE_WORDS`] per message. All messages write to the store that is not shown.
 
 use crate::{BitPlanes, Size, TileGrid, Tiling};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
@@ -31,8 +31,8 @@ pub(crate) enum StoreMessage<'a> {
     Tile { slice: u32, number: u32, tile: u32, words: &'a [Word] },
 }
 
-/// Parses a message, or returns `None` if it is neither a map nor a tile. The store checks that its slices and tiles
-/// exist.
+/// Parses a message. Returns `None` if the message is neither a map nor a tile. The store checks that the message's
+/// slices and tiles exist.
 pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
     let (header, rest) = words.split_at_checked(HEADER_WORDS)?;
     let [kind, numbers, tile] = *header else { return None };
@@ -46,7 +46,7 @@ pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
 }
 
 /// Returns the messages of a volume, batch by batch: first the map, then the tiles, slice by slice. Returns `None` if
-/// there are no tiles, or if they are too large for a message or more than 65,536 per slice.
+/// there are no tiles, if a tile is too large for a message, or if a slice has more than 65,536 tiles.
 #[must_use]
 pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Word]>>> {
     let batches = batch_messages(planes, tiling, planes.slices())?;
@@ -93,7 +93,7 @@ pub fn batch_messages(planes: &BitPlanes, tiling: Tiling, slices: u32) -> Option
 
 fn batch(planes: &BitPlanes, first: u32, slices: u32, tile: u32, grid: &TileGrid) -> BatchMessages {
     let size = planes.size();
-    // A tile is sent for every slice of the batch if it is occupied in any of them.
+    // A tile is sent for every slice of the batch if the tile is occupied in any of these slices.
     let is_lit = |number: &u32| (first..first + slices).any(|k| has_light(planes.slice(k), size, grid, *number));
     let lit: Vec<u32> = (0..grid.tiles()).filter(is_lit).collect();
     let of_tile = |slice: u32, number: u32| TileMessage {

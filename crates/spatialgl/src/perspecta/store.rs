@@ -7,7 +7,7 @@ use pxpl5_wire::{Word, read_swap_request};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The words of one slice. Both stores share them until one store writes to them.
+/// The words of one slice. Both stores share the words until one store writes to the slice.
 type Slice = Arc<Vec<Word>>;
 
 /// Two volumes of N slices.
@@ -19,7 +19,7 @@ pub(crate) struct FrameStore {
     size: Size,
     volumes: [Vec<Slice>; 2],
     shown: usize,
-    /// Slices of the store that was visible until the last tick.
+    /// Slices of the store that was visible until the last strobe 0 (the first flash of a revolution).
     scanned: Vec<Slice>,
     /// Tiles that were announced and have not arrived: slice, tile and tile size.
     missing: BTreeSet<(u32, u32, u32)>,
@@ -116,8 +116,8 @@ impl FrameStore {
         if is_complete { StoreReceipt::SliceComplete(slice) } else { StoreReceipt::Part }
     }
 
-    /// Handles strobe 0. Shows the store that was requested before (not at) this instant, if all its tiles have
-    /// arrived. Returns the buffer if it was swapped.
+    /// Handles strobe 0, the first flash of a revolution. Shows the store that was requested before (not at) this
+    /// instant, if all its tiles have arrived. Returns the buffer if it was swapped.
     pub(crate) fn swap(&mut self, now: Time) -> Option<u8> {
         self.scanned.clone_from(&self.volumes[self.shown]);
         let is_whole = self.missing.is_empty();
@@ -131,7 +131,8 @@ impl FrameStore {
         self.volumes[self.shown].get(slice).map(|words| words.as_slice())
     }
 
-    /// Returns the words of a slice of the store that was visible until the last tick.
+    /// Returns the words of a slice of the store that was visible until the last strobe 0, the first flash of a
+    /// revolution.
     pub(crate) fn scanned(&self, slice: usize) -> Option<&[Word]> {
         self.scanned.get(slice).map(|words| words.as_slice())
     }

@@ -5,8 +5,8 @@ use crate::{BitPlanes, ColourSample, Rotation, Size, VolumeFrame, Workers, sin_c
 use image::{Rgb, RgbImage};
 use std::sync::{Mutex, PoisonError};
 
-/// Units of light of one lit pixel in one strobe. With 256 x 256 units, the shares of four neighbouring picture pixels
-/// are integers.
+/// Units of light of one lit pixel in one strobe (flash). With 256 x 256 units, the shares of four neighbouring picture
+/// pixels are integers.
 const FULL: u64 = 1 << 16;
 
 /// Number of slices whose light one task sums before it adds this sum to the total.
@@ -122,7 +122,7 @@ impl Light {
     }
 
     /// Returns the sum of the light over the picture for each channel. The unit is the light of one lit pixel in one
-    /// strobe.
+    /// strobe (flash).
     #[must_use]
     pub fn total(&self) -> [f64; 3] {
         let mut sums = [0.0; 3];
@@ -147,7 +147,8 @@ impl Light {
         255.0 * FULL as f64 / *value as f64
     }
 
-    /// Returns the picture. `exposure` is the brightness, in steps of 1/255, that one lit pixel gives in one strobe.
+    /// Returns the picture. `exposure` is the brightness, in steps of 1/255, that one lit pixel gives in one strobe
+    /// (flash).
     #[must_use]
     pub fn picture(&self, exposure: f64) -> RgbImage {
         let mut picture = RgbImage::new(self.size[0], self.size[1]);
@@ -239,8 +240,8 @@ pub fn view_undithered(
     Ok(Some(light))
 }
 
-/// A function that receives the index of a slice and a callback. It calls the callback with column, row and levels of
-/// every lit pixel.
+/// A function that receives the index of a slice and a callback. The function calls the callback with column, row and
+/// levels of every lit pixel.
 type EachPixel<'a> = dyn Fn(u32, &mut dyn FnMut(u32, u32, [u64; 3])) + Sync + 'a;
 
 fn sum(
@@ -267,7 +268,7 @@ fn sum(
     Ok(total.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// The geometry of the screen during one strobe, in the coordinates of the eye.
+/// The geometry of the screen during one strobe (flash), in the coordinates of the eye.
 struct Strobe {
     half: [f64; 2],
     /// Vector of one screen pixel to the right (`across`) or upwards (`upward`), as right, up and back along the eye's

@@ -10,14 +10,14 @@ const CLUSTER: usize = 8;
 /// Number of pixels by which a sphere is enlarged, to allow for rounding.
 const SLACK: f64 = 1e-6;
 
-/// A sphere around all points that some primitives can draw.
+/// A bounding sphere of all points that a primitive or a group of primitives can draw.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
     centre: [f64; 3],
     radius: f64,
 }
 
-/// The spheres around each primitive of a cluster, stored side by side so that one loop tests all of them.
+/// The bounding spheres of the primitives of a cluster, stored side by side so that one loop tests all spheres.
 #[derive(Clone, Copy, Debug, Default)]
 struct BallLanes {
     centre: [[f64; CLUSTER]; 3],

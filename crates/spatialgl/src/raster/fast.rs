@@ -1,5 +1,5 @@
-//! The fast rasterizer for the host. It rejects whole triangles by their distance from the slice, and draws eight
-//! pixels at a time.
+//! The fast rasterizer for the host. This rasterizer rejects whole triangles by their distance from the slice, and
+//! draws eight pixels at a time.
 
 use super::assemble::SliceTransform;
 use super::connected;
@@ -11,7 +11,7 @@ use crate::image::SliceImage;
 use crate::view::SliceView;
 use multiversion::multiversion;
 
-/// A fast renderer on one thread. It draws the same voxels and gives the same counts as
+/// A fast renderer on one thread. The renderer draws the same voxels and gives the same counts as
 /// [`ReferenceRenderer`](super::ReferenceRenderer).
 ///
 /// The loops are compiled once for each vector unit (see [`mod@multiversion`]), all from the same code and with the

@@ -1,15 +1,15 @@
-//! The inner loops of the fast rasterizer, in plain Rust. They process eight pixels of a row at a time.
+//! The inner loops of the fast rasterizer, in plain Rust. The loops process eight pixels of a row at a time.
 //!
 //! Each of the eight lanes computes the same as the reference model for one pixel, with the same operations in the same
-//! order. Two optimizations cannot change a result. The loops omit pixels outside a conservative range of a row. They
-//! also omit sums whose terms all have the same sign.
+//! order. Two optimizations cannot change a result. The loops omit pixels outside a conservative range of a row. The
+//! loops also omit sums whose terms all have the same sign.
 
 use super::setup::{Edge, Setup, channel};
 use crate::command::Combine;
 use crate::image::SliceImage;
 use crate::slice_volume::{SampleTest, hyperbolic, parallel, taper};
 
-/// Number of pixels in a vector. A byte of the stencil has as many pixels.
+/// Number of pixels in a vector, which is also the number of pixels in a byte of the stencil.
 const LANES: usize = 8;
 
 /// One value for each of the eight pixels of a vector.

@@ -1,5 +1,5 @@
-//! The reference rasterizer. It follows the specification step by step, with one primitive, one pixel and one test at a
-//! time.
+//! The reference rasterizer. This rasterizer follows the specification step by step, with one primitive, one pixel and
+//! one test at a time.
 
 use super::assemble::SliceTransform;
 use super::connected;
@@ -10,7 +10,8 @@ use crate::image::SliceImage;
 use crate::slice_volume::SampleTest;
 use crate::view::SliceView;
 
-/// The reference model, without optimizations. It defines the voxels that every other renderer must draw.
+/// The reference model, without optimizations. The reference model defines the voxels that every other renderer must
+/// draw.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReferenceRenderer;
 

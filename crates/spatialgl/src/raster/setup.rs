@@ -24,7 +24,7 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    /// Returns the interpolation between this corner and another one: `self` at t = 0, `other` at t = 1.
+    /// Returns the interpolation between this corner and another corner: `self` at t = 0, `other` at t = 1.
     pub(super) fn mixed(&self, other: &Self, t: f64) -> Self {
         let mix = |a: f64, b: f64| a * (1.0 - t) + b * t;
         let from = &self.place;
@@ -101,9 +101,9 @@ impl Edge {
         Self { a: -self.a, b: -self.b, c: -self.c, ..self }
     }
 
-    /// Returns the least value that the edge function has for a sample inside the triangle. The value is zero for left
-    /// edges and horizontal upper edges, which include the samples on them. For other edges it is the smallest number
-    /// above zero.
+    /// Returns the least value that the edge function has for a sample inside the triangle. For left edges and
+    /// horizontal upper edges, the value is zero, because samples on such an edge count as inside. For other edges, the
+    /// value is the smallest number above zero.
     #[inline(always)]
     fn least(&self) -> f64 {
         let has_its_samples = self.a > 0.0 || (self.a == 0.0 && self.b > 0.0);

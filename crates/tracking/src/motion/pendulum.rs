@@ -11,8 +11,8 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{nearest_ps, seconds};
 
-/// An undamped pendulum that swings in the x-y plane, with the exact formula of its motion. At time 0 it is released at
-/// rest at the angle `+amplitude`.
+/// An undamped pendulum that swings in the x-y plane, with the exact formula of its motion. At time 0 the pendulum is
+/// released at rest at the angle `+amplitude`.
 ///
 /// With k = sin(amplitude / 2) and w = sqrt(g / arm): sin(angle / 2) = k cd(w t, k), where cd is Jacobi's elliptic
 /// function. The exact period is 4 K(k) / w, where K is the complete elliptic integral. The small-angle period 2 pi / w
@@ -83,8 +83,8 @@ impl Pendulum {
 }
 
 impl Motion for Pendulum {
-    /// Writes the length of the arm and the modulus, which is the sine of half the amplitude. Frequency and period
-    /// follow from these two numbers.
+    /// Writes the length of the pendulum's arm and the modulus, which is the sine of half the amplitude. Frequency and
+    /// period follow from these two numbers.
     fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"pendulum");
         settings("motion.arm_m", &self.arm_m);
@@ -115,7 +115,8 @@ fn quarter_period(modulus: f64) -> f64 {
     FRAC_PI_2 / mean_ladder(modulus).0
 }
 
-/// Returns the arithmetic-geometric mean of 1 and k', and the ratio c_n / a_n of each step of its iteration.
+/// Returns the arithmetic-geometric mean of 1 and k', and the ratio c_n / a_n of each step of the iteration that
+/// computes this mean.
 fn mean_ladder(modulus: f64) -> (f64, [f64; LEVELS]) {
     let mut a = 1.0;
     let mut b = (1.0 - modulus * modulus).sqrt();

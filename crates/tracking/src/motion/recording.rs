@@ -66,7 +66,7 @@ impl End {
 
 pxpl5_sim::parameters::named!(End, "end of a recording", End::NAMES);
 
-/// The format of a recorded file, as far as the contents of the file do not show it.
+/// The parts of a recorded file's format that cannot be recognized from the contents of the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordingFormat {
     /// Mapping from quantities to columns. The mapping is empty for a file whose format is recognized from its header
@@ -177,7 +177,7 @@ impl Recording {
         self.samples.len()
     }
 
-    /// Appends the samples of another recording. All of them must be later than the last sample of this recording.
+    /// Appends the samples of another recording. All new samples must be later than the last sample of this recording.
     pub(super) fn append(&mut self, more: &Self) {
         self.samples.extend_from_slice(&more.samples);
     }

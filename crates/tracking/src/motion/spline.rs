@@ -14,8 +14,8 @@ const VARIANCE: f64 = 655_177.0 / 1_663_200.0;
 /// Number of successive knots with the same activity level, so that calm and lively periods last some seconds.
 const KNOTS_PER_SPELL: u64 = 8;
 
-/// The distribution of the random activity level of a head. The level is a factor of the motion's amplitude: calm + (1
-/// - calm) u^power with uniform u, scaled to a mean square of 1.
+/// The distribution of the random activity level of a head. The level multiplies the motion's amplitude. With u uniform
+/// in 0 to 1, the level is `calm + (1 - calm) u^power`, scaled to a mean square of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Activity {
     pub(super) calm: f64,
@@ -47,8 +47,8 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// Creates splines whose values have these standard deviations. Splines with the same seed `spells` have their
-    /// lively periods at the same times.
+    /// Creates splines whose values have the standard deviations `deviation`. Splines with the same seed `spells` have
+    /// their lively periods at the same times.
     pub(super) fn new(spacing_ps: u64, deviation: DVec3, activity: Activity, seed: u64, spells: u64) -> Self {
         let seeds = core::array::from_fn(|axis| stream(seed, axis as u64));
         Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, seeds, spells }

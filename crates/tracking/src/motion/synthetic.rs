@@ -10,8 +10,8 @@ use crate::random::stream;
 use crate::rotation;
 use crate::time::nearest_ps;
 
-/// One frequency band of random head motion: three quintic B-splines with random coefficients. With f the frequency,
-/// the power falls as sinc^12(f spacing). Thus 99.9 % of the power lies below the frequency 0.53 / spacing.
+/// One frequency band of random head motion: three quintic B-splines with random coefficients. The power at frequency f
+/// is proportional to sinc^12(f spacing), so 99.9 % of the power lies below the frequency 0.53 / spacing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Band {
@@ -27,7 +27,7 @@ pub struct Band {
     pub power: u32,
 }
 
-/// Index of the random stream from which the seed of another motion of the same kind is drawn ([`Motion::sibling`]).
+/// Index of the random stream that gives the seed of another motion of the same kind ([`Motion::sibling`]).
 const SIBLING: u64 = 10;
 
 /// Settings of the random head motion [`Synthetic`]: one frequency band for each kind of movement, and the mean

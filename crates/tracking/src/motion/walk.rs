@@ -9,17 +9,17 @@ use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
 use crate::time::seconds;
 
-/// Distance along the path from a walking head to the point at which it looks, m. Assumed. The head turns towards a
-/// corner before it reaches the corner. At 1 m/s and a square corner it turns at up to 76 degrees per second, which a
-/// real head can do.
+/// Distance along the path from a walking head to the point at which the head looks, m. Assumed. The head turns towards
+/// a corner before it reaches the corner. At 1 m/s and a square corner the head turns at up to 76 degrees per second,
+/// which a real head can do.
 const AHEAD_M: f64 = 1.5;
 
-/// Least distance between two successive corners of a path, m. The direction between two nearer corners would be
-/// inaccurate.
+/// Least distance between two successive corners of a path, m. At a smaller distance, rounding errors would falsify the
+/// direction from one corner to the next.
 const LEAST_LEG_M: f64 = 1e-3;
 
-/// A head that walks at constant speed along a closed path. It is at the first corner at time 0. The head looks at a
-/// point of the path ahead. After [`Self::with_glances`] it also looks around.
+/// A head that walks at constant speed along a closed path. The head is at the first corner at time 0. The head looks
+/// at a point of the path ahead. After [`Self::with_glances`] the head also looks around.
 #[derive(Clone, Debug)]
 pub struct Walk {
     corners: Arc<[DVec3]>,
@@ -54,8 +54,8 @@ impl Walk {
         Ok(Self { corners: corners.into(), ways, m_per_s, glances: None })
     }
 
-    /// Returns the same walk with a head that also looks around. The glances are those of [`Synthetic::recorded_use`]
-    /// with this seed.
+    /// Returns the same walk with a head that also looks around. The glances come from [`Synthetic::recorded_use`] with
+    /// this seed.
     #[must_use]
     pub fn with_glances(mut self, seed: u64) -> Self {
         self.glances = Some(Synthetic::recorded_use(seed));
@@ -68,8 +68,8 @@ impl Walk {
         self.ways[self.corners.len()]
     }
 
-    /// Returns the position (m) at a distance along the path from the first corner. A negative distance, or one longer
-    /// than the closed path, wraps around.
+    /// Returns the position (m) at a distance along the path from the first corner. A negative distance, or a distance
+    /// longer than the closed path, wraps around.
     #[must_use]
     pub fn place(&self, way_m: f64) -> DVec3 {
         let way = rounded(way_m, self.length_m());

@@ -11,7 +11,8 @@ use crate::config as table;
 use crate::error::SettingError;
 use crate::tracker::TrackerConfig;
 
-/// Least position noise that a Kalman filter may assume, m. A noise of 0 would make the covariance matrix singular.
+/// Least position noise (m) and least orientation noise (degrees) that a Kalman filter may assume. A noise of 0 would
+/// make the covariance matrix singular.
 const LEAST_NOISE_M: f64 = 1e-6;
 const LEAST_NOISE_DEG: f64 = 1e-4;
 
@@ -24,8 +25,9 @@ pub enum PredictorKind {
     ConstantVelocity,
     /// Constant acceleration: the last reported pose plus velocity x time plus half the acceleration x time squared.
     ConstantAcceleration,
-    /// Two Kalman filters. The linear one for position has the state [p, v, a], and the extended one for orientation
-    /// [q, omega, domega].
+    /// Two Kalman filters. The filter for position is linear, and its state [p, v, a] is position, velocity and
+    /// acceleration. The filter for orientation is extended, and its state [q, omega, domega] is quaternion, angular
+    /// velocity and angular acceleration.
     Kalman,
 }
 
@@ -52,15 +54,15 @@ pxpl5_sim::parameters::named!(PredictorKind, "predictor", PredictorKind::ALL.map
 pub struct PredictorConfig {
     /// Prediction method of the predictor.
     pub kind: PredictorKind,
-    /// Number of reports, 1 to 16, from one position to the other when a velocity is computed as a difference. Kalman
-    /// filters ignore this number.
+    /// Distance, as a number of reports from 1 to 16, between the two positions whose difference gives a velocity.
+    /// Kalman filters ignore this number.
     pub position_baseline: u32,
-    /// Number of reports, 1 to 16, from one orientation to the other when an angular velocity is computed as a
-    /// difference. Kalman filters ignore this number.
+    /// Distance, as a number of reports from 1 to 16, between the two orientations whose difference gives an angular
+    /// velocity. Kalman filters ignore this number.
     pub orientation_baseline: u32,
-    /// Random position error of a report that the filter assumes, rms along each axis, m.
+    /// Random position error that the filter assumes for each report, rms along each axis, m.
     pub position_noise_m: f64,
-    /// Random orientation error of a report that the filter assumes, rms about each axis, degrees.
+    /// Random orientation error that the filter assumes for each report, rms about each axis, degrees.
     pub orientation_noise_deg: f64,
     /// Assumed strength of random changes of the head's acceleration, m/s^3/sqrt(Hz): the root of the spectral density
     /// of white jerk.
@@ -162,8 +164,8 @@ impl PredictorConfig {
         Ok(())
     }
 
-    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports), so the
-    /// caller chooses the position's or the orientation's.
+    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports). The
+    /// caller therefore passes the baseline of either the position or the orientation.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,

@@ -7,11 +7,11 @@ use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tracker::TrackerReport;
 
-/// A predictor that knows the true motion. It moves the newest reported pose along the true motion and keeps the error
-/// of the report.
+/// A predictor that has access to the true motion. The predictor moves the newest reported pose along the true motion
+/// and keeps the error of the report.
 ///
-/// No real machine knows the true motion. The predictor is a reference for all others: the errors of its poses come
-/// only from the tracker, not from the prediction.
+/// No real machine has access to the true motion. The predictor is a reference for all others: the errors of its poses
+/// come only from the tracker, not from the prediction.
 #[derive(Clone, Debug)]
 pub struct ExactPredictor<M> {
     motion: M,
@@ -28,7 +28,7 @@ impl<M: Motion> ExactPredictor<M> {
 
 impl<M: Motion + Send> Predictor for ExactPredictor<M> {
     fn observe(&mut self, report: &TrackerReport) {
-        if self.gate.judge(report) != Verdict::Reject {
+        if self.gate.check(report) != Verdict::Reject {
             self.newest = Some(*report);
         }
     }

@@ -15,16 +15,17 @@ pub struct ReportCounts {
     /// Number of reports rejected because of NaN, infinity or a quaternion that is not of unit length.
     pub malformed: u64,
     /// Number of reports rejected because of their time stamp. Such a report was not newer than the last accepted
-    /// report, or followed this report by less than [`table::Gate`]'s `interval`.
+    /// report, or followed this report by less than the `interval` of [`table::Gate`].
     pub untimely: u64,
-    /// Number of reports rejected because a head cannot move so fast.
+    /// Number of reports that were rejected because the head would have to move or turn faster than a head can.
     pub jumps: u64,
     /// Number of accepted reports that restarted the filters. These are the first report, the first report after a gap,
     /// and a report that confirmed a jump.
     pub restarts: u64,
 }
 
-/// The decision to reject a report, to use it, or to restart the filters with it.
+/// The decision about a tracker report: to reject the report, to use the report, or to restart the filters with the
+/// report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Reject,
@@ -32,7 +33,7 @@ pub(super) enum Verdict {
     Restart,
 }
 
-/// A check in front of the filters that rejects impossible reports and counts every decision.
+/// A check that rejects impossible reports before they reach the prediction filters, and that counts every decision.
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     limits: table::Gate,
@@ -46,7 +47,7 @@ impl Gate {
         Self { limits, last: None, jumps_in_a_row: 0, counts: ReportCounts::default() }
     }
 
-    pub(super) fn judge(&mut self, report: &TrackerReport) -> Verdict {
+    pub(super) fn check(&mut self, report: &TrackerReport) -> Verdict {
         let verdict = self.verdict(report);
         if verdict != Verdict::Reject {
             self.last = Some(*report);

@@ -106,14 +106,14 @@ impl Covariance {
         self.acceleration += isotropic(q.z_axis.z);
     }
 
-    /// Returns S^-1 times the difference between measured and predicted orientation. S is P + r 1, with the measurement
-    /// variance r.
+    /// Returns S^-1 times the difference between measured and predicted orientation. S is P + r I. P is the covariance
+    /// of the rotation error, r is the variance of the measurement, and I is the unit matrix.
     fn weigh(&self, surprise: DVec3, measurement: f64) -> DVec3 {
         (self.angle + isotropic(measurement)).inverse() * surprise
     }
 
     /// Corrects the covariance to P - P H^T S^-1 H P. In the rows of the angle, 1 - P S^-1 is written as r S^-1, so
-    /// that rounding cannot make it negative.
+    /// that rounding cannot make the variance negative.
     fn correct(&mut self, measurement: f64) {
         let inverse = symmetric((self.angle + isotropic(measurement)).inverse());
         let rate_gain = self.angle_rate.transpose() * inverse;

@@ -9,23 +9,23 @@ use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
-/// Length in seconds of the motion on which a filter is tuned, and length in seconds of its first part, which is not
-/// evaluated. Lively periods are rare, so the motion must be long. With 20 seconds, a filter tuned for 200 ms predicted
-/// 200 ms of another motion worse than a filter tuned for 50 ms.
+/// Length in seconds of the motion on which a filter is tuned. The first `SETTLING_S` seconds are not evaluated. Lively
+/// periods are rare, so the motion must be long. With 20 seconds, a filter tuned for 200 ms predicted 200 ms of another
+/// motion worse than a filter tuned for 50 ms.
 const TRAINING_S: u64 = 100;
 const SETTLING_S: u64 = 1;
 
-/// Greatest number of reports on which a filter is tuned: those of a 120 Hz tracker in `TRAINING_S`. A faster tracker
-/// reaches the limit sooner.
+/// Greatest number of reports on which a filter is tuned: a 120 Hz tracker sends this number in `TRAINING_S`. A faster
+/// tracker reaches the limit sooner.
 const MOST_REPORTS: usize = 12_000;
 
 /// Seed of the tracker's noise when a filter is tuned. If the evaluated run has this seed, the tuning uses the next
 /// seed.
 const TRAINING_SEED: u64 = 0x7475_6e65;
 
-/// Range of the decimal logarithm in the search for the best white jerk, and number of values per round. A step of the
-/// last round is 0.2 decades or less. This step changes the filter's time constant by 8 %, because the time constant
-/// varies with the sixth root of the jerk.
+/// Range of the decimal logarithm in the search for the best white jerk. The search has `ROUNDS` rounds with
+/// `JERKS_A_ROUND` values each. The distance of two values in the last round is 0.2 decades or less. This distance
+/// changes the filter's time constant by 8 %, because the time constant varies with the sixth root of the jerk.
 const JERK_DECADES: (f64, f64) = (-6.0, 6.0);
 const JERKS_A_ROUND: usize = 13;
 const ROUNDS: usize = 2;
@@ -36,7 +36,7 @@ const LONGEST_BASELINE: u32 = 16;
 /// The conditions under which a prediction filter was tuned, and the errors that remained.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Training {
-    /// Time from the instant at which a report was true to the predicted instant, ps.
+    /// Time from the instant at which a reported pose was true to the predicted instant, ps.
     pub interval_ps: u64,
     /// True if the filter was tuned on another random motion of the same kind, false if it was tuned on the evaluated
     /// motion.
@@ -45,7 +45,8 @@ pub struct Training {
     pub seconds: f64,
     /// Number of reports from which a prediction was evaluated.
     pub reports: u64,
-    /// Seed of the tracker's noise during the tuning. This seed always differs from that of the evaluated run.
+    /// Seed of the tracker's noise during the tuning. This seed always differs from the seed of the noise in the
+    /// evaluated run.
     pub seed: u64,
     /// Mean distance between predicted and true position after the tuning, m.
     pub mean_m: f64,
@@ -56,25 +57,26 @@ pub struct Training {
 /// A tuned predictor, with the conditions of the tuning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuned {
-    /// Settings of the predictor with the tuned numbers.
+    /// Settings of the predictor, which include the tuned parameters.
     pub config: PredictorConfig,
     /// Conditions of the tuning, or `None` if the predictor has nothing to tune or no report could be evaluated.
     pub training: Option<Training>,
 }
 
-/// Returns a seed for the tracker's noise during the tuning. It always differs from `judged`, the seed of the noise in
-/// the evaluated run.
-pub fn training_seed(judged: u64) -> u64 {
-    if judged == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
+/// Returns a seed for the tracker's noise during the tuning. The result always differs from `evaluated_seed`, the seed of the
+/// noise in the evaluated run.
+pub fn training_seed(evaluated_seed: u64) -> u64 {
+    if evaluated_seed == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
 }
 
-/// Finds the predictor settings with the least mean error on a motion. Predictions are for `interval_ps` after the
-/// instant at which a report was true.
+/// Finds the predictor settings with the least mean error on a motion. The predicted instant is `interval_ps` after the
+/// instant at which the reported pose was true.
 ///
 /// For a Kalman filter the search covers the white jerk: 10^-6 to 10^6, in two rounds over a grid of its logarithm. For
-/// a prediction by differences, the search covers the baseline: 1 to 16 reports from one pose to the other. Position
-/// and orientation have separate values. The assumed noise of reports is the tracker's own. The assumed speeds and
-/// accelerations before the first report are the root mean squares of the motion.
+/// a prediction by differences, the search covers the baseline, which is the distance (1 to 16 reports) between the two
+/// poses of a difference. Position and orientation have separate values. The predictor assumes the noise that the
+/// tracker model adds. The assumed speeds and accelerations before the first report are the root mean squares of the
+/// motion.
 ///
 /// The tuning uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
 /// tracker has no bias, metal or faults, and the seed of its noise differs from `evaluated_seed`. The same (motion,
@@ -209,8 +211,8 @@ impl TrainingData {
     }
 }
 
-/// Stores a tried value as the best if its error is smaller, separately for position and orientation. Of equal errors
-/// the first value stays.
+/// Stores a tried value as the best value if its error is smaller than the best error, separately for position and
+/// orientation. If the errors are equal, the earlier value stays.
 fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     for (best, found) in best.iter_mut().zip(errors.into_iter().zip(tried)) {
         if found.0 < best.0 {
@@ -219,7 +221,8 @@ fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     }
 }
 
-/// Returns the white jerk with this decimal logarithm, within the limits that both filters share.
+/// Returns the white jerk with this decimal logarithm, limited to the range that the filters of position and
+/// orientation both allow.
 fn jerk(decades: f64) -> f64 {
     within("position_jerk", libm::pow(10.0, decades))
 }

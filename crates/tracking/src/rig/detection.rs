@@ -4,9 +4,9 @@ use crate::tracker::TrackerReport;
 /// does not state its method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detection {
-    /// The host detects that the pendulum has crossed the vertical. The first report after the low point shows this, up
-    /// to one report interval late. Noise of a millimetre has little effect, because the pendulum is fastest at its low
-    /// point.
+    /// The host detects that the pendulum has crossed the vertical. The first report after the low point shows the
+    /// crossing, at most one report interval late. Noise of a millimetre has little effect, because the pendulum is
+    /// fastest at its low point.
     Crossing,
     /// The host detects that the vertical velocity has turned from down to up. The velocity is a difference of two
     /// reports, so the detection is half to one and a half report intervals late. The arc is flat at the low point, so
@@ -28,14 +28,15 @@ impl Detection {
     }
 }
 
-/// A detector of the pendulum's low points in a sequence of reports. After each low point it ignores further low points
-/// for a quarter of a swing.
+/// A detector of the pendulum's low points in a sequence of reports. After each low point the detector ignores further
+/// low points for a quarter of a swing.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,
     dead_ps: u64,
     dead_until_ps: u64,
-    /// Sign and height of the position in the last report. `true` stands for a positive sign.
+    /// Sign and height in the last report. `true` stands for a positive x ([`Detection::Crossing`]) or an upward
+    /// movement ([`Detection::VelocitySign`]).
     last: Option<(bool, f64)>,
 }
 
@@ -44,7 +45,7 @@ impl Detector {
         if !report.pose.is_finite() {
             return false;
         }
-        // A crossing changes the sign of x. The velocity method compares the height with that of the last report.
+        // A crossing changes the sign of x. The velocity method compares the height with the height in the last report.
         let x = report.pose.position.x;
         let height = report.pose.position.y;
         let positive = match self.how {

@@ -14,7 +14,7 @@ pub struct LowPointReport {
 /// One pass of the pendulum through its low point, measured by the time stamps of the emulated system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsidePass {
-    /// Report by which the host detected the pendulum's low point.
+    /// Tracker report by which the host detected the pendulum's low point.
     pub sighting: LowPointReport,
     /// Instant at which the host started a frame because of the low point, ps.
     pub started_ps: u64,
@@ -25,11 +25,11 @@ pub struct InsidePass {
 /// One pass of the pendulum through its low point, measured on the oscilloscope without any time stamp of the system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutsidePass {
-    /// Instant at which the photodiode sees the pendulum at its low point, ps.
+    /// Instant at which the photodiode detects the pendulum at its low point, ps.
     pub low_point_ps: u64,
-    /// Instant at which the host switches the D/A line because it has detected the low point, ps.
+    /// Instant at which the host switches its D/A output because the host has detected the low point, ps.
     pub dac_ps: u64,
-    /// Instant at which the photodiode on the screen sees the frame that the low point requested, ps.
+    /// Instant at which the photodiode on the screen detects the frame that the low point requested, ps.
     pub light_ps: u64,
 }
 
@@ -69,11 +69,11 @@ impl Latency {
 /// ("inside").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// Latency from the pendulum's motion to the start of a frame. Measured outside, it begins at the low point.
-    /// Measured inside, it begins at the report's time stamp.
+    /// Latency from the pendulum's motion to the start of a frame. The outside latency begins at the low point. The
+    /// inside latency begins at the report's time stamp.
     pub tracking: Latency,
-    /// Latency from the start of a frame to its display. Measured outside, it ends when the photodiode sees the frame.
-    /// Measured inside, it ends when the pipeline counts the frame as shown.
+    /// Latency from the start of a frame to its display. The outside latency ends when the photodiode detects the
+    /// frame. The inside latency ends when the pipeline counts the frame as shown.
     pub rendering: Latency,
     /// Sum of tracking and rendering latency of each pass, from the motion to the display.
     pub total: Latency,
@@ -100,8 +100,8 @@ impl Side {
 /// Greatest rounding error of a mean latency, seconds: one picosecond, the unit of all instants.
 const ROUNDING_S: f64 = 1e-12;
 
-/// Latencies of the same passes measured outside and inside, with limits of their difference. "Outside" means by
-/// oscilloscope, "inside" by time stamps.
+/// Latencies of the same passes of the pendulum, measured outside and inside, with limits of the differences. "Outside"
+/// means by oscilloscope, "inside" by time stamps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// Measurements with the oscilloscope, one for each pass of the pendulum in order.
@@ -112,14 +112,15 @@ pub struct Measurement {
     pub outside: Side,
     /// Latencies measured by the time stamps of host and boards.
     pub inside: Side,
-    /// Greatest amount by which the tracking latency on the oscilloscope may exceed that by time stamps, ps. It is the
-    /// detection's delay: one report interval for detection by crossing the vertical.
+    /// Greatest amount by which the tracking latency on the oscilloscope may exceed the tracking latency by time
+    /// stamps, ps. The amount is the delay of the detection: one report interval for detection by crossing the
+    /// vertical.
     pub tracking_bound_ps: u64,
-    /// Greatest amount by which the rendering latency on the oscilloscope may exceed that by time stamps, ps. It is the
-    /// time from the retrace until the beam passes the photodiode.
+    /// Greatest amount by which the rendering latency on the oscilloscope may exceed the rendering latency by time
+    /// stamps, ps. The amount is the time from the retrace until the beam passes the photodiode.
     pub rendering_bound_ps: u64,
-    /// Greatest amount by which the rendering latency on the oscilloscope may be shorter than that by time stamps, ps.
-    /// The amount is 0 unless the pipeline counts a frame as shown at a scanline below the photodiode.
+    /// Greatest amount by which the rendering latency on the oscilloscope may be shorter than the rendering latency by
+    /// time stamps, ps. The amount is 0 unless the pipeline counts a frame as shown at a scanline below the photodiode.
     pub rendering_early_ps: u64,
 }
 
@@ -144,17 +145,17 @@ impl Measurement {
         }
     }
 
-    /// Returns the measurement for a pipeline that counts a frame as shown `counted_ps` after the retrace. The beam can
-    /// pass the photodiode before this. The rendering latency on the oscilloscope can then be shorter than that by time
-    /// stamps.
+    /// Returns the measurement for a pipeline that counts a frame as shown `counted_ps` after the retrace. If the beam
+    /// passes the photodiode earlier, the rendering latency on the oscilloscope can be shorter than the rendering
+    /// latency by time stamps.
     #[must_use]
     pub fn with_frames_counted_in_scan(mut self, counted_ps: u64) -> Self {
         self.rendering_early_ps = counted_ps.saturating_sub(self.rendering_bound_ps);
         self
     }
 
-    /// Returns the greatest difference between the two measured total latencies, ps. For detection by crossing it is
-    /// one report interval, plus the time from the retrace until the beam passes the photodiode.
+    /// Returns the greatest difference between the two measured total latencies, ps. For detection by crossing, this
+    /// difference is one report interval, plus the time from the retrace until the beam passes the photodiode.
     #[must_use]
     pub fn bound_ps(&self) -> u64 {
         self.tracking_bound_ps + self.rendering_bound_ps
@@ -167,10 +168,10 @@ impl Measurement {
     }
 
     /// Returns true if both measurements agree on average over all passes. "Outside" is the oscilloscope, and "inside"
-    /// is the time stamps. The outside tracking latency may exceed the inside one by at most one report interval
-    /// (detection by crossing). The outside rendering latency may exceed the inside one by at most the time from the
-    /// retrace until the beam passes the photodiode. The outside rendering latency may be smaller only if the pipeline
-    /// counts frames as shown during the scan.
+    /// is the time stamps. The outside tracking latency may exceed the inside tracking latency by at most one report
+    /// interval (detection by crossing). The outside rendering latency may exceed the inside rendering latency by at
+    /// most the time from the retrace until the beam passes the photodiode. The outside rendering latency may be
+    /// smaller only if the pipeline counts frames as shown during the scan.
     #[must_use]
     pub fn agrees(&self) -> bool {
         let tracking_s = self.outside.tracking.mean_s - self.inside.tracking.mean_s;
@@ -183,21 +184,21 @@ impl Measurement {
     }
 }
 
-/// The traces of an oscilloscope with three channels: the pendulum's low point, the D/A line and the screen.
+/// The traces of an oscilloscope with three channels: the pendulum's low point, the host's D/A output and the screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
-    /// Trace of the photodiode at the low point. It has one pulse for each pass of the pendulum, centred on the instant
-    /// of the low point.
+    /// Trace of the photodiode at the low point. The trace has one pulse for each pass of the pendulum, centred on the
+    /// instant of the low point.
     pub low_point: ScopeTrace,
-    /// Trace of the D/A line, with one step for each frame that a low point requested.
+    /// Trace of the host's D/A output, with one step for each frame that a low point requested.
     pub dac: ScopeTrace,
     /// Trace of the photodiode on the screen, low for dark frames and high for light frames.
     pub screen: ScopeTrace,
 }
 
 impl Oscilloscope {
-    /// Creates an oscilloscope whose first channel has a pulse for every low point up to the last step of the D/A line.
-    /// A pulse lasts as long as the pendulum takes to cross the light beam.
+    /// Creates an oscilloscope whose first channel has a pulse for every low point up to the last step of the host's
+    /// D/A output. A pulse lasts as long as the pendulum takes to cross the light beam.
     #[must_use]
     pub fn of(rig: &PendulumRig, dac: ScopeTrace, screen: ScopeTrace) -> Self {
         let last_ps = dac.edges().last().map_or(0, |edge| edge.t_ps);
@@ -206,9 +207,9 @@ impl Oscilloscope {
         Self { low_point: ScopeTrace::pulsing("low point", low_points, pulse_ps), dac, screen }
     }
 
-    /// Finds the passes of the pendulum in the traces. Each step of the D/A line gives one pass. The low point lies
-    /// before this step. After this step, the screen steps to the same level. Returns `None` if the screen lacks one of
-    /// these steps.
+    /// Finds the passes of the pendulum in the traces. Each step of the host's D/A output gives one pass. The low point
+    /// lies before this step. After this step, the screen changes to the same level (high for light frames). Returns
+    /// `None` if the screen lacks one of these changes.
     #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {

@@ -21,18 +21,19 @@ pub struct MagneticDistortion {
     pub towards_metal: DVec3,
     /// Position error per squared distance from the transmitter, m per square metre, valid near the transmitter.
     pub depth_per_m2: f64,
-    /// Distance from the transmitter at which the position error is half of its parabola, m.
+    /// Distance from the transmitter at which the position error is half of `depth_per_m2` times the squared distance,
+    /// m.
     pub reach_m: f64,
 }
 
 impl MagneticDistortion {
-    /// Returns the distortion by metal in the floor below a transmitter at this position. Positions 1 m away are wrong
-    /// by 20 mm (assumed) without the limit by reach.
+    /// Returns the distortion by metal in the floor below a transmitter at this position. Without the limit by
+    /// `reach_m`, positions 1 m from the transmitter would be wrong by 20 mm (assumed).
     pub fn floor_below(transmitter_m: DVec3) -> Self {
         Self::floor_below_by(&Tables::PAPERS, transmitter_m)
     }
 
-    /// Returns the distortion by metal in the floor with the numbers of these tables.
+    /// Returns the distortion by metal in the floor below a transmitter, with the numbers of `tables`.
     pub fn floor_below_by(tables: &Tables, transmitter_m: DVec3) -> Self {
         Self {
             transmitter_m,

@@ -34,7 +34,7 @@ pub enum TrackerFault {
     },
     /// Some reports, chosen at random, are moved and turned in a random direction.
     Jump {
-        /// Probability that a report jumps, 0 to 0.99.
+        /// Probability that a report is moved and turned, 0 to 0.99.
         probability: f64,
         /// Distance by which the position moves, m, 0 to 1e6.
         distance_m: f64,

@@ -34,7 +34,7 @@ impl TrackerModel {
         Ok(Self { config })
     }
 
-    /// Returns the settings, which are all within their ranges.
+    /// Returns the settings of the tracker, which are all within their ranges.
     pub fn config(&self) -> &TrackerConfig {
         &self.config
     }
@@ -44,8 +44,8 @@ impl TrackerModel {
         PS_PER_S * u64::from(self.config.receivers) / u64::from(self.config.rate_hz)
     }
 
-    /// Returns the time between two reports, ps. It is the measurement period, multiplied by the number of whole
-    /// periods that a transfer of all receivers' records takes.
+    /// Returns the time between two reports, ps. The result is a multiple of the measurement period, long enough to
+    /// transfer the records of all receivers.
     pub fn report_interval_ps(&self) -> u64 {
         let transfer_ps = self.config.serial.map_or(0, |s| s.transfer_ps(self.config.receivers));
         self.period_ps() * transfer_ps.div_ceil(self.period_ps()).max(1)

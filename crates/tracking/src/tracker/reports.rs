@@ -116,8 +116,8 @@ impl<M: Motion> Reports<M> {
         filtered
     }
 
-    /// Returns true if a fault loses this measurement. All measurements within a dropout interval are skipped in one
-    /// step.
+    /// Returns true if a fault causes the loss of this measurement. All measurements within a dropout interval are
+    /// skipped in one step.
     fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -137,7 +137,7 @@ impl<M: Motion> Reports<M> {
         unit(bits(stream(self.faults, fault as u64), solution)) < probability
     }
 
-    /// Applies the faults that damage this report.
+    /// Damages the report by the first injected fault (NaN values or a jump of the pose) that applies to this report.
     fn corrupt(&self, report: &mut TrackerReport) {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -161,7 +161,7 @@ impl<M: Motion> Reports<M> {
     }
 
     /// Sends a finished measurement at `ready_ps` if the cable is free. Returns the instant at which the host receives
-    /// it, or `None` if the cable is busy.
+    /// the measurement, or `None` if the cable is busy.
     fn send(&mut self, ready_ps: u64) -> Option<u64> {
         if ready_ps < self.line_free_ps {
             return None;
@@ -183,7 +183,7 @@ impl<M: Motion> Reports<M> {
     }
 }
 
-/// Draws the constant errors of the tracker from the seed: an offset in metres and a rotation vector in radians.
+/// Computes the constant errors of the tracker from the seed: an offset in metres and a rotation vector in radians.
 fn bias(config: &TrackerConfig, seed: u64) -> (DVec3, DVec3) {
     let [(a, b), (c, d), (e, f)] = core::array::from_fn(|i| normal_pair(seed, i as u64));
     let turn = DVec3::new(d, e, f) * config.orientation_bias_deg.to_radians();

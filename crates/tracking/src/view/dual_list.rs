@@ -1,13 +1,14 @@
 //! The dual display list of just-in-time pixels. Every vertex is transformed for two instants: the start T0 and the end
-//! T1 of a field. In between, P(t) = P1 s + P0 (1 - s) with s = (t - T0) / (T1 - T0). The papers define P in two ways:
-//! as the position on the screen, or as the position in the view before the perspective divide.
+//! T1 of a field. Between these instants, the vertex is at P(t) = P1 s + P0 (1 - s) with s = (t - T0) / (T1 - T0). The
+//! papers define P in two ways: as the position on the screen, or as the position in the view before the perspective
+//! divide.
 
 use glam::{DVec2, DVec3};
 
 use super::HmdView;
 
 /// Interpolates a vertex between its positions on the screen at the times T0 and T1. `start` and `end` are the vertex
-/// in head axes (m) at these times. Returns `None` if either is behind the eye.
+/// in head axes (m) at these times. Returns `None` if the vertex is behind the eye at T0 or T1.
 pub fn screen_space(view: &HmdView, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
     Some(view.project(start)?.lerp(view.project(end)?, s))
 }

@@ -8,9 +8,9 @@ const ROUNDS: u64 = 4;
 /// The pixel order of frameless rendering (Bishop et al. 1994). Each pass updates every pixel once, in a random order.
 ///
 /// The order is a permutation of 0..n from a seed. Computing any element takes constant memory. A Feistel network
-/// permutes the numbers up to the next power of two. It is repeated until the result is below n, on average at most
-/// twice. Every pass uses the same order. The age of a pixel therefore never exceeds one pass, and its mean is half a
-/// pass. A new order for each pass would raise the mean age to 7/12 of a pass.
+/// permutes the numbers up to the next power of two. The network is applied repeatedly until the result is below n, on
+/// average at most twice. Every pass uses the same order. The age of a pixel therefore never exceeds one pass, and its
+/// mean is half a pass. A new order for each pass would raise the mean age to 7/12 of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RandomOrder {
     n_pixels: u32,
@@ -47,8 +47,8 @@ impl RandomOrder {
         }
     }
 
-    /// Permutes the numbers 0..2^width by a Feistel network. The two parts of the number swap roles each round, so that
-    /// `width` can be odd.
+    /// Permutes the numbers 0..2^width by a Feistel network. The upper and the lower bits of the number exchange their
+    /// roles in each round, so that `width` can be odd.
     fn permuted(&self, place: u32) -> u32 {
         let mut low_bits = self.half_bits;
         let mut high_bits = self.half_bits + self.odd_bit;

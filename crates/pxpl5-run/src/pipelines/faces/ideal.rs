@@ -20,7 +20,7 @@ use std::sync::{Arc, OnceLock};
 /// simulation.
 const BEFORE_RETRACE: Span = Span(1);
 
-/// Source of ideal cube faces. At each retrace, it writes the updates that a policy requests into the display's
+/// Source of ideal cube faces. At each retrace, the source writes the updates that a policy requests into the display
 /// memories.
 ///
 /// Views, policies, number widths and the display's protocol are the same as on the machine. Drawing takes no time and
@@ -62,7 +62,8 @@ fn before(scan: &Scan, field: PeriodNumber) -> Time {
 }
 
 impl IdealFaces {
-    /// Draws an update and returns its messages: an announcement, the regions, and the swap.
+    /// Draws the cube faces of an update and returns the messages to the display: an announcement, the regions, and the
+    /// swap.
     fn draw(&self, update: FaceUpdate) -> Vec<(usize, Body)> {
         let port = usize::from(update.memory);
         let regions: Vec<RegionId> = (0..self.faces.regions()).map(RegionId).collect();
@@ -95,7 +96,7 @@ pub(super) fn seen_next(setup: &Setup, scan: Scan) -> Setup {
     Setup { views: Arc::new(views), ..setup.clone() }
 }
 
-/// A policy that draws the whole scene into memory 0 in every cycle.
+/// A policy that draws the whole scene into display memory 0 in every cycle.
 pub(super) struct All {
     pub(super) structures: Arc<[bool]>,
 }
@@ -140,7 +141,7 @@ impl DrawnCube {
     }
 }
 
-/// A region of the faces of an update.
+/// A region of the cube faces that an update draws.
 #[derive(Debug)]
 struct DrawnRegion {
     cube: Arc<DrawnCube>,

@@ -32,7 +32,8 @@ pub(super) const POLICY: Key = Key {
     sets: &[],
 };
 
-/// Names of the falloffs of warping, in the order of [`Falloff`], without the first one, `None`.
+/// Names of the falloffs (rules for the decrease of warping with distance), in the order of [`Falloff`], without its
+/// first value, `None`.
 const FALLOFFS: [&str; 3] = [Falloff::ALL[1].0, Falloff::ALL[2].0, Falloff::ALL[3].0];
 
 pub(super) const SEGMENT: Key = Key {

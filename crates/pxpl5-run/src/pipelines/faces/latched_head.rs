@@ -61,8 +61,8 @@ impl OrientationTiming {
 
     /// Returns the first time after an instant at which a new orientation is in the register.
     ///
-    /// The first orientation arrives when the machine starts. Later ones follow each report, or the schedule of lines
-    /// or pixels. `reports` returns the first report after an instant.
+    /// The first orientation arrives when the machine starts. Later orientations follow each report, or the schedule of
+    /// lines or pixels. `reports` returns the first report after an instant.
     pub(crate) fn next(&self, after: Time, reports: impl Fn(Time) -> Option<Time>) -> Option<Time> {
         let first = self.loaded(Time::ZERO);
         if after < first {
@@ -102,7 +102,7 @@ impl OrientationTiming {
 
     /// Returns the time up to which the host used reports for a pixel's orientation, and the instant of the prediction.
     ///
-    /// Before the first report, the host knows the head's initial pose. Returns `None` before an orientation is loaded.
+    /// Before the first report, the host has the head's initial pose. Returns `None` before an orientation is loaded.
     #[must_use]
     pub fn orientation_of_pixel(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<(Time, Time)> {
         let latched = self.latches(x, y, field)?;

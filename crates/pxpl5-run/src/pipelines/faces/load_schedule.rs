@@ -14,17 +14,18 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
     scan: Scan,
-    /// Delay of a pixel through all stages of the display.
+    /// Delay of a pixel through all stages of the display's pipeline.
     depth: Span,
-    /// Time from one register load to the next within a line.
+    /// Time from one load of the display's orientation register to the next load within a line.
     link: Span,
-    /// Number of lines of a field that use the same register load.
+    /// Number of lines of a field that use the same load of the display's orientation register.
     lines: u32,
     loads: u32,
     aim: Aim,
 }
 
-/// Identifier of a register load: its field, its first line within the field, and its index within this line.
+/// Identifier of a load of the display's orientation register: the field, the first line within the field, and the
+/// index within this line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Load {
     field: PeriodNumber,
@@ -58,23 +59,23 @@ impl LoadSchedule {
         self.scan.lights(x, y, field).unwrap_or_else(|| self.scan.retrace(field))
     }
 
-    /// Returns the register load whose orientation a pixel uses. Returns `None` for a pixel that the field does not
-    /// scan.
+    /// Returns the load of the display's orientation register that a pixel uses. Returns `None` for a pixel that the
+    /// field does not scan.
     pub(crate) fn load_of(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Load> {
         let into_line = self.scan.lights(x, y, field)?.since(self.light(0, y / 2, field));
         let number = (into_line.0 / self.link.0.max(1)).min(u64::from(self.loads) - 1) as u32;
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which an orientation is in the register. It is at most one pixel's time before the first
-    /// pixel that uses the orientation is latched.
+    /// Returns the instant at which an orientation is in the display's register. The display latches the orientation
+    /// for its first pixel at most one pixel's time later.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))
     }
 
-    /// Returns the instant for which an orientation is predicted. It depends on the aim, and lies in the time span in
-    /// which the pixels with this orientation are lit.
+    /// Returns the instant for which an orientation is predicted. This instant depends on the aim, and lies in the time
+    /// span in which the pixels with this orientation are lit.
     pub(crate) fn aimed(&self, load: Load) -> Time {
         let Load { field, line, number } = load;
         let last_line = (line + self.lines).min(self.height()) - 1;
@@ -88,13 +89,14 @@ impl LoadSchedule {
         self.aim.instant(&light)
     }
 
-    /// Returns the first pixel of a line that can use the register load with this index.
+    /// Returns the first pixel of a line that can use the load with the index `number` of the display's orientation
+    /// register.
     fn first_pixel(&self, line: u32, number: u32, field: PeriodNumber) -> u32 {
         let from = self.light(0, line, field) + self.link * u64::from(number);
         partition(self.scan.width() - 1, |x| self.light(x, line, field) < from)
     }
 
-    /// Returns the first register load that is complete after an instant.
+    /// Returns the first load of the display's orientation register that is complete after an instant.
     pub(crate) fn next(&self, after: Time) -> Load {
         let mut field = self.scan.field_at(after);
         loop {
@@ -118,7 +120,8 @@ impl LoadSchedule {
         }
     }
 
-    /// Returns the register load that is complete at exactly this instant, or else the first one after it.
+    /// Returns the load of the display's orientation register that is complete at exactly this instant, or else the
+    /// first load after this instant.
     pub(crate) fn at(&self, loaded: Time) -> Load {
         self.next(Time(loaded.0.saturating_sub(1)))
     }

@@ -1,4 +1,4 @@
-//! Policy `objects`: each structure is in the slowest memory in which its image stays correct.
+//! Policy `objects`: each structure is in the slowest display memory in which its image stays correct.
 
 use super::plan::{Due, DuePolicy, Updates};
 use address_recalculation::Scan;
@@ -9,7 +9,8 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::collections::VecDeque;
 
-/// Priority rendering by objects: assigns each structure to the slowest memory in which its image stays correct.
+/// Priority rendering by objects: assigns each structure to the slowest display memory in which its image stays
+/// correct.
 pub(super) struct ByObjects {
     scan: Scan,
     policy: Objects,
@@ -60,8 +61,8 @@ impl ByObjects {
         }
     }
 
-    /// Returns the time, in seconds, for which the image of a structure stays correct. The time is 0 for a structure
-    /// that moves by itself.
+    /// Returns the time, in seconds, for which the image of a structure stays correct while the eye moves. The time is
+    /// 0 for a structure that moves by itself.
     fn period_s(&self, moves: bool, structure: usize, eye: DVec3, speed: f64) -> f64 {
         let ObjectSphere { centre, radius_m } = self.spheres[structure];
         let animation_s = if moves { 0.0 } else { f64::INFINITY };

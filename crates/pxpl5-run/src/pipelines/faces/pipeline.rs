@@ -30,12 +30,12 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// The renderer that draws the faces.
+/// The renderer that draws the cube faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceSource {
     /// The firmware of Rendering Control on the machine.
     PixelPlanes,
-    /// An ideal renderer without delay. It draws from the eye position that is known at each retrace.
+    /// An ideal renderer without delay. This renderer draws from the eye position that is available at each retrace.
     ///
     /// Errors that remain with this renderer are not caused by drawing time.
     Ideal,
@@ -44,7 +44,7 @@ pub enum FaceSource {
 /// A pipeline that draws six cube faces for an address recalculation display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FacePipeline {
-    /// The renderer that draws the faces.
+    /// The renderer that draws the cube faces.
     pub source: FaceSource,
     /// Policy that assigns structures to display memories.
     pub policy: FacePolicy,
@@ -52,12 +52,12 @@ pub struct FacePipeline {
     pub latch: Latch,
     /// Method of shading.
     pub shading: Shading,
-    /// For policies with cells: true if structures are cut at the borders of cells.
+    /// For policies with cells (squares of the floor): true if structures are cut at the borders of cells.
     ///
-    /// Otherwise a whole structure is in the fastest memory of any cell that it touches.
+    /// Otherwise a whole structure is in the fastest display memory of any cell that it touches.
     pub segmented: bool,
     /// For warped cells: how the displacement of vertices decreases with the distance from the border to a slower
-    /// memory.
+    /// display memory.
     pub falloff: Falloff,
     /// Lens between display and eye.
     pub lens: FaceLens,
@@ -162,7 +162,7 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content })
     }
 
-    /// Returns the plan by which the host selects the next update of a display memory.
+    /// Returns the plan (a function) by which the host selects the next update of a display memory.
     fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, ConfigError> {
         let display = display_of(machine.record())?.config();
         let projection = projection(display);
@@ -238,7 +238,7 @@ const ORIENTATION_PORT: usize = 0;
 
 /// Connection from the host to the display that carries the head's orientations.
 ///
-/// The first orientation is the head's initial orientation. Later ones follow tracker reports or are predicted.
+/// The first orientation is the head's initial orientation. Later orientations follow tracker reports or are predicted.
 struct OrientationLine {
     reports: ReportTimes,
     poses: Poses,
@@ -361,7 +361,7 @@ impl Pipeline for FacePipeline {
             return self.plug_ideal_source(machine, setup);
         }
         let config = self.config(machine, setup.pixels)?;
-        // All slaves share recent views, because each of them transforms for the same faces.
+        // All slaves share recent views, because each slave transforms for the same faces.
         let mut list = matte(&setup.list);
         list.recent = RecentViews::keeping(VIEWS_AT_A_TIME);
         let list = Arc::new(list);
@@ -409,7 +409,8 @@ impl PictureRules for FacePipeline {
         true
     }
 
-    /// Counts the fields since the first swap of any memory. Each field is shown with its own latched orientation.
+    /// Counts the fields since the first swap of any display memory, because each field is shown with its own latched
+    /// orientation.
     fn turned_periods(&self, record: &Record, end: Time) -> u64 {
         let first = record.observation().first_swap();
         let after = record.display().period_at(end);

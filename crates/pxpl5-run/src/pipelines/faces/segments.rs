@@ -12,8 +12,8 @@ use std::sync::Arc;
 pub struct SegmentedScene {
     /// Scene that is loaded instead of the original scene.
     pub scene: Arc<Scene>,
-    /// Cells of each structure. A segment has one cell. A structure that was not cut has all cells that it touches. A
-    /// moving structure has no cell.
+    /// Cells (squares of the floor) of each structure. A segment has one cell. A structure that was not cut has all
+    /// cells that the structure touches. A moving structure has no cell.
     pub cells: Arc<[Vec<Cell>]>,
 }
 
@@ -69,7 +69,8 @@ fn cell_of(sphere: &Sphere, side_m: f64) -> Cell {
     Cell::of(f64::from(sphere.centre.x), f64::from(sphere.centre.z), side_m)
 }
 
-/// Cuts the triangles of a structure. Vertex indices are relative to the structure's first vertex.
+/// Cuts the triangles of a structure at the borders of cells. Vertex indices are relative to the structure's first
+/// vertex.
 fn cut(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Segmentation, PriorityError> {
     let own = &scene.vertices()[structure.vertices.clone()];
     let places: Vec<DVec3> = own.iter().map(|vertex| vertex.position.as_dvec3()).collect();
@@ -79,7 +80,7 @@ fn cut(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Segmentation
     Segmentation::new(&places, &triangles, side_m)
 }
 
-/// A scene of segments, under construction.
+/// A scene of segments (parts of structures in one cell), under construction.
 struct Pieces {
     parts: SceneParts,
     cells: Vec<Vec<Cell>>,

@@ -16,7 +16,7 @@ const CHUNK: usize = 8;
 pub(super) struct Chunks<'a> {
     pub(super) json: &'a [u8],
     pub(super) binary: Option<&'a [u8]>,
-    /// True if the whole file is JSON, so that errors state lines.
+    /// True if the whole file is JSON. Errors then state a line number instead of a byte offset.
     is_text: bool,
 }
 
@@ -56,7 +56,7 @@ impl<'a> Chunks<'a> {
     /// Fails for JSON that is not glTF, and for JSON that would take more memory than its size allows.
     pub(super) fn parse(&self, source: &Source<'_>) -> Result<Root, LoadError> {
         Root::from_slice(self.json).map_err(|error| {
-            // The library adds the position to its message. The place of our error states this position already.
+            // The library adds the position to its message. The `at` of our error states this position already.
             let message = error.to_string();
             let message = message.split(" at line ").next().unwrap_or_default();
             let found: String = message.chars().take(200).collect();
@@ -70,7 +70,8 @@ impl<'a> Chunks<'a> {
 
     /// Returns the greatest number of bytes that the JSON takes after parsing.
     ///
-    /// A file of a few bytes per item must not take hundreds of bytes for each item, so the items are counted before.
+    /// An item with a few bytes in the file can take hundreds of bytes after parsing. The items are therefore counted
+    /// before parsing, so that a small file cannot exhaust the memory.
     pub(super) fn parsed_bytes(&self) -> usize {
         let [mut objects, mut texts, mut numbers] = [0_usize; 3];
         let mut bytes = self.json.iter();

@@ -17,7 +17,8 @@ pub(super) struct Document<'a> {
 }
 
 impl Document<'_> {
-    /// Returns the description of missing numbers. It names an extension of the file that compresses meshes.
+    /// Returns the text that describes missing numbers in an error. If an extension compresses the meshes of the file,
+    /// the text names this extension.
     pub(super) fn none(&self) -> String {
         let compressed = self.root.extensions_used.iter().find(|name| COMPRESSION.contains(&name.as_str()));
         compressed.map_or("none".to_owned(), |name| format!("none in a file that uses {name}"))

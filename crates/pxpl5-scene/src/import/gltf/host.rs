@@ -5,7 +5,7 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-/// Reads a file of at most `limit` bytes. The error describes what was found instead.
+/// Reads a file of at most `limit` bytes. The error describes the object that was found instead of such a file.
 pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     let metadata = fs::metadata(path).map_err(|error| error.to_string())?;
     // Reading a device or a pipe might never end.

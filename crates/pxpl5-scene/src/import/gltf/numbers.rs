@@ -6,7 +6,7 @@ use gltf_json::validation::Checked;
 use super::document::Document;
 use crate::error::LoadError;
 
-/// Items of one type in a buffer, with equal distances.
+/// Items of one type in a buffer, at equal distances from one item to the next.
 #[derive(Clone, Copy)]
 struct Items<'a> {
     bytes: &'a [u8],
@@ -33,13 +33,13 @@ impl Items<'_> {
 
 /// Numbers of an accessor. All positions in buffers are checked.
 pub(super) struct Numbers<'a> {
-    /// `None` stands for zeros.
+    /// Numbers before the sparse replacements. `None` stands for zeros.
     base: Option<Items<'a>>,
     /// Indices in increasing order, the values that replace the items at these indices, and the number of indices.
     sparse: Option<(Items<'a>, Items<'a>, usize)>,
     pub(super) count: usize,
     pub(super) components: usize,
-    /// The factor that makes a normalized integer a fraction, or 1.
+    /// Factor that converts a normalized integer into a fraction. The factor is 1 for all other numbers.
     factor: f64,
 }
 
@@ -129,7 +129,7 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// Finds the items of a buffer view, and checks that the view has all of them.
+/// Finds the items of a buffer view, and checks that the view has all these items.
 fn items<'a>(
     document: &'a Document<'_>,
     part: &str,

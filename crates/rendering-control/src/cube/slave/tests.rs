@@ -12,11 +12,11 @@ use pxpl5_wire::{CopyContent, Lines, Message, RegionGrid, ViewNumber};
 
 const MASTER: NodeId = NodeId(1);
 const BOARD: NodeId = NodeId(2);
-/// Number of triangles in the display list. All of them lie within one region of one face.
+/// Number of triangles in the display list. All triangles lie within one region of one face.
 const TRIANGLES: u64 = 3;
 const BIN_BYTES: u64 = TRIANGLES * BIN_ENTRY_BYTES;
 
-/// The only token of an update, when it reaches the last slave.
+/// The only token of an update, as the last slave receives it.
 pub(crate) const TOKEN: Token =
     Token { update: PictureNumber::FIRST, region: RegionId(0), renderer: 0, slaves_left: 1, of: 1, copies: true };
 
@@ -117,8 +117,8 @@ impl Rig {
         }
     }
 
-    /// Returns the updates that the slave has reported as transformed. Each has its number of bin entries, summed over
-    /// all regions.
+    /// Returns the updates that the slave has reported as transformed. Each entry has the number of the update and its
+    /// number of bin entries, summed over all regions.
     fn transformed(&self) -> Vec<(u64, u32)> {
         let to_master = self.bench.sent().filter_map(|(time, message)| {
             let received = Received { arrived: time, source: BOARD, body: message.body.clone() };
@@ -198,10 +198,10 @@ fn vertices_stand_in_the_memory_of_the_board_where_the_last_update_wants_them() 
     }
 }
 
-/// Measures the time that one more triangle adds to TRANSFORM for six faces, with the scheduled code.
+/// Measures the time that one additional triangle adds to TRANSFORM for six faces, with the scheduled code.
 ///
-/// The triangle touches one face. Published times range from 870 clocks (optimized code without extras) to 32 us (the
-/// design figure).
+/// The triangle touches one face. Published times of a triangle range from 870 clocks (optimized code without extras)
+/// to 32 us (the design figure).
 #[test]
 fn by_code_a_triangle_takes_what_was_published() {
     let ns = |triangles: usize| {

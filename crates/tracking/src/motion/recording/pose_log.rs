@@ -40,8 +40,8 @@ fn normal(name: &str) -> String {
     bare.strip_prefix("pose_").unwrap_or(bare).to_owned()
 }
 
-/// Returns the index of a column name in [`NAMES`] and the decimal places of its unit. Returns `None` for an unknown
-/// name.
+/// Returns the index of a column name in [`NAMES`] and the number of decimal places of the column's unit. Returns
+/// `None` for an unknown name.
 fn slot(name: &str) -> Option<(usize, i32)> {
     let normal = normal(name);
     if let Some(slot) = NAMES.iter().position(|known| *known == normal) {
@@ -77,7 +77,7 @@ pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], Recordi
     Ok(found.map(|column| column.expect("none is missing")))
 }
 
-/// Returns true if the file has one JSON object per line, judged by its first line.
+/// Returns true if a file has one JSON object per line. The first line of the file decides.
 pub(super) fn is_json(first_line: &str) -> bool {
     first_line.starts_with('{')
 }

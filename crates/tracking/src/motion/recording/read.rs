@@ -20,7 +20,8 @@ const EUROC: [&str; 8] = ["timestamp", "_x", "_y", "_z", "_w", "_x", "_y", "_z"]
 /// header.
 const TUM: [&str; 8] = ["timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"];
 
-/// Indices of time, position and quaternion in a line of a TUM file. The real part of the quaternion comes first here.
+/// Indices of the fields of a TUM line in the order of a sample: time, position, and the quaternion with its real part
+/// first.
 const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 
 /// Greatest difference between the length of a recorded quaternion and 1. Rounding to four decimals causes a much
@@ -65,7 +66,7 @@ fn bare(field: &str) -> &str {
 /// The samples of a recorded file, and warnings about the file.
 pub(super) struct Samples {
     pub(super) samples: Vec<Sample>,
-    /// Warning about samples that were left out because their time stamp equals that of the sample before.
+    /// Warning about samples that were left out because they have the same time stamp as the preceding sample.
     pub(super) repeated: Option<String>,
 }
 
@@ -147,7 +148,7 @@ fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Sa
     if samples.is_empty() { Err(RecordingError::Empty) } else { Ok(Samples { samples, repeated: repeated.warning() }) }
 }
 
-/// A count of the samples whose time stamp equals that of the sample before.
+/// A count of the samples that have the same time stamp as the preceding sample.
 #[derive(Default)]
 struct Repeated {
     count: usize,
@@ -297,7 +298,7 @@ impl Layout {
         Err(RecordingError::NotUnit { line: line.number, columns: names.join(","), found })
     }
 
-    /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous one and stays below
+    /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous time and stays below
     /// the limit.
     fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, RecordingError> {
         let column = self.columns[0].name.clone();

@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use tracking::view::{Misregistration, RasterOffset};
 
-/// Sums the errors of a run's pictures as they are displayed.
+/// Sums of the pixel errors of a run's pictures in the way in which the display shows the pictures.
 #[derive(Debug, Default)]
 pub(crate) struct ErrorSum {
     /// Display mode of the pictures. `None` uses the mode of the head's display.
@@ -62,9 +62,10 @@ impl ErrorSum {
         judging.shown.forget(run);
     }
 
-    /// Returns the pixel errors, and the results of the eye if pixels are lit for some time or pictures are moved.
-    pub(crate) fn said(self) -> (PixelErrors, Option<EyeReport>) {
-        self.collected.map(Collected::said).unwrap_or_default()
+    /// Returns the pixel errors. Also returns an [`EyeReport`] if pixels are lit for more than an instant, or if a
+    /// device moves pictures.
+    pub(crate) fn result(self) -> (PixelErrors, Option<EyeReport>) {
+        self.collected.map(Collected::result).unwrap_or_default()
     }
 }
 
@@ -78,7 +79,7 @@ struct Evaluation {
     /// True if the error is evaluated at the instant for which the pixel was drawn, instead of the instant when it is
     /// lit.
     at_one_instant: bool,
-    /// First display period that is not evaluated yet.
+    /// First display period whose pixels are not evaluated yet.
     next: PeriodNumber,
 }
 
@@ -86,8 +87,9 @@ struct Evaluation {
 #[derive(Debug)]
 enum Content {
     Plain,
-    /// The display shifts the raster. The value holds the offset of the current field, if the field has one.
-    AdvancedMotion(Estimator, Option<RasterOffset>),
+    /// The display shifts the raster. The second value is the raster offset of the current field, if the field has an
+    /// offset.
+    ShiftedRaster(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
     /// A device moves pictures to the newest pose of the head.
     Reprojected(Reprojector),
@@ -133,7 +135,7 @@ impl Evaluation {
         let estimator = Estimator::new(head, without);
         let content = match showing {
             Showing::Plain => Content::Plain,
-            Showing::RasterOffset => Content::AdvancedMotion(estimator, None),
+            Showing::RasterOffset => Content::ShiftedRaster(estimator, None),
             Showing::Ideal => Content::Ideal(estimator),
             Showing::Reprojected(setting) => Content::Reprojected(Reprojector::new(head, setting, without)),
             Showing::DelayedVideo => Content::DelayedVideo,
@@ -155,7 +157,8 @@ impl Evaluation {
         fields
     }
 
-    /// Replaces the poses of the visible views by the poses that the run would have had without one cause of error.
+    /// Replaces the poses of all visible views. The new poses are those that the run would have had without one cause
+    /// of error.
     fn replace_poses(
         &mut self,
         run: &FinalResults<'_>,
@@ -177,7 +180,7 @@ impl Evaluation {
     fn evaluate(&mut self, run: &FinalResults<'_>, field: PeriodNumber, collected: &mut Collected) {
         let display = run.record.display();
         // With a shifted raster, first find the offset of this field.
-        if let Content::AdvancedMotion(estimator, of_field) = &mut self.content {
+        if let Content::ShiftedRaster(estimator, of_field) = &mut self.content {
             let pose = pose_of_field(run, &self.shown, field);
             *of_field = pose.map(|pose| offset(estimator, display, field, &pose));
         }
@@ -219,10 +222,10 @@ impl Evaluation {
                 self.shown.seen(run, place, field, begins)
             }
             // Only whole views can be shifted. An interpolated picture or faces have no single pose.
-            Content::AdvancedMotion(_, offset) => match self.shown.seen(run, place, field, begins) {
+            Content::ShiftedRaster(_, offset) => match self.shown.seen(run, place, field, begins) {
                 Seen::Complete(Drawn::View(moment)) => {
                     let shift = offset.map(|offset| offset.shift_px(&self.evaluator.view, begins.0));
-                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::AdvancedMotion(moment, shift)))
+                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::ShiftedRaster(moment, shift)))
                 }
                 Seen::Complete(_) => Seen::Nothing,
                 other => other,
@@ -238,13 +241,13 @@ impl Evaluation {
     fn error(&self, pixel: Pixel, seen: Seen, collected: &mut Collected) -> Option<Misregistration> {
         let errors = &mut collected.errors;
         // Each reason has its own counter.
-        let (error, unjudged) = match seen {
+        let (error, not_evaluated) = match seen {
             Seen::Nothing => (None, &mut errors.empty),
             Seen::Incomplete => (None, &mut errors.incomplete),
             Seen::Before => (None, &mut errors.before),
             Seen::Complete(drawn) => (self.error_of(pixel, &drawn), &mut errors.behind),
         };
-        *unjudged += u64::from(error.is_none());
+        *not_evaluated += u64::from(error.is_none());
         error
     }
 
@@ -319,7 +322,8 @@ impl Evaluation {
         }
     }
 
-    /// Checks at many positions of a field if the visible content lies beyond the edge of its picture.
+    /// Checks at many screen positions of a field if the content that should be visible lies beyond the edge of the
+    /// drawn picture.
     ///
     /// If pictures are moved with depth, only the evaluated pixels are checked, and this method checks none.
     fn look_for_edges(&self, run: &FinalResults<'_>, field: PeriodNumber, eye: &mut EyeSum) {
@@ -327,9 +331,10 @@ impl Evaluation {
         let view = &self.evaluator.view;
         for (x, y, at) in lattice(display, field) {
             let place = middle(x, y);
-            // Find the place in the drawn picture that the pixel shows. It can lie beyond the edge of the picture.
+            // Find the place in the drawn picture that the pixel shows. This place can lie beyond the edge of the
+            // picture.
             let from = match &self.content {
-                Content::AdvancedMotion(_, offset) => {
+                Content::ShiftedRaster(_, offset) => {
                     let Some(offset) = offset else { continue };
                     let known = display.tick(field);
                     let arrived = self.head.report_by(known);
@@ -368,7 +373,7 @@ struct Collected {
     eye: EyeSum,
 }
 
-/// Number of grid errors that are kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for
+/// Number of pixel errors that are kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for
 /// degrees.
 const KEPT_OF_GRID: usize = 8;
 
@@ -397,13 +402,13 @@ impl Collected {
         }
     }
 
-    fn said(self) -> (PixelErrors, Option<EyeReport>) {
-        let eye = self.eye.said();
+    fn result(self) -> (PixelErrors, Option<EyeReport>) {
+        let eye = self.eye.result();
         let [pixels, degrees] = self.grid;
         let [centre_px, centre_deg] = self.centre.map(|errors| errors.percentiles());
         let of_grid = pixels.percentiles();
         let errors = PixelErrors {
-            judged: of_grid.n,
+            evaluated: of_grid.n,
             pixels: of_grid,
             degrees: degrees.percentiles(),
             centre_px,
@@ -441,17 +446,17 @@ mod tests {
     }
 
     impl StreamingObserver for Watched {
-        fn take(&mut self, settled: &FinalResults<'_>) {
-            self.sum.take(settled);
+        fn take(&mut self, results: &FinalResults<'_>) {
+            self.sum.take(results);
             self.held.extend(self.sum.judging.iter().map(|judging| judging.shown.held()));
         }
 
-        fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+        fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
             Box::new(self.held)
         }
     }
 
-    /// A run that discards records has as many views in memory at its end as after the first discard, or fewer.
+    /// A run that discards records must not have more views in memory at its end than after the first discard.
     #[test]
     fn what_is_held_of_a_run_does_not_grow_with_it() {
         for (name, scene, fields) in [
@@ -467,7 +472,7 @@ mod tests {
             let experiment = Experiment::with(config, pipeline, Arc::new(builtin(scene).expect("built in"))).head(head);
             let experiment = experiment.fields(fields).pixels(Pixels::Off).keep(Keep::Statistics);
             let outcome = experiment.observed_by(Some(|| Box::<Watched>::default())).run().expect("it runs");
-            let held: &Vec<usize> = outcome.said().expect("watched");
+            let held: &Vec<usize> = outcome.observed().expect("watched");
             assert!(held.len() > 1 && held.iter().all(|later| *later <= held[0]), "{name}: {held:?}");
         }
     }
@@ -482,12 +487,12 @@ mod tests {
             let of_field = [error, Misregistration { pixels: 0.0, degrees: 0.0, ..error }];
             collected.take(PeriodNumber(field), Time(field), &of_field, Some(error));
         }
-        let (said, eye) = collected.said();
+        let (said, eye) = collected.result();
         assert_eq!(eye, None);
         let kept: Vec<u64> = said.by_field.iter().map(|error| error.field.0).collect();
         assert_eq!(kept, [1, 2, 3]);
         assert_eq!(
-            (said.judged, said.pixels.n, said.degrees.n, said.centre_px.n, said.centre_deg.n),
+            (said.evaluated, said.pixels.n, said.degrees.n, said.centre_px.n, said.centre_deg.n),
             (10, 10, 10, 5, 5)
         );
         assert!((said.centre_px.mean - 3.0).abs() < 1e-12 && (said.centre_deg.mean - 3.0 / 8.0).abs() < 1e-12);

@@ -20,11 +20,11 @@ fn one_predictor_continues_with_the_reports_of_another() {
         let config = pipeline.adapt(MachineConfig::small_hmd());
         let scene = Arc::new(builtin("sphere:100").expect("even"));
         let plain = Experiment::with(config, pipeline, scene).fields(70).pixels(Pixels::Off);
-        let of_kalman = plain.clone().head(head(PredictorKind::Kalman)).rehearsed().expect("it runs");
-        assert!(of_kalman.rehearsal().is_some(), "{name}");
+        let of_kalman = plain.clone().head(head(PredictorKind::Kalman)).after_dry_run().expect("it runs");
+        assert!(of_kalman.dry_run().is_some(), "{name}");
         for kind in [PredictorKind::Kalman, PredictorKind::ConstantVelocity] {
             let alone = plain.clone().head(head(kind));
-            let told = alone.clone().with_dry_run(of_kalman.rehearsal().cloned());
+            let told = alone.clone().with_dry_run(of_kalman.dry_run().cloned());
             let [alone, told] = [alone, told].map(|experiment| experiment.run().expect("it runs"));
             assert_eq!(alone.record().trace_hash(), told.record().trace_hash(), "{name}, {kind:?}");
             let sampled = [&alone, &told].map(|outcome| outcome.head().expect("tracked").sampled());
@@ -39,5 +39,5 @@ fn an_experiment_without_prediction_has_no_dry_run() {
     let pipeline = (registry.pipeline("slats").expect("listed").build)(&PipelineSettings::default());
     let scene = Arc::new(builtin("sphere:100").expect("even"));
     let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head(PredictorKind::None));
-    assert!(experiment.rehearsed().expect("nothing to run").rehearsal().is_none());
+    assert!(experiment.after_dry_run().expect("nothing to run").dry_run().is_none());
 }

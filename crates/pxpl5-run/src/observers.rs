@@ -1,4 +1,4 @@
-//! Streaming observers. They process the records of a run during the run, so that old records can be discarded.
+//! Streaming observers, which process the records of a run during the run, so that old records can be discarded.
 
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Results of a run that can no longer change, and that a streaming observer has not received before.
 ///
-/// After a run that keeps everything, one value holds the whole run.
+/// After a run that keeps everything, one value of this type holds all results of the run.
 #[derive(Clone, Copy, Debug)]
 pub struct FinalResults<'a> {
     /// Pipeline that draws the pictures.
@@ -34,20 +34,20 @@ pub struct FinalResults<'a> {
     pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.
     pub arrivals: &'a [Arrival],
-    /// Pictures whose results are final, in the order in which they are shown.
+    /// Pictures whose results can no longer change, in the order in which the pictures are shown.
     pub pictures: &'a [PictureTimes],
     /// The next picture that is shown after all of `pictures`. `None` at the end of the run.
     pub next: Option<&'a PictureTimes>,
-    /// First period whose results are not final. The observer has received every picture that is shown before this
+    /// First period whose results can still change. The observer has received every picture that is shown before this
     /// period, even in part.
     pub until: PeriodNumber,
     /// Largest number of samples of each kind that are kept individually: see
     /// [`Samples::keeping`](crate::Samples::keeping).
     pub samples: usize,
-    /// Currently known result window. `None` if the run has no window.
+    /// Result window as determined so far. `None` if the run has no window.
     ///
-    /// The start of the result window may still move to a later period. Then all data that the observer received before
-    /// lies outside the result window.
+    /// The start of the result window may still move to a later period. All data that the observer received earlier
+    /// then lies outside the result window.
     pub window: Option<ResultWindow>,
 }
 
@@ -74,14 +74,14 @@ impl FinalResults<'_> {
 
 /// A streaming observer of a run.
 ///
-/// The observer receives every record once, in order. It must store the data that it needs later, because the run
-/// discards old records.
+/// The observer receives every record once, in order. The observer must store the data that it needs later, because the
+/// run discards old records.
 pub trait StreamingObserver: Debug + Send {
     /// Processes results that can no longer change.
-    fn take(&mut self, settled: &FinalResults<'_>);
+    fn take(&mut self, results: &FinalResults<'_>);
 
-    /// Returns the observer's result. Called once, after the last call of `take`.
-    fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync>;
+    /// Returns the observer's result. The run calls this method once, after the last call of `take`.
+    fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync>;
 }
 
 /// Function that creates the streaming observer of a run.

@@ -33,7 +33,7 @@ impl SeenTimes {
 #[derive(Clone, Debug)]
 pub struct DryRun {
     /// Instants at which views are seen.
-    pub(crate) rehearsal: SeenTimes,
+    pub(crate) seen_times: SeenTimes,
     /// Mean interval over which views must be predicted, in picoseconds. `None` if no view was predicted.
     pub(crate) interval_ps: Option<u64>,
     pub(crate) turn_interval_ps: Option<u64>,

@@ -1,12 +1,12 @@
 //! Streaming observer of a dry run without prediction.
 
+use crate::dry_run::{DryRun, SeenTimes};
 use crate::head_views::{HeadViews, SampledPose};
 use crate::instants::Instants;
+use crate::observers::{FinalResults, StreamingObserver};
 use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
 use crate::pipelines::faces::latched_head::OrientationTiming;
-use crate::rehearsal::{DryRun, SeenTimes};
-use crate::sums::{FinalResults, StreamingObserver};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::LightTimes;
 use pxpl5_wire::{FieldParity, PeriodNumber, PictureNumber, ViewNumber};
@@ -29,7 +29,7 @@ pub(crate) struct DryRunObserver {
     intervals: Mean,
     turns: Mean,
     turned_to: PeriodNumber,
-    /// Last picture, whose successor is not known yet.
+    /// Last picture so far. The next picture, which will replace this picture on the screen, is not known yet.
     waiting: Option<PictureTimes>,
 }
 
@@ -68,47 +68,48 @@ impl Mean {
 }
 
 impl StreamingObserver for DryRunObserver {
-    fn take(&mut self, settled: &FinalResults<'_>) {
-        let Some(head) = settled.head else { return };
+    fn take(&mut self, results: &FinalResults<'_>) {
+        let Some(head) = results.head else { return };
         let sampled = head.sampled();
-        for (times, next) in self.timed(settled) {
-            let shown = settled.pipeline.shown(settled.record, &times, next.as_ref());
+        for (times, next) in self.timed(results) {
+            let shown = results.pipeline.shown(results.record, &times, next.as_ref());
             self.take_picture(&times, shown);
         }
-        self.end_views(settled, &sampled);
-        self.take_turns(settled, head);
+        self.end_views(results, &sampled);
+        self.take_turns(results, head);
     }
 
-    fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
-        Box::new(self.rehearsed())
+    fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+        Box::new(self.into_dry_run())
     }
 }
 
 impl DryRunObserver {
     /// Returns the results of the dry run so far.
-    pub(crate) fn rehearsed(self) -> DryRun {
+    pub(crate) fn into_dry_run(self) -> DryRun {
         DryRun {
-            rehearsal: SeenTimes::new(self.aimed_at, (self.leads.ms() * 1e9) as u64),
+            seen_times: SeenTimes::new(self.aimed_at, (self.leads.ms() * 1e9) as u64),
             interval_ps: self.intervals.rounded_ps(),
             turn_interval_ps: self.turns.rounded_ps(),
         }
     }
 
-    /// Returns the pictures, each with the picture that replaces it.
+    /// Returns the pictures whose display times are known, each with the next picture, which replaces the picture on
+    /// the screen.
     ///
-    /// For a display with several memories, only the first memory is timed. It holds the structures that must be drawn
-    /// most often. The last picture of this memory is returned only when its successor is known.
-    fn timed(&mut self, settled: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
-        let notes = settled.notes.all();
+    /// For a display with several memories, only the first memory is timed. The first memory holds the structures that
+    /// must be drawn most often. The last picture of this memory is returned only when its successor is known.
+    fn timed(&mut self, results: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
+        let notes = results.notes.all();
         // Leave out the updates of all memories except the first.
         let of_others: BTreeSet<PictureNumber> =
             notes.iter().filter(|note| note.memory > 0).map(|note| note.picture).collect();
         let is_timed = |times: &&PictureTimes| !of_others.contains(&times.picture);
-        let timed = settled.pictures.iter().filter(is_timed).copied();
+        let timed = results.pictures.iter().filter(is_timed).copied();
         let mut timed: Vec<PictureTimes> = self.waiting.take().into_iter().chain(timed).collect();
-        let next = settled.next.filter(is_timed).copied();
+        let next = results.next.filter(is_timed).copied();
         // If another memory is shown next, the successor of the last picture is not known yet.
-        if settled.next.is_some() && next.is_none() {
+        if results.next.is_some() && next.is_none() {
             self.waiting = timed.pop();
         }
         let nexts = timed.iter().skip(1).copied().chain(next.or(self.waiting)).map(Some).chain([None]);
@@ -123,24 +124,25 @@ impl DryRunObserver {
         view.is_complete |= is_complete;
     }
 
-    /// Finishes all views except the newest one, which the next picture may show too. At the end of the run, finishes
-    /// the newest view too.
-    fn end_views(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose]) {
+    /// Adds all views to the results of the dry run except the newest view, which the next picture may also show. At
+    /// the end of the run, adds the newest view too.
+    fn end_views(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose]) {
         let newest = self.going_on.pop_last();
         let ended = std::mem::take(&mut self.going_on);
-        ended.iter().for_each(|(view, shown)| self.end_view(settled, sampled, *view, *shown));
+        ended.iter().for_each(|(view, shown)| self.end_view(results, sampled, *view, *shown));
         match newest {
-            Some((view, shown)) if settled.next.is_none() => self.end_view(settled, sampled, view, shown),
+            Some((view, shown)) if results.next.is_none() => self.end_view(results, sampled, view, shown),
             newest => self.going_on.extend(newest),
         }
     }
 
-    /// Finishes a view. Firmware that knows when views are seen needs no instants from the dry run. Such firmware may
-    /// show views out of the order of their numbers.
-    fn end_view(&mut self, settled: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
+    /// Adds a view that no later picture shows to the results of the dry run. The results get the instant for which the
+    /// view is drawn, and the prediction interval. Firmware that computes the display times of its views needs no such
+    /// instants. This firmware may also show views out of the order of their numbers.
+    fn end_view(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
-        let instant = settled.aim.instant(&shown);
-        if !settled.pipeline.knows_when_seen() {
+        let instant = results.aim.instant(&shown);
+        if !results.pipeline.knows_when_seen() {
             self.aimed_at.push(view.0, instant);
         }
         let first = sampled.partition_point(|sampled| sampled.number < view);
@@ -152,23 +154,24 @@ impl DryRunObserver {
         }
     }
 
-    /// Adds the prediction interval of the middle pixel of each field. The interval lasts from the measurement of an
-    /// orientation to the instant for which it was predicted.
-    fn take_turns(&mut self, settled: &FinalResults<'_>, head: &HeadViews) {
-        let display = settled.record.display();
-        let Some((latched, surface)) = OrientationTiming::of_run(settled).zip(display.surfaces().first()) else {
+    /// Adds the prediction interval of the middle pixel of each field. The interval lasts from the measurement of the
+    /// head's orientation to the instant for which the orientation was predicted.
+    fn take_turns(&mut self, results: &FinalResults<'_>, head: &HeadViews) {
+        let display = results.record.display();
+        let Some((latched, surface)) = OrientationTiming::of_run(results).zip(display.surfaces().first()) else {
             return;
         };
-        for field in self.turned_to.until(settled.until) {
+        for field in self.turned_to.until(results.until) {
             let y = surface.height / 2 + FieldParity::of_field(field).first_line();
             let span = turned(&latched, head, [surface.width / 2, y], field);
             span.into_iter().for_each(|span| self.turns.add(span));
         }
-        self.turned_to = settled.until;
+        self.turned_to = results.until;
     }
 }
 
-/// Returns the prediction interval of a pixel's orientation, or `None` before the first report.
+/// Returns the prediction interval of the head orientation that a pixel uses. Returns `None` before the first tracker
+/// report.
 fn turned(latched: &OrientationTiming, head: &HeadViews, [x, y]: [u32; 2], field: PeriodNumber) -> Option<Span> {
     let (known, aimed): (Time, Time) = latched.orientation_of_pixel(head, x, y, field)?;
     let measured = head.measured_at(head.report_by(known)?)?;

@@ -1,18 +1,18 @@
 //! Streaming observer of the results that concern the head.
 
 use crate::budget::{Budget, BudgetSum};
-use crate::error_sum::ErrorSum;
+use crate::error_observer::ErrorSum;
 use crate::errors::PixelErrors;
 use crate::eye_report::EyeReport;
-use crate::step_sum::{StepSum, Steps};
-use crate::turn_sum::{RotationLatencySum, Turns};
+use crate::step_observer::{StepSum, Steps};
+use crate::turn_observer::{RotationLatencySum, Turns};
 use pxpl5_run::{FinalResults, StreamingObserver};
 use std::any::Any;
 
 /// A streaming observer for runs that keep only statistics.
 ///
-/// It collects the latency from the head's pose until pixels are lit, rotation latencies of address recalculation
-/// displays, and errors in pixels. Enable it with
+/// The observer collects the latency from the head's pose until pixels are lit, rotation latencies of address
+/// recalculation displays, and errors in pixels. Enable it with
 /// `experiment.keep(Keep::Statistics).observed_by(Some(HeadSum::begin))`.
 #[derive(Debug, Default)]
 pub struct HeadSum {
@@ -31,18 +31,18 @@ impl HeadSum {
 }
 
 impl StreamingObserver for HeadSum {
-    fn take(&mut self, settled: &FinalResults<'_>) {
-        self.budget.take(settled);
-        self.turns.take(settled);
-        self.steps.take(settled);
-        self.errors.take(settled);
+    fn take(&mut self, results: &FinalResults<'_>) {
+        self.budget.take(results);
+        self.turns.take(results);
+        self.steps.take(results);
+        self.errors.take(results);
     }
 
-    fn said(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
+    fn result(self: Box<Self>) -> Box<dyn Any + Send + Sync> {
         let Self { budget, turns, steps, errors } = *self;
-        let (turns, steps) = (turns.said(), steps.result());
-        let (error, eye) = errors.said();
-        Box::new(HeadResults { end_to_end: budget.said(), turns, steps, error, eye })
+        let (turns, steps) = (turns.result(), steps.result());
+        let (error, eye) = errors.result();
+        Box::new(HeadResults { end_to_end: budget.result(), turns, steps, error, eye })
     }
 }
 
