@@ -13,6 +13,7 @@ mod length;
 mod pictures;
 mod precision;
 mod predictors;
+mod progress;
 mod query;
 mod resume;
 mod row;

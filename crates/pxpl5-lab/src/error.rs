@@ -84,6 +84,9 @@ pub enum StudyError {
         /// Number of rows of the interrupted comparison.
         of: usize,
     },
+    /// The caller stopped the comparison.
+    #[error("the comparison was stopped")]
+    Stopped,
     /// A line in the file of rows is not a row.
     #[error("{path}, line {line}: expected a row of a comparison, found {found}")]
     Damaged {

@@ -45,6 +45,7 @@ pub(crate) use inputs::inputs_of;
 pub(crate) use store::{line_of, lock, opened};
 
 pub use header::Header;
+pub use inputs::hash_of_model;
 pub use merge::{Merged, merge};
 pub use point::{PointResults, Status, SweepRow, Swept};
 pub use run::{RunOptions, run, run_stoppable};

@@ -15,7 +15,7 @@ use pxpl5::device::PixelWorker;
 use pxpl5::firmware::Shading;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
-    Experiment as Native, ExperimentError, Host, Keep, PeriodNumber, Pixels, Plan, PolicyPipeline, RegionPolicy,
+    Experiment as Native, ExperimentError, Host, Keep, Level, PeriodNumber, Pixels, Plan, PolicyPipeline, RegionPolicy,
     Results, SurfaceId, Workstation, levels, registry, what_if,
 };
 use pyo3::prelude::*;
@@ -185,13 +185,20 @@ impl Experiment {
     ///
     /// Raises the same exceptions as :meth:`run`.
     fn measure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let native = self.native.clone().pixels(pxpl5::Pixels::Off).host(Workstation::with_threads(1));
-        let result = py.detach(|| match self.plan.level {
-            pxpl5::Level::Analytic => levels::summarise(&registry(), &native).map(Results::of_closed_form),
-            _ => native.run().map(Results::of_run),
+        let (native, functions) = (self.native.clone().pixels(Pixels::Off), self.functions.clone());
+        let is_analytic = self.plan.level == Level::Analytic;
+        // Formulas do not check for a stop, so Ctrl-C does not wait for their result.
+        let result = attended(py, None, !is_analytic, move |watch| {
+            let workstation = Workstation::with_threads(1);
+            if !is_analytic {
+                return run(&native, workstation, functions, watch).map(Results::of_run);
+            }
+            let host = StoppableHost { workstation, watch, functions };
+            let summary = levels::summarise(&registry(), &native.host(host)).map_err(Box::new);
+            summary.map(Results::of_closed_form)
         });
         self.functions.check()?;
-        let results = result.map_err(|error| exception(py, error, &self.plan.measure))?;
+        let results = result?.map_err(|error| exception(py, *error, &self.plan.measure))?;
         let measured = PyDict::new(py);
         for measure in &self.plan.measure {
             measured.set_item(measure.name(), measure.of(&results))?;

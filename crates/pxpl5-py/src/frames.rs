@@ -54,7 +54,10 @@ impl Frames {
         };
         let mut pictures = pictures;
         loop {
-            match py.detach(|| next(&mut pictures)) {
+            let found = py.detach(|| next(&mut pictures));
+            // Ctrl-C drops the receiver, which ends the run. A caller such as `list` checks for Ctrl-C nowhere else.
+            py.check_signals().inspect_err(|_| self.progress.stop())?;
+            match found {
                 Ok(Ok(picture)) => {
                     // A motion or a policy that has raised has no pictures.
                     self.checks.check().inspect_err(|_| self.progress.stop())?;
@@ -65,8 +68,7 @@ impl Frames {
                     self.checks.check()?;
                     return Err(exception(error));
                 }
-                // Ctrl-C drops the receiver. The run ends when it has the next picture to send.
-                Err(RecvTimeoutError::Timeout) => py.check_signals().inspect_err(|_| self.progress.stop())?,
+                Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => {
                     self.checks.check()?;
                     return Ok(None);

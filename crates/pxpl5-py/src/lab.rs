@@ -2,10 +2,10 @@
 
 use crate::attended::attended;
 use crate::catalogue::python;
-use crate::errors::{failed_run, wrong_setting};
+use crate::errors::{failed_run, failed_sweep, wrong_setting};
 use crate::settings::Settings;
 use pxpl5::Statistics;
-use pxpl5::compare::CompareQuery;
+use pxpl5::compare::{CONFIDENCE, CompareQuery, MAX_SEEDS, Precision, UntilPrecise};
 use pxpl5::figures::{Bench, FIGURES, FigureRow, run_all_with};
 use pxpl5::lab::diff::Changed;
 use pxpl5::levels::{LevelQuery, LevelRecord, compare_with};
@@ -13,9 +13,10 @@ use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery, Values};
 use pxpl5::readings::run as rank;
 use pxpl5::rig::{PASSES, Rig};
 use pxpl5::tracking::rig::Side;
-use pxpl5::{Goal, Level, TestScene};
+use pxpl5::{Goal, Level, StudyError, TestScene};
 use pyo3::prelude::*;
 use serde_json::json;
+use std::path::PathBuf;
 
 /// Returns the level of modelling called `name`, or raises an exception for an unknown name.
 fn level(name: &str) -> PyResult<Level> {
@@ -86,9 +87,14 @@ pub(crate) fn figures<'py>(
 /// Runs all pipelines with the same settings and compares the results. Returns a dictionary whose `pipelines` has one
 /// row for each pipeline.
 ///
-/// Raises :class:`pxpl5.SettingError` for an invalid setting.
+/// ``confidence`` is that of all intervals. With ``until_precision``, such as 10% or 0.2px, a row gets up to
+/// ``max_seeds`` seeds. Finished rows are stored in ``folder``. If ``resume`` is true, the rows in the folder are kept.
+///
+/// Raises :class:`pxpl5.SettingError` for an invalid setting, and :class:`pxpl5.SweepError` if the folder cannot be
+/// used, is in use, or contains another comparison.
 #[pyfunction]
-#[pyo3(signature = (settings, only, seeds, limits, causes, predictors, progress = None))]
+#[pyo3(signature = (settings, only, seeds, *, limits = false, causes = false, predictors = false, confidence = None, until_precision = None, max_seeds = None, folder = None, resume = false, progress = None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn compare<'py>(
     py: Python<'py>,
     settings: &Settings,
@@ -97,22 +103,40 @@ pub(crate) fn compare<'py>(
     limits: bool,
     causes: bool,
     predictors: bool,
+    confidence: Option<f64>,
+    until_precision: Option<&str>,
+    max_seeds: Option<usize>,
+    folder: Option<PathBuf>,
+    resume: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let mut query = CompareQuery {
-        shared: settings.file.clone(),
-        only,
-        seeds,
-        limits,
-        causes,
-        predictors,
-        pictures: false,
-        confidence: pxpl5::compare::CONFIDENCE,
-        until: None,
-    };
+    let width: Option<Precision> = until_precision
+        .map(str::parse)
+        .transpose()
+        .map_err(|error: pxpl5::SettingError| wrong_setting(format!("until_precision: {error}")))?;
+    let until = width.map(|width| UntilPrecise { width, max_seeds: max_seeds.unwrap_or(MAX_SEEDS) });
+    let shared = settings.file.clone();
+    let confidence = confidence.unwrap_or(CONFIDENCE);
+    let mut query =
+        CompareQuery { shared, only, seeds, limits, causes, predictors, pictures: false, confidence, until };
     query.set_length().map_err(wrong_setting)?;
-    let comparison = attended(py, progress, false, move |watch| query.run(|done, of| watch.report(done, of)))?;
-    python(py, &comparison.map_err(wrong_setting)?)
+    // With a folder, Ctrl-C waits until all runs have stopped, so that the comparison can be resumed at once. A search
+    // for the largest number of triangles cannot be stopped.
+    let waits = folder.is_some() && !limits;
+    let comparison = attended(py, progress, waits, move |watch| {
+        let store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?;
+        query.run_stoppable(store.as_ref(), &watch.stop_flag(), |done, of| watch.report(done, of), |_| {})
+    })?;
+    python(py, &comparison.map_err(wrong_study)?)
+}
+
+/// Returns the exception for an error of a comparison.
+fn wrong_study(error: StudyError) -> PyErr {
+    use StudyError::{File, OtherSettings, Unfinished};
+    match error {
+        File(_) | OtherSettings { .. } | Unfinished { .. } => failed_sweep(error),
+        error => wrong_setting(error),
+    }
 }
 
 /// Finds the largest number of triangles that a pipeline draws in time. Returns a dictionary with triangles,

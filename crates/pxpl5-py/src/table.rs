@@ -9,7 +9,7 @@ use arrow_schema::{DataType, Field, Schema};
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::{PyCapsule, PyDict, PyList, PyTuple};
+use pyo3::types::{PyCapsule, PyDict, PyList, PyTuple, PyType};
 use pythonize::pythonize;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -135,24 +135,42 @@ pub(crate) fn table_of_rows(json: &str, about: HashMap<String, String>) -> PyRes
 /// Rebuilds a table from the parts that `Table.__reduce__` returned: name, description, type and values of each column.
 /// The module `pickle` needs this function.
 ///
-/// Raises :class:`pxpl5.SettingError` for an unknown type.
+/// Raises :class:`pxpl5.SettingError` for columns that `Table.__reduce__` does not make.
 #[pyfunction]
-pub(crate) fn table_of_columns(columns: Vec<(String, String, String, Bound<'_, PyAny>)>) -> PyResult<Table> {
+pub(crate) fn table_of_columns(columns: &Bound<'_, PyAny>) -> PyResult<Table> {
+    let columns: Vec<(String, String, String, Bound<'_, PyAny>)> = columns.extract().map_err(|_| {
+        wrong_setting(
+            "a table: expected a list of columns, each with name, description, type and values, found another",
+        )
+    })?;
     let columns = columns.into_iter().map(|(name, about, kind, values)| {
-        let values: ArrayRef = match kind.as_str() {
-            "Int64" => Arc::new(Int64Array::from(values.extract::<Vec<Option<i64>>>()?)),
-            "Float64" => Arc::new(Float64Array::from(values.extract::<Vec<Option<f64>>>()?)),
-            "Boolean" => Arc::new(BooleanArray::from(values.extract::<Vec<Option<bool>>>()?)),
-            "Utf8" => Arc::new(StringArray::from(values.extract::<Vec<Option<String>>>()?)),
-            _ => {
-                return Err(wrong_setting(format!(
-                    "column {name}: expected the type Int64, Float64, Boolean or Utf8, found {kind}"
-                )));
-            }
-        };
+        let values = typed(&name, &kind, &values)?;
         Ok(Column { name, about, values })
     });
-    Table::of(columns.collect::<PyResult<_>>()?)
+    let columns: Vec<Column> = columns.collect::<PyResult<_>>()?;
+    let rows = columns.first().map_or(0, |column| column.values.len());
+    match columns.iter().find(|column| column.values.len() != rows) {
+        Some(Column { name, values, .. }) => {
+            Err(wrong_setting(format!("column {name}: expected {rows} values, found {}", values.len())))
+        }
+        None => Table::of(columns),
+    }
+}
+
+/// Returns values of Python as a column of one type.
+fn typed(name: &str, kind: &str, values: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
+    let values: PyResult<ArrayRef> = match kind {
+        "Int64" => values.extract().map(|values: Vec<Option<i64>>| Arc::new(Int64Array::from(values)) as ArrayRef),
+        "Float64" => values.extract().map(|values: Vec<Option<f64>>| Arc::new(Float64Array::from(values)) as ArrayRef),
+        "Boolean" => values.extract().map(|values: Vec<Option<bool>>| Arc::new(BooleanArray::from(values)) as ArrayRef),
+        "Utf8" => values.extract().map(|values: Vec<Option<String>>| Arc::new(StringArray::from(values)) as ArrayRef),
+        _ => {
+            return Err(wrong_setting(format!(
+                "column {name}: expected the type Int64, Float64, Boolean or Utf8, found {kind}"
+            )));
+        }
+    };
+    values.map_err(|error| wrong_setting(format!("column {name}: expected a list of values of {kind} ({error})")))
 }
 
 #[pymethods]
@@ -168,6 +186,12 @@ impl Table {
         drop(requested_schema);
         let batches = RecordBatchIterator::new([Ok(self.batch.clone())], self.batch.schema());
         PyCapsule::new_with_value(py, FFI_ArrowArrayStream::new(Box::new(batches)), c"arrow_array_stream")
+    }
+
+    /// Returns the class with the type of its rows, for type checkers: ``Table[dict[str, float]]``.
+    #[classmethod]
+    fn __class_getitem__<'py>(cls: &Bound<'py, PyType>, rows: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        cls.py().import("types")?.getattr("GenericAlias")?.call1((cls, rows))
     }
 
     /// Returns the number of rows.

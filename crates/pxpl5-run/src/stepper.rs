@@ -157,7 +157,7 @@ impl Stepper {
     pub fn finish(mut self) -> Result<Outcome, ExperimentError> {
         self.break_at(BTreeSet::new());
         while self.failure().is_none() && self.now < self.end() {
-            self.experiment.go_on()?;
+            self.experiment.check_stopped()?;
             self.run_to(self.record().tick(self.period().after(PROGRESS_FIELDS)));
         }
         self.run.machine.finish_pixels();

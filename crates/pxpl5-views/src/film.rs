@@ -91,10 +91,15 @@ impl Film {
         // A raster that shifts its picture needs the offsets of a run without pixels.
         let plain = self.without_pixels()?;
         let offsets = plain.as_ref().and_then(RasterOffsets::of);
-        for period in self.first_period.until(self.first_period.after(self.periods)) {
-            // A period is over when all events at the beginning of the next period have been handled.
+        // The periods before the film are run one by one too, so that the host can stop them.
+        for period in PeriodNumber::FIRST.until(self.first_period.after(self.periods)) {
+            self.experiment.check_stopped()?;
+            // A period is over when all events at the beginning of the next one have been handled.
             let begun = machine.record().tick(period.next()) + Span(1);
             machine.run_until(begun)?;
+            if period < self.first_period {
+                continue;
+            }
             if !take(period, frame(machine, surfaces, period, offsets.as_ref()))? {
                 break;
             }

@@ -3,6 +3,7 @@
 use super::contender::{ComparedPipeline, DELAYED_VIDEO, compared_pipelines};
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
+use super::progress::Progress;
 use super::row::{ComparisonRow, Sampling};
 use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
@@ -17,7 +18,7 @@ use pxpl5_sim::parameters::nearest;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
 /// all observations of a run in memory to evaluate the errors of the run in several ways.
@@ -90,28 +91,6 @@ pub struct Comparison {
     pub pipelines: Vec<ComparisonRow>,
 }
 
-/// The number of finished runs and the number of all runs. The number of all runs grows when seeds are added to a row.
-struct Progress<'a> {
-    done: AtomicU64,
-    all: AtomicU64,
-    finished: &'a (dyn Fn(u64, u64) + Sync),
-}
-
-impl<'a> Progress<'a> {
-    fn new(all: u64, finished: &'a (dyn Fn(u64, u64) + Sync)) -> Self {
-        Self { done: AtomicU64::new(0), all: AtomicU64::new(all), finished }
-    }
-
-    fn add(&self, runs: u64) {
-        self.all.fetch_add(runs, Ordering::Relaxed);
-    }
-
-    fn step(&self) {
-        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        (self.finished)(done, self.all.load(Ordering::Relaxed));
-    }
-}
-
 /// Data that all rows of a comparison share.
 struct Common<'a> {
     scene: Arc<Scene>,
@@ -120,9 +99,9 @@ struct Common<'a> {
 }
 
 impl Common<'_> {
-    /// Returns the experiment of a plan, whose head shares its tuning with the other rows.
+    /// Returns the experiment of a plan. Its head shares the tuning with the other rows, and its host can stop the run.
     fn experiment(&self, plan: &Plan) -> Experiment {
-        let experiment = plan.experiment(Arc::clone(&self.scene));
+        let experiment = plan.experiment(Arc::clone(&self.scene)).host(self.progress.host());
         let head = experiment.tracked_head().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
         match head {
             Some(head) => experiment.head(head),
@@ -171,6 +150,23 @@ impl CompareQuery {
         finished: impl Fn(u64, u64) + Sync,
         ended: impl Fn(&ComparisonRow) + Sync,
     ) -> Result<Comparison, StudyError> {
+        self.run_stoppable(store, &Arc::default(), finished, ended)
+    }
+
+    /// Runs every row as [`CompareQuery::run_into`] does, until another thread sets `stop` to true. Runs in progress
+    /// then end after at most 60 fields, and their rows are not stored. A search for the largest number of triangles
+    /// runs to its end.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run_into`], and with [`StudyError::Stopped`].
+    pub fn run_stoppable(
+        &self,
+        store: Option<&CompareStore>,
+        stop: &Arc<AtomicBool>,
+        finished: impl Fn(u64, u64) + Sync,
+        ended: impl Fn(&ComparisonRow) + Sync,
+    ) -> Result<Comparison, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&compared_pipelines)?;
@@ -178,7 +174,7 @@ impl CompareQuery {
         let held = |contender: &ComparedPipeline| store.and_then(|store| store.row(&contender.name)).cloned();
         let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
         let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
-        let progress = Progress::new((missing * runs_of_a_row) as u64, &finished);
+        let progress = Progress::new((missing * runs_of_a_row) as u64, stop, &finished);
         // No further row starts after one could not be stored.
         let is_failed = AtomicBool::new(false);
         // Rows with the same head and prediction interval share the tuning of the predictor.
@@ -191,7 +187,10 @@ impl CompareQuery {
             if is_failed.load(Ordering::Relaxed) {
                 return Ok(None);
             }
+            common.progress.check_stopped()?;
             let row = self.row(contender, &common)?;
+            // A row whose runs were stopped is not a result.
+            common.progress.check_stopped()?;
             if self.limits {
                 common.progress.step();
             }
@@ -352,6 +351,7 @@ impl CompareQuery {
             // More seeds do not help a row with failed runs or without an evaluation.
             let helps = ran.len() == trials.len() && row.was_evaluated();
             let until = self.until.filter(|_| helps);
+            common.progress.check_stopped()?;
             let more = until.map_or(0, |until| until.seeds_to_add(&row.error.mean_px, trials.len()));
             if more == 0 {
                 let shown: usize = ran.iter().map(|trial| trial.shown).sum();
