@@ -7,8 +7,7 @@ use tracking::motion::Motion;
 use tracking::predict::{PredictorConfig, Tuned, training_seed, tune};
 use tracking::tracker::TrackerModel;
 
-/// Everything that determines the result of a tuning: a hash of the motion and the tracker's, predictor's and interval's
-/// settings, the interval in picoseconds, and the seed of the tracker's noise.
+/// Inputs of a tuning: a hash of motion, tracker and predictor, the interval in picoseconds, and the seed of the noise.
 type Key = (Fingerprint, u64, u64);
 
 /// A cache of tuned predictors. Heads with equal motions and settings are tuned once for each prediction interval.
