@@ -316,6 +316,12 @@ impl Default for HashedText {
 
 impl Write for HashedText {
     fn write_str(&mut self, text: &str) -> fmt::Result {
+        // Two fields have the names that they had when hashes of reports were first published.
+        let text = match text {
+            "evaluated" => "judged",
+            "evaluated_at_m" => "judged_at_m",
+            other => other,
+        };
         self.0 = text.bytes().fold(self.0, |hash, byte| mix(hash ^ mix(u64::from(byte))));
         Ok(())
     }

@@ -66,8 +66,9 @@ impl Completed {
     /// Returns true if EDIT of a frame may begin.
     ///
     /// Four stages must be complete: SEND of the frame, TRANSFORM of the previous frame, RENDER of the second previous
-    /// drawing, and COPY of the third previous drawing. (A drawing is the picture of one eye, or the whole picture of a
-    /// mono frame.) If RENDER or COPY were not complete, these earlier drawings would still use the buffers.
+    /// drawing, and COPY of the third previous drawing. A drawing is the picture of one eye, or of a mono frame.
+    ///
+    /// If RENDER or COPY were not complete, the earlier drawings would still use the buffers.
     #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
         let first = EyeDrawing::first_of(frame, self.eyes);

@@ -1,5 +1,4 @@
-//! Constant expressions: numbers, symbols, the operators `+ - * / % << >> == != & | ^ ~ ! ( )`, and the halves `h%`,
-//! `l%`, `ha%` of a constant.
+//! Constant expressions of numbers, symbols and operators. `h%`, `l%` and `ha%` are the halves of a constant.
 
 use std::collections::BTreeMap;
 
