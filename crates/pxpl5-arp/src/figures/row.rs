@@ -112,7 +112,7 @@ impl Row {
         match self.id {
             "A8" => "No interpretation of size and distance gives such a large factor.",
             "A12" => {
-                "The paper does not print its scene, path, rings and threshold. The only fitted number is the rate of memory 1."
+                "The paper does not print its scene, path, rings of cells and threshold. Only the rate of memory 1 was fitted."
             }
             _ => "The cause is not known.",
         }
