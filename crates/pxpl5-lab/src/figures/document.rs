@@ -121,8 +121,8 @@ fn of_readings(text: &mut String, readings: &Readings) {
            eyes alone have a deviation of 0.1.\n\n\
          - *room for all*: The 4,096 bits of a pixel hold 128 regions of 32 bits. A renderer could keep fewer regions only if a rule\n  \
            of the software limited the number.\n\n\
-         - *wait*: With room for all regions, the latency of figure 4 is 6 % too long with `store`, and 1 to 2 % too long with `wait`. The text\n  \
-           of the paper allows both rules.\n\n\
+         - *wait*: With room for all regions, the latency of figure 4 is 6 % too long with the rule `store`, and 1 to 2 % too long\n  \
+           with the rule `wait`. The text of the paper allows both rules.\n\n\
          - *large, culled*: The scene `head` takes twice the printed time on the small machine. It also takes twice the printed time\n  \
            if back faces are drawn.\n\n\
          - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed 293 ms.\n  \
