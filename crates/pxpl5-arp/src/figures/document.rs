@@ -28,9 +28,9 @@ pub fn markdown(all: &Experiments, rows: &[Row]) -> String {
     size_limits(&mut text, &all.size_limits);
     let _ = writeln!(
         text,
-        "\n## E9: a straight edge through the lens\n\nThe experiment shows a vertical edge, 20 degrees to the right, through a radial lens with k1 = 0.32. The display chooses the\n\
-         texels for this lens. The edge bends by {:.1} pixels on the screen. Seen through the lens, the edge bends by {:.2} pixels.\n\
-         The edge counts as straight if it bends by less than a pixel.",
+        "\n## E9: a straight edge through the lens\n\nThe experiment shows a vertical edge, 20 degrees to the right, through a radial lens with k1 = 0.32. The display\n\
+         chooses the texels for this lens. The edge bends by {:.1} pixels on the screen. Seen through the lens, the edge bends\n\
+         by {:.2} pixels. The edge counts as straight if it bends by less than a pixel.",
         all.lens_px[0], all.lens_px[1]
     );
     pictures(&mut text);
@@ -40,9 +40,9 @@ pub fn markdown(all: &Experiments, rows: &[Row]) -> String {
 fn pictures(text: &mut String) {
     text.push_str(
         "\n## E10: Pictures\n\n\
-         The command `pxpl5 arp figures --out DIR` makes the pictures. The command also writes pictures of the effect of a lens, of\n\
-         the errors, and of the updates of the memories. The papers' pictures cannot be reproduced, because their scene is not known.\n\
-         The project's pictures show the same effects in the scene `gallery`.\n\n\
+         The command `pxpl5 arp figures --out DIR` makes the pictures. The command also writes pictures of the effect of a lens,\n\
+         of the errors, and of the updates of the memories. The papers' pictures cannot be reproduced, because their scene is\n\
+         not known. The project's pictures show the same effects in the scene `gallery`.\n\n\
          | experiment | figures of the papers | pictures |\n|---|---|---|\n",
     );
     for (experiment, figures, names) in OF_FIGURES {
@@ -51,13 +51,13 @@ fn pictures(text: &mut String) {
     text.push_str(
         "\n![Six faces](pictures/arp-faces.png)\n\nThe picture shows the six faces around the eye, all drawn at the same time. The face PosY is above NegZ. The faces\n\
          NegX, NegZ, PosX and PosZ form the middle row. The face NegY is below NegZ.\n\n\
-         ![Memories](pictures/arp-memories.png)\n\nThe colour of each pixel shows from which display memory the content of the pixel comes. Memory 0 (60 Hz) is red, memory 1 is\n\
-         yellow, memory 2 is green, and the slowest memory 3 is blue. Black pixels are tears.\n\n\
-         ![Tears](pictures/arp-tears.png)\n\nThe scene is cut into segments, and vertices are not warped. The background is white, so white gaps appear between segments\n\
-         that were drawn from different positions.\n\n\
+         ![Memories](pictures/arp-memories.png)\n\nThe colour of each pixel shows from which display memory the content of the pixel comes. Memory 0 (60 Hz) is red,\n\
+         memory 1 is yellow, memory 2 is green, and the slowest memory 3 is blue. Black pixels are tears.\n\n\
+         ![Tears](pictures/arp-tears.png)\n\nThe scene is cut into segments, and vertices are not warped. The background is white, so white gaps appear between\n\
+         segments that were drawn from different positions.\n\n\
          ![Warped](pictures/arp-warped.png)\n\nThis picture shows the same frame with warped vertices.\n\n\
-         ![Errors](pictures/arp-error.png)\n\nThe picture shows the error of each pixel, which arises because the memory was drawn from another position of the eye. The\n\
-         scale of the colours ends at an error of two pixels.\n",
+         ![Errors](pictures/arp-error.png)\n\nThe picture shows the error of each pixel, which arises because the memory was drawn from another position of the eye.\n\
+         The scale of the colours ends at an error of two pixels.\n",
     );
 }
 
@@ -70,17 +70,17 @@ fn head(text: &mut String, rows: &[Row]) {
         text,
         "# Address recalculation and priority rendering: the papers' figures\n\n\
          The command `pxpl5 arp figures --write docs/address-recalculation.md` generates this file. A test fails if the file is out of date.\n\n\
-         The experiments use the scene `gallery`, a hall with a floor of 20 m x 20 m (`walk.hall_scale=0.5`). The eye follows the path\n\
-         of the scene at 1 m/s for {EXPERIMENT_FRAMES} frames of 1/60 s. The renderer is ideal: it draws without delay. The column\n\
-         *provenance* has these values:\n\n\
+         The experiments use the scene `gallery`, a hall with a floor of 20 m x 20 m (`walk.hall_scale=0.5`). The eye follows\n\
+         the path of the scene at 1 m/s for {EXPERIMENT_FRAMES} frames of 1/60 s. The renderer is ideal: it draws without delay.\n\
+         The column *provenance* has these values:\n\n\
          - *checked*: The row is simulated, and no number was fitted.\n\n\
          - *fitted*: One number of the model was chosen so that the model reproduces this row.\n\n\
-         - *depends on the interpretation*: The row is met if the printed number lies between the smallest and the largest result of\n  \
-           all interpretations of the papers.\n\n\
+         - *depends on the interpretation*: The row is met if the printed number lies between the smallest and the largest\n  \
+           result of all interpretations of the papers.\n\n\
          - *cannot be reproduced, shape checked*: The row depends on conditions that the papers do not print.\n\n\
-         The papers do not print their scene, path, cells, threshold and resolution. For rows that depend on these conditions, only\n\
-         these properties (the *shape*) are checked: The update rates fall from memory to memory. Cutting the scene moves segments to\n\
-         slower memories and saves drawing, and the cuts cause tears.\n\n\
+         The papers do not print their scene, path, cells, threshold and resolution. For rows that depend on these conditions,\n\
+         only these properties (the *shape*) are checked: The update rates fall from memory to memory. Cutting the scene moves\n\
+         segments to slower memories and saves drawing, and the cuts cause tears.\n\n\
          The table has only rows for which the code under test could have given another value. Other numbers are listed under\n\
          [Definitions](#definitions).\n\n\
          The model meets {met} of {} rows that can be reproduced. Of the other {} rows, {shown} have the printed shape.\n\n",
@@ -137,8 +137,8 @@ pub fn missed(rows: &[Row]) -> String {
 
 fn defined(text: &mut String) {
     text.push_str(
-        "\n## Definitions\n\nThese numbers follow from printed or assumed numbers alone. No simulation could change these numbers, so they are not called\n\
-         met or missed.\n\n\
+        "\n## Definitions\n\nThese numbers follow from printed or assumed numbers alone. No simulation could change these numbers, so they are not\n\
+         called met or missed.\n\n\
          | # | what | value | unit |\n|---|---|---|---|\n",
     );
     for definition in definitions() {
@@ -160,8 +160,8 @@ fn rates(rates_hz: &[f64]) -> String {
 fn fits(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E5: table 1\n\nThe scene is `gallery`. The side of a cell (its length in metres) was fitted so that the update rate of memory 1 is as near\n\
-         as possible to 39.25 Hz. The rates of the other memories follow from this side.\n\n\
+        "\n## E5: table 1\n\nThe scene is `gallery`. The side of a cell (its length in metres) was fitted so that the update rate of memory 1 is as\n\
+         near as possible to 39.25 Hz. The rates of the other memories follow from this side.\n\n\
          | rules | side | rates of memories 0 to 3, Hz | errors of 1 (fitted), 2 and 3 |\n|---|---|---|---|\n\
          | published | | {} | |\n",
         rates(&RATES_HZ)
@@ -176,10 +176,10 @@ fn fits(text: &mut String, all: &Experiments) {
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
          The paper does not print the widths of the rings of cells, how distances are measured, the path or the hall. The table\n\
-         therefore combines each set of rules with each of four halls and paths. For each combination, the side of a cell is fitted to\n\
-         the rates of memories 1 to 3. The error is the root mean square over these three memories. For the column *left out*, each\n\
-         rate is predicted with the side of a cell that fits the other two rates best. The rules are ranked by their mean error over\n\
-         all four halls and paths, because the paper's hall and path are unknown.\n\n"
+         therefore combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
+         fitted to the rates of memories 1 to 3. The error is the root mean square over these three memories. For the column\n\
+         *left out*, each rate is predicted with the side of a cell that fits the other two rates best. The rules are ranked by\n\
+         their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
         .to_owned();
     // The table has one column for each hall and path.
     let situations = Situation::ALL.map(Situation::text).join(" | ");
@@ -212,8 +212,8 @@ fn best_of_all(all: &Interpretations) -> String {
         let Trial { cell_m, rates_hz } = best.best;
         let _ = writeln!(
             text,
-            "\nThe best single fit has the rules \"{}\" and the path \"{}\". Its cells have a side of {cell_m:.2} m, its rates are\n\
-             {} Hz, and its error is {:.1} %.",
+            "\nThe best single fit has the rules \"{}\" and the path \"{}\". Its cells have a side of {cell_m:.2} m, its rates are {} Hz,\n\
+             and its error is {:.1} %.",
             best.rules.text(),
             best.situation.text(),
             rates(&rates_hz),
@@ -221,8 +221,8 @@ fn best_of_all(all: &Interpretations) -> String {
         );
     }
     text.push_str(
-        "\nEach row of the next table leaves out one rate. The rules, the path, the hall and the side of a cell are chosen to fit the\n\
-         other two rates alone.\n\n\
+        "\nEach row of the next table leaves out one rate. The rules, the path, the hall and the side of a cell are chosen to fit\n\
+         the other two rates alone.\n\n\
          | memory | predicted | error | the others' choice |\n|---|---|---|---|\n",
     );
     for LeftOutRate { memory, rules, situation, trial, error_percent } in &all.left_out {
@@ -248,15 +248,15 @@ fn chosen(all: &Interpretations) -> String {
     });
     format!(
         "\nThe project uses the rules **{}**. {place} These are the reasons:\n\n\
-         - *Rings that double*: The paper prints update rates of 60, 30 and 15 Hz, and so on (statement A5). The picture of an object\n  \
-           at twice the distance stays correct for twice the time. The cells of each memory therefore begin at twice the distance of\n  \
-           the cells of the memory before.\n\n\
+         - *Rings that double*: The paper prints update rates of 60, 30 and 15 Hz, and so on (statement A5). The picture of an\n  \
+           object at twice the distance stays correct for twice the time. The cells of each memory therefore begin at twice the\n  \
+           distance of the cells of the memory before.\n\n\
          - *No cascade*: The cascade is a derived rule for warping, and the paper gives table 1 before it introduces warping.\n\n\
          - *To the block's border*: If distances are measured to occupied cells instead, the rates fit better for rings of equal\n  \
            width, and worse for rings whose widths double. The parameter `priority.to_held_cells` selects one of the two rules.\n\n\
-         - *Reliability*: Three rates are little data. A rate is often 60 Hz divided by a whole number, so it stays constant over a\n  \
-           range of sides of a cell. Two rates may therefore predict the third rate badly, as the table shows. If the rules are chosen\n  \
-           by the rates of memories 2 and 3, the predicted rate of memory 1 equals the rate of memory 0.\n",
+         - *Reliability*: Three rates are little data. A rate is often 60 Hz divided by a whole number, so it stays constant\n  \
+           over a range of sides of a cell. Two rates may therefore predict the third rate badly, as the table shows. If the\n  \
+           rules are chosen by the rates of memories 2 and 3, the predicted rate of memory 1 equals the rate of memory 0.\n",
         Rules::USUAL.text()
     )
 }
@@ -265,12 +265,13 @@ fn thresholds(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
         "\n## The threshold in pixels\n\n\
-         Table 1 determines only the product of threshold and side of a cell, which is {:.2} degrees x metres. Two statements of the\n\
-         papers limit the threshold. By statement A7, the threshold is the distance between neighbouring pixels of the display memory\n\
-         or of the display. By statement A15, tears are a few pixels wide, which the project interprets as 2 to 5 pixels.\n\n\
-         If each memory is shown as soon as it is due, a tear is as wide as the threshold. If the slower memory is shown one frame\n\
-         late, the tear is wider by the movement of the content in one frame. A pixel is 60 degrees / 640, and a texel is 90 degrees /\n\
-         512.\n\n\
+         Table 1 determines only the product of threshold and side of a cell, which is {:.2} degrees x metres. Two statements of\n\
+         the papers limit the threshold. By statement A7, the threshold is the distance between neighbouring pixels of the\n\
+         display memory or of the display. By statement A15, tears are a few pixels wide, which the project interprets as 2 to 5\n\
+         pixels.\n\n\
+         If each memory is shown as soon as it is due, a tear is as wide as the threshold. If the slower memory is shown one\n\
+         frame late, the tear is wider by the movement of the content in one frame. A pixel is 60 degrees / 640, and a texel is\n\
+         90 degrees / 512.\n\n\
          | threshold | degrees | side | hall of 8 cells | tear, shown at once | tear, a frame late |\n|---|---|---|---|---|---|\n",
         all.fits[0].cell_m * address_recalculation::priority::PriorityTiming::PAPERS.theta_deg
     );
@@ -282,10 +283,10 @@ fn thresholds(text: &mut String, all: &Experiments) {
         );
     }
     text.push_str(
-        "\nThe project uses a threshold of 2 texels, which is one texel of the machine's faces of 256 texels. The project compared whole\n\
-         texels of faces with 128, 256, 384 and 512 texels. The chosen threshold is the widest of these whose tears are 2 to 5 pixels\n\
-         wide. With this threshold, the hall has a side of 20 m, and eight cells lie along a side. The objects in these cells then\n\
-         have about as many sections as table 2 prints.\n",
+        "\nThe project uses a threshold of 2 texels, which is one texel of the machine's faces of 256 texels. The project compared\n\
+         whole texels of faces with 128, 256, 384 and 512 texels. The chosen threshold is the widest of these whose tears are 2\n\
+         to 5 pixels wide. With this threshold, the hall has a side of 20 m, and eight cells lie along a side. The objects in\n\
+         these cells then have about as many sections as table 2 prints.\n",
     );
 }
 
@@ -306,12 +307,12 @@ fn conservation(text: &mut String, all: &Experiments) {
         text,
         "\n## Table 2: what the conservation of sections demands\n\n\
          A *section* is the part of an object in one cell. Segmentation cuts the objects into sections but does not change their\n\
-         number. Without segmentation, each section is in the same memory as with segmentation, or in a faster memory. Two constraints\n\
-         follow:\n\n\
-         1. The columns with and without segmentation have the same sum. The paper prints the sums {} and {}, so there are {:.0} more\n   \
-            sections without segmentation. The model has the sums {:.0} and {:.0}.\n\n\
-         2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. The printed\n   \
-            numbers and the numbers of the model both satisfy this constraint:\n\n\
+         number. Without segmentation, each section is in the same memory as with segmentation, or in a faster memory. Two\n\
+         constraints follow:\n\n\
+         1. The columns with and without segmentation have the same sum. The paper prints the sums {} and {}, so there are {:.0}\n   \
+            more sections without segmentation. The model has the sums {:.0} and {:.0}.\n\n\
+         2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. The\n   \
+            printed numbers and the numbers of the model both satisfy this constraint:\n\n\
          | memories | printed, cut | printed, uncut | ours, cut | ours, uncut |\n|---|---|---|---|---|\n",
         cut.iter().sum::<f64>(),
         uncut.iter().sum::<f64>(),
@@ -327,11 +328,11 @@ fn conservation(text: &mut String, all: &Experiments) {
     }
     let _ = write!(
         text,
-        "\nThe printed numbers violate the first constraint, so the two columns do not describe the same set of sections. The printed\n\
-         saving of draws is 31.3 %. One part of this saving comes from {:.0} missing sections. The other part is the saving for each\n\
-         section. With segmentation, a section needs {with:.1} draws per second. Without segmentation, a section needs {without:.1},\n\
-         so the saving is {:.1} %. Three of the four numbers of a column are independent, because the sum of the column determines the\n\
-         fourth number.\n",
+        "\nThe printed numbers violate the first constraint, so the two columns do not describe the same set of sections. The\n\
+         printed saving of draws is 31.3 %. One part of this saving comes from {:.0} missing sections. The other part is the\n\
+         saving for each section. With segmentation, a section needs {with:.1} draws per second. Without segmentation, a section\n\
+         needs {without:.1}, so the saving is {:.1} %. Three of the four numbers of a column are independent, because the sum of\n\
+         the column determines the fourth number.\n",
         uncut.iter().sum::<f64>() - cut.iter().sum::<f64>(),
         100.0 * (1.0 - with / without)
     );
@@ -377,9 +378,9 @@ fn texels(width: f64) -> String {
 fn slowed(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E8: a renderer that is too slow\n\nThe experiment uses the walk \"cut, torn\" for 1,800 frames. The renderer draws due memories in the order of their numbers. The\n\
-         display chooses the texel of each pixel at scan-out, so the speed of the renderer does not affect the error for a rotation of\n\
-         the head.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
+        "\n## E8: a renderer that is too slow\n\nThe experiment uses the walk \"cut, torn\" for 1,800 frames. The renderer draws due memories in the order of their\n\
+         numbers. The display chooses the texel of each pixel at scan-out, so the speed of the renderer does not affect the\n\
+         error for a rotation of the head.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
     );
     for SlowRendererResult { triangles_per_s: rate, rates_hz, missed } in &all.slowed {
         let rates: Vec<String> = rates_hz.iter().map(|rate| format!("{rate:.1}")).collect();
@@ -391,8 +392,8 @@ fn slowed(text: &mut String, all: &Experiments) {
 fn sizes(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E3: size against translation\n\nThe centre of an object is 10 m away, and the eye approaches the object at 1 m/s. The table gives the time in ms for which\n\
-         the picture of the object stays correct, for a threshold of 90/512 degrees.\n\n\
+        "\n## E3: size against translation\n\nThe centre of an object is 10 m away, and the eye approaches the object at 1 m/s. The table gives the time in ms for\n\
+         which the picture of the object stays correct, for a threshold of 90/512 degrees.\n\n\
          | size/distance | translation | size, disc | size, sphere | decides (disc, sphere) |\n|---|---|---|---|---|\n"
     );
     for row in &all.sizes {
@@ -421,17 +422,19 @@ fn number(value: f64) -> String {
 /// valid (statement A8).
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
-        "\nStatement A8, \"about ten times the distance\", leaves two questions open. Which angle describes the size of an object, and by\n\
-         how much may this angle change? Is the distance measured to the centre of the object or to its nearest point? The table is\n\
-         for a sphere whose centre moves. A larger sphere stays correct for a shorter time because of its size than because of its\n\
-         movement. The table gives the size at which the two times are equal.\n\n\
+        "\nStatement A8, \"about ten times the distance\", leaves two questions open. One question is which angle describes the size\n\
+         of an object, and by how much this angle may change. The other question is whether the distance is measured to the\n\
+         centre of the object or to its nearest point. The table is for a sphere whose centre moves. A larger sphere stays\n\
+         correct for a shorter time because of its size than because of its movement. The table gives the size at which the two\n\
+         times are equal.\n\n\
          | angle of the size | diameter over the distance of the middle | over that of the nearest point |\n|---|---|---|\n",
     );
     for SizeLimit { angle, of_middle, of_nearest, .. } in limits {
         let _ = writeln!(text, "| {angle} | {of_middle:.2} | {of_nearest:.2} |");
     }
     text.push_str(
-        "\nThe project uses the distance of the nearest point and the angle of the radius. The patent US5841439 names a second angle for the\n\
-         size, without its value. A second angle of 1.5 times theta would give the printed factor of ten. For discs, the size never decides.\n",
+        "\nThe project uses the distance of the nearest point and the angle of the radius. The patent US5841439 names a second\n\
+         angle for the size, without its value. A second angle of 1.5 times theta would give the printed factor of ten. For\n\
+         discs, the size never decides.\n",
     );
 }
