@@ -112,7 +112,8 @@ fn of_readings(text: &mut String, readings: &Readings) {
     fits.iter().take(BEST).for_each(|fit| text.push_str(&fitted(fit)));
     let _ = write!(
         text,
-        "\nThe project uses the interpretation **{}**, which has rank {} in the list. The most likely interpretation is {:.2} times as likely.\n\
+        "\nThe project uses the interpretation **{}**, which has rank {} in the list. The most likely interpretation is {:.2} times as likely as\n\
+         this interpretation.\n\
          The number of interpretations that equal the first one within the printed digits ({:.2} % of a mean error) is {}.\n\n\
          These reasons decide the choice:\n\n\
          - *each eye, whole fields*: The papers print the latencies of application scenes in fields. Equal numbers of latencies\n  \
