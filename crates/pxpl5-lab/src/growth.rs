@@ -196,7 +196,7 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
          computing time of the simulation, the fastest of three runs on one computer.\n\n\
          ## Triangles, on 50 GPs and 5 renderers\n\n\
          For 1,000 triangles and more, the host time grows with the power {:.2} of the number of triangles. From 100,000\n\
-         triangles, the power is {:.2}. Below 100,000 triangles, the tokens of 40 regions cost more host time than the\n\
+         triangles, the power is {:.2}. With fewer than 100,000 triangles, the tokens of 40 regions cost more host time than the\n\
          triangles, because every GP receives and sends each token. From 100,000 triangles, the simulated latency grows with the\n\
          power {:.2} of the number of triangles. Below 100,000 triangles, COPY is the bottleneck.\n\n",
         power(triangles, 1_000, |p| p.host_ms),

@@ -137,8 +137,8 @@ pub fn missed(rows: &[Row]) -> String {
 
 fn defined(text: &mut String) {
     text.push_str(
-        "\n## Definitions\n\nThese numbers follow from printed or assumed numbers alone. No simulation could change these numbers, so they are not\n\
-         called met or missed.\n\n\
+        "\n## Definitions\n\nThe numbers of this table follow from printed or assumed numbers alone. No simulation could change these numbers, so\n\
+         they are not called met or missed.\n\n\
          | # | what | value | unit |\n|---|---|---|---|\n",
     );
     for definition in definitions() {
@@ -161,7 +161,7 @@ fn fits(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
         "\n## E5: table 1\n\nThe scene is `gallery`. The side of a cell (its length in metres) was fitted so that the update rate of memory 1 is as\n\
-         near as possible to 39.25 Hz. The rates of the other memories follow from this side.\n\n\
+         near as possible to 39.25 Hz. The side of a cell then also determines the rates of the other memories.\n\n\
          | rules | side | rates of memories 0 to 3, Hz | errors of 1 (fitted), 2 and 3 |\n|---|---|---|---|\n\
          | published | | {} | |\n",
         rates(&RATES_HZ)
@@ -248,9 +248,9 @@ fn chosen(all: &Interpretations) -> String {
     });
     format!(
         "\nThe project uses the rules **{}**. {place} These are the reasons:\n\n\
-         - *Rings that double*: The paper prints update rates of 60, 30 and 15 Hz, and so on (statement A5). The picture of an\n  \
-           object at twice the distance stays correct for twice the time. The cells of each memory therefore begin at twice the\n  \
-           distance of the cells of the memory before.\n\n\
+         - *Rings that double*: The paper prints update rates of 60, 30 and 15 Hz, and so on (statement A5). If an object is\n  \
+           twice as far away, its picture stays correct for twice the time. The cells of each memory therefore begin at twice\n  \
+           the distance of the cells of the memory before.\n\n\
          - *No cascade*: The cascade is a derived rule for warping, and the paper gives table 1 before it introduces warping.\n\n\
          - *To the block's border*: If distances are measured to occupied cells instead, the rates fit better for rings of equal\n  \
            width, and worse for rings whose widths double. The parameter `priority.to_held_cells` selects one of the two rules.\n\n\

@@ -36,7 +36,7 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
         text,
         "\n## Times of primitives from the code instead\n\n\
          The timing table takes 21.7 us for a triangle of optimised PPHIGS, which is the published rate. For a triangle of\n\
-         Slats, the table takes 30.0 us in 1994 and 55.8 us in 1995. These two times were fitted to figures 12 and 14.\n\n\
+         Slats, the table takes 30.0 us in 1994 and 55.8 us in 1995. The two times of Slats were fitted to figures 12 and 14.\n\n\
          With `machine.times = \"code\"`, the simulator uses the times that the project's own i860 code needs. Each time is a mean\n\
          over the application scenes, and no time is fitted. The page docs/gp-timing.md describes the measurement of these\n\
          times. The table below lists the figures that differ from the figures with the timing table, at the transaction level.\n\n\
@@ -65,9 +65,9 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
          code cannot compute counts with an error of 100 %. The limits of Slats change most, because the times of the project's\n\
          code differ from the fitted times. No triangle of these figures is clipped.\n\n\
          The timing table with published and fitted times stays the default. Two of its three times follow from the limits of\n\
-         triangles in the papers. These limits depend on the code of the papers, which is not available. The project's code is\n\
-         different code for the same processor, and some rules for waits of the i860 (freezes) and for memory are assumed. The\n\
-         comparison shows how well the project's code reproduces the figures without any fitted number.\n",
+         triangles in the papers. The published limits depend on the code of the papers, which is not available. The project's\n\
+         code is different code for the same processor, and some rules for waits of the i860 (freezes) and for memory are\n\
+         assumed. The comparison shows how well the project's code reproduces the figures without any fitted number.\n",
         mean_error_percent(rows),
         mean_error_percent(of_code),
     );
@@ -127,7 +127,8 @@ fn of_readings(text: &mut String, readings: &Readings) {
          - *large, culled*: The scene `head` takes twice the printed time on the small machine. It also takes twice the printed\n  \
            time if back faces are drawn.\n\n\
          - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed\n  \
-           293 ms. No paper states this rule. The rule was chosen for figures 16b and 16c, and it affects no other figure.\n\n\
+           293 ms. No paper states this rule. The rule of bins for one eye was chosen for figures 16b and 16c, and it affects no\n  \
+           other figure.\n\n\
          Each row of the next table leaves out one figure. The interpretation is chosen by the other figures and then predicts\n\
          the figure that was left out.\n\n\
          | # | error | the others' choice |\n|---|---|---|\n",
@@ -169,10 +170,10 @@ fn of_application(text: &mut String, times: &[ApplicationTime]) {
          frame. No paper prints this time of the application, and the presets set the time to zero. The parameters\n\
          `host.application_ns` and `host.application_jitter_ns` set the time and its spread.\n\n\
          In the table, the mean time of the application is 0 to 40 ms, and its spread is 0 to 30 ms. A Unix host polls its\n\
-         serial lines every 30 ms (TR94). The limits of 40 and 30 ms are assumed. The table gives the mean latency in fields at\n\
-         the analytic level, with the deviation in brackets. No number is fitted. If the application always needs less than the\n\
-         33.4 ms between two frames, it hardly changes the latency. The reason is that the host works on the next frame while\n\
-         the machine draws the current frame.\n\n\
+         serial lines every 30 ms (TR94). The largest mean (40 ms) and the largest spread (30 ms) are assumed. The table gives\n\
+         the mean latency in fields at the analytic level, with the deviation in brackets. No number is fitted. If the\n\
+         application always needs less than the 33.4 ms between two frames, it hardly changes the latency. The reason is that\n\
+         the host works on the next frame while the machine draws the current frame.\n\n\
          | mean of the application | evenly spread by | 7 | 7b | 7c |\n|---|---|---|---|---|\n",
     );
     let cells = |figures: &[Spread]| {

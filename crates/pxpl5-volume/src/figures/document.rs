@@ -169,9 +169,9 @@ fn pictures(text: &mut String) {
         "\n## Pictures\n\n\
          ![Figures 4 to 12](pictures/volumetric-figures.png)\n\n\
          The picture shows figures 4 to 12 of the paper, row by row. The paper has no figures 1 to 3. The command `pxpl5 volume\n\
-         figures --out DIR` draws the figures from values that the model computes for every pixel. The first row shows a slice\n\
-         volume, its orientation and a tapered clip. The second row shows a biased evaluation, a hyperbola and a sliver. The\n\
-         third row shows bin planes, outcodes and a tile query.\n\n\
+         figures --out DIR` draws the figures from values that the model computes for every pixel. The first row of the picture\n\
+         shows a slice volume, its orientation and a tapered clip. The second row shows a biased evaluation, a hyperbola and a\n\
+         sliver. The third row shows bin planes, outcodes and a tile query.\n\n\
          ![Clips and projections](pictures/volumetric-variants.png)\n\n\
          The picture shows the Mig for a viewer 40 degrees to the right and 25 degrees above. All views have the same exposure.\n\
          The command `pxpl5 volume compare --scene mig --out DIR` makes the picture. From top to bottom, the rows are prism,\n\
