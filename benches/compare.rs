@@ -29,6 +29,8 @@ fn query() -> CompareQuery {
         only: Vec::new(),
         seeds: vec![1],
         limits: false,
+        causes: false,
+        predictors: false,
         pictures: false,
         confidence: 0.95,
         until: None,

@@ -26,5 +26,7 @@ def heaviest_first(frame: pxpl5.PolicyFrame) -> Answer:
 for policy in (in_turn, heaviest_first):
     pipeline = pxpl5.PolicyPipeline(policy)
     outcome = pxpl5.Experiment(pipeline, "mig", machine="small-hmd", fields=120, pixels="off").run()
-    render = [row["end_ps"] - row["begin_ps"] for row in outcome.stages.rows() if row["stage"] == "render"]
+    stages = [row for row in outcome.stages if row["stage"] == "render"]
+    # A stage in progress at the end of the run has no end.
+    render = [row["end_ps"] - row["begin_ps"] for row in stages if row["end_ps"] is not None]
     print(f"{policy.__name__}: {outcome.latency_ms.mean:.2f} ms, of it RENDER {sum(render) / len(render) / 1e9:.3f} ms")

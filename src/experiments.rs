@@ -84,7 +84,7 @@ pub use pxpl5_run::{PipelineEntry, PipelineSettings, Registry};
 
 /// ```
 /// use pxpl5::firmware::{CopyTarget, Layout, PictureNumber, Shading, ViewNumber};
-/// use pxpl5::{Aim, ConfigError, Machine, PictureTimes, Record, Setup, Source, Time, prelude::*};
+/// use pxpl5::{Aim, Machine, PictureTimes, Record, SettingError, Setup, Source, Time, prelude::*};
 /// use std::collections::BTreeMap;
 ///
 /// // A pipeline of one's own. This one loads the firmware of another pipeline.
@@ -104,7 +104,7 @@ pub use pxpl5_run::{PipelineEntry, PipelineSettings, Registry};
 ///     fn shading(&self) -> Shading {
 ///         self.0.shading()
 ///     }
-///     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+///     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
 ///         self.0.load(machine, setup)
 ///     }
 /// }
@@ -238,7 +238,7 @@ pub use pxpl5_run::{Cause, Fingerprint};
 
 /// ```
 /// use pxpl5::firmware::{RegionId, Shading};
-/// use pxpl5::{PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy, prelude::*};
+/// use pxpl5::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy, SettingError, prelude::*};
 ///
 /// /// Draws region after region, with one renderer after the other.
 /// #[derive(Debug)]
@@ -262,11 +262,11 @@ pub use pxpl5_run::{Cause, Fingerprint};
 ///
 /// // A frame checks an assignment before it is drawn.
 /// let frame = PolicyFrame { frame: Default::default(), time: Default::default(), columns: 1, primitives: vec![9], renderers: 5 };
-/// let error: PolicyError = frame.check(&[(RegionId(0), 5)]).expect_err("renderers 0 to 4");
+/// let error: SettingError = frame.check(&[(RegionId(0), 5)]).expect_err("renderers 0 to 4");
 /// println!("{error}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub use pxpl5_run::{PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy};
+pub use pxpl5_run::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy};
 
 /// ```
 /// use pxpl5::{HeadPlace, prelude::*};
@@ -278,17 +278,6 @@ pub use pxpl5_run::{PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment, 
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub use pxpl5_run::HeadPlace;
-
-/// ```
-/// use pxpl5::{HeadError, prelude::*};
-///
-/// // A distance that is behind the viewer is refused.
-/// let head = Head::new(std::sync::Arc::new(from_fn(|_| Pose::IDENTITY)), TrackerConfig::ideal(), PredictorKind::None, 1);
-/// let error: HeadError = head?.evaluated_at(-1.0).expect_err("behind the viewer");
-/// println!("{error}");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub use pxpl5_run::HeadError;
 
 /// ```
 /// use pxpl5::{Estimator, HeadViews, SampledPose, prelude::*};

@@ -159,7 +159,7 @@ pub use pxpl5_volume as volume;
 pub use pxpl5_wire::display;
 pub use tracking;
 
-/// Further parts of an outcome: faces around the head, updates, and texts about boards.
+/// Further parts of an outcome: cube faces around the viewer's head, updates, and texts about boards.
 pub mod run {
     pub use pxpl5_run::{
         ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, FrameStarts, KEPT_SAMPLES,
@@ -207,8 +207,8 @@ pub mod firmware {
 pub mod device {
     pub use pxpl5_machine::{DEADLOCK_TICKS, HostLine, PixelWorker, SameThread};
     pub use pxpl5_wire::display::{
-        BufferReceipt, Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput,
-        DoubleBuffer, Light, LightTimes, Scan, Surface,
+        BufferReceipt, Counter, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, DoubleBuffer,
+        LightTimes, PixelLight, ScanOrder, Surface,
     };
 }
 

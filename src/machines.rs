@@ -10,18 +10,9 @@
 /// // Every parameter has a unit, a provenance and a source.
 /// let word: Option<Parameter> = machine.parameters().into_iter().find(|parameter| parameter.path == "ring.word_ns");
 /// assert!(word.is_some_and(|word| word.info.unit == "ns" && word.info.source.starts_with("TR94")));
-/// # Ok::<(), pxpl5::ConfigError>(())
+/// # Ok::<(), pxpl5::SettingError>(())
 /// ```
 pub use pxpl5_machine::MachineConfig;
-
-/// ```
-/// use pxpl5::{ConfigError, MachineConfig};
-///
-/// // An error names the nearest valid name or value.
-/// let error: ConfigError = MachineConfig::preset("smal-hmd").expect_err("no machine");
-/// assert!(error.to_string().contains("did you mean `small-hmd`?"));
-/// ```
-pub use pxpl5_machine::ConfigError;
 
 /// ```
 /// use pxpl5::prelude::*;
@@ -44,11 +35,11 @@ pub use pxpl5_machine::ConfigError;
 pub use pxpl5_machine::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};
 
 /// ```
-/// use pxpl5::{Board, TextError};
+/// use pxpl5::{Board, SettingError};
 ///
 /// assert_eq!(Board::Renderer(3).to_string(), "renderer 3");
 /// assert_eq!("gp 12".parse(), Ok(Board::Gp(12)));
-/// let error: TextError = "gpu 1".parse::<Board>().expect_err("no board");
+/// let error: SettingError = "gpu 1".parse::<Board>().expect_err("no board");
 /// println!("{error}");
 /// ```
 pub use pxpl5_machine::Board;
@@ -124,15 +115,27 @@ pub use pxpl5_machine::Optimization;
 pub use pxpl5_sim::parameters::{ParameterInfo, ParameterTable, Provenance, Value};
 
 /// ```
-/// use pxpl5::{Board, Level, NameError, TextError};
+/// use pxpl5::{Board, ExperimentFile, Level, MachineConfig, SettingError, SettingErrorKind};
 ///
+/// // An error names the file, the line, the key, the expected value and the found value.
+/// let key: SettingError = ExperimentFile::parse("pipelin = \"slats\"\n", "mine.toml").expect_err("no such key");
+/// assert_eq!(key.to_string(), "mine.toml, line 1: there is no key `pipelin`; did you mean `pipeline`?");
 /// // An unknown name has a nearest valid name. A text in a wrong form has an expected form.
-/// let name: NameError = "cicle".parse::<Level>().expect_err("no level");
-/// assert_eq!(name.nearest(), "cycle");
-/// let text: TextError = "gpu".parse::<Board>().expect_err("no board");
+/// let name: SettingError = "cicle".parse::<Level>().expect_err("no level");
+/// assert_eq!((name.kind, &*name.nearest), (SettingErrorKind::UnknownName, "cycle"));
+/// let text: SettingError = "gpu".parse::<Board>().expect_err("no board");
 /// assert!(text.expected.starts_with("host, ring"));
 /// ```
-pub use pxpl5_sim::parameters::{NameError, TextError};
+pub use pxpl5_sim::parameters::{SettingError, SettingErrorKind};
+
+/// ```
+/// use pxpl5::{FileError, FileErrorKind, scene};
+///
+/// // An error of a file names the file, the position in the file, the expected and the found content.
+/// let error: FileError = scene::from_bytes(b"v 0 0 x\n", scene::Format::Obj, "a.obj").expect_err("no number");
+/// assert_eq!((error.kind, &*error.place), (FileErrorKind::Syntax, "line 1"));
+/// ```
+pub use pxpl5_sim::parameters::{FileError, FileErrorKind};
 
 pub use pxpl5_machine::{PRESETS, Parameter};
 
@@ -143,7 +146,7 @@ pub use pxpl5_machine::{PRESETS, Parameter};
 /// let preset: Preset = "small-hmd".parse()?;
 /// assert!(PRESETS.contains(&preset) && preset.about.contains("TR94"));
 /// assert_eq!("scheduled".parse(), Ok(CodeVersion::Scheduled));
-/// # Ok::<(), pxpl5::NameError>(())
+/// # Ok::<(), pxpl5::SettingError>(())
 /// ```
 pub use pxpl5_machine::Preset;
 

@@ -55,6 +55,8 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
         only,
         seeds: vec![1],
         limits: false,
+        causes: false,
+        predictors: false,
         pictures: false,
         confidence: 0.95,
         until: None,

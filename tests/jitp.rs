@@ -424,6 +424,8 @@ fn comparison(fields: u64) -> CompareQuery {
         only: Vec::new(),
         seeds: vec![1],
         limits: false,
+        causes: false,
+        predictors: false,
         pictures: false,
         confidence: 0.95,
         until: None,

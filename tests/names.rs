@@ -7,8 +7,8 @@ use pxpl5::tracking::motion::{Axes, Columns, End};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::{
     Aim, Board, Cause, Code, CodeVersion, CopySchedule, DisplayEntry, Every, Eye, Fingerprint, FinishedRegions,
-    HeadPlace, Keep, Level, Measure, NameError, Optimization, PRESETS, PipelineEntry, Pixels, Preset, Provenance,
-    QUANTITIES, Raster, RegionBinning, Registry, Reprojection, Resource, SlatsLighting, TestScene, TraceHash, Warp,
+    HeadPlace, Keep, Level, Measure, Optimization, PRESETS, PipelineEntry, Pixels, Preset, Provenance, QUANTITIES,
+    Raster, RegionBinning, Registry, Reprojection, Resource, SettingError, SlatsLighting, TestScene, TraceHash, Warp,
 };
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -38,7 +38,7 @@ where
 /// Checks names of a list of pairs: the name in the list is the text of the value.
 fn listed<T>(pairs: impl IntoIterator<Item = (&'static str, T)>)
 where
-    T: Display + FromStr<Err = NameError> + PartialEq + Debug,
+    T: Display + FromStr<Err = SettingError> + PartialEq + Debug,
 {
     let pairs: Vec<_> = pairs.into_iter().collect();
     pairs.iter().for_each(|(name, value)| assert_eq!(*name, value.to_string()));
@@ -109,7 +109,10 @@ fn every_pipeline_and_display_of_the_papers_is_found_by_its_name() {
     let error = "slat".parse::<PipelineEntry>().map(|entry| entry.name).expect_err("no pipeline").to_string();
     assert_eq!(error, "there is no pipeline `slat`; did you mean `slats`?");
     let error = registry.display("ntcs").map(|entry| entry.name).expect_err("no display").to_string();
-    assert_eq!(error, "expected ntsc, hires, oled-90, lcd-120, panel or arp, found `ntcs`");
+    assert_eq!(
+        error,
+        "there is no display `ntcs`; did you mean `ntsc`? (expected ntsc, hires, oled-90, lcd-120, panel or arp)"
+    );
 }
 
 /// Names of volumetric displays.
@@ -130,5 +133,5 @@ fn a_preset_is_a_machine() {
     let preset: Preset = "slats-1995".parse().expect("listed");
     assert_eq!((preset.name, preset.to_string().as_str()), ("slats-1995", "slats-1995"));
     let error = "slats1995".parse::<Preset>().expect_err("not listed");
-    assert_eq!(error.nearest(), "slats-1995");
+    assert_eq!(&*error.nearest, "slats-1995");
 }

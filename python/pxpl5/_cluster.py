@@ -23,10 +23,11 @@ import queue
 import time
 import uuid
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from os import fspath
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Protocol
 
 from . import _native
 from ._errors import SweepError
@@ -177,24 +178,56 @@ class Chunks:
         return chunk
 
 
+class Future(Protocol):
+    """The part of a future of Dask that is used here."""
+
+    @property
+    def key(self) -> object: ...
+
+    @property
+    def status(self) -> str | None: ...
+
+    def exception(self) -> BaseException: ...
+
+    def add_done_callback(self, told: Callable[[Future], None], /) -> None: ...
+
+
+class Submitting(Protocol):
+    """The part of a client of Dask that is used here. Dask has no types for it."""
+
+    def submit(
+        self, work: Callable[[str, str, list[int], str, float], None], /, *arguments: object, key: str
+    ) -> Future: ...
+
+    def cancel(self, futures: list[Future], /) -> object: ...
+
+    def nthreads(self) -> dict[str, int]: ...
+
+    def subscribe_topic(self, topic: str, heard: Callable[[tuple[float, bytes]], None], /) -> object: ...
+
+    def unsubscribe_topic(self, topic: str, /) -> object: ...
+
+
 class Cluster:
     """A running sweep on a cluster."""
 
-    def __init__(self, space: SweepSpace, store: _native.Store, client: Client, reporter: Any) -> None:
+    def __init__(
+        self, space: SweepSpace, store: _native.Store, client: Client, told: Callable[[int, int], object] | None
+    ) -> None:
         self._space = space
         self._store = store
-        self._client: Any = client
-        self._told = reporter
+        self._client: Submitting = client
+        self._told = told
         missing = store.missing()
         self._missing = set(missing)
         self._chunks = Chunks(space, missing)
         #: Chunks that Dask gave up. They are assigned before other chunks.
         self._again: list[list[int]] = []
-        self._given: dict[Any, tuple[Any, list[int]]] = {}
+        self._given: dict[object, tuple[Future, list[int]]] = {}
         self._made = 0
         self._lost_alone: dict[int, int] = {}
         #: Messages with rows, and finished futures, in the order of their arrival.
-        self._news: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._news: queue.SimpleQueue[bytes | Future] = queue.SimpleQueue()
         self._threads = 1
         self._looked_s = float("-inf")
         self._topic = f"pxpl5-{uuid.uuid4().hex}"
@@ -243,7 +276,7 @@ class Cluster:
             self._threads = sum(self._client.nthreads().values()) or self._threads
         return self._threads
 
-    def _take(self, news: Any) -> None:
+    def _take(self, news: bytes | Future) -> None:
         if isinstance(news, bytes):
             self._keep(unpacked(news))
         else:
@@ -257,7 +290,7 @@ class Cluster:
         if self._told is not None:
             self._told(self._space.points - len(self._missing), self._space.points)
 
-    def _end(self, future: Any) -> None:
+    def _end(self, future: Future) -> None:
         """Handles the end of a chunk. Its rows have arrived before. Points without a row are assigned again."""
         from distributed import KilledWorker
 

@@ -26,7 +26,7 @@ class AssemblyError(Pxpl5Error, ValueError):
 
 
 class SweepError(Pxpl5Error, OSError):
-    """A folder of a sweep that cannot be used, is in use, or holds another sweep."""
+    """A folder of a sweep or a comparison that cannot be used, is in use, or holds another one."""
 
 
 class DiscardedError(Pxpl5Error, RuntimeError):

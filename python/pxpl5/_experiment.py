@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from . import _html, _native, _pickle
 from ._checks import Strict, choice, names, optional, whole
@@ -21,6 +21,10 @@ from ._stepper import Stepper
 from ._tables import table_of
 from ._toml import toml_of
 from ._types import PolicyFrame
+
+if TYPE_CHECKING:
+    from ._rows import ParameterRow, WhatIfRow
+    from ._saved import ExperimentState
 
 #: A function that takes a frame and returns a pair (region, renderer) for every region, in the order of sending.
 Policy = Callable[[PolicyFrame], Sequence[tuple[int, int]]]
@@ -303,7 +307,7 @@ class Experiment(Strict):
             raise SettingError(f"first: expected 0 to {self.fields - 2}, found {start}")
         return self.fields - 1 - start
 
-    def what_if(self) -> Table:
+    def what_if(self) -> Table[WhatIfRow]:
         """Returns the effect of 10 % more of each resource of the machine: a row for each resource with latency and rate before and after.
 
         Raises the exceptions of :meth:`run`.
@@ -328,7 +332,7 @@ class Experiment(Strict):
             )
         return table_of(flat, WHAT_IF_DEFINITIONS)
 
-    def measure(self) -> dict[str, float | None]:
+    def measure(self) -> dict[QuantityName, float | None]:
         """Returns the quantities of the setting ``measure``. The level of the experiment can be ``analytic``.
 
         A quantity without a value is None. Raises the exceptions of :meth:`run`.
@@ -355,7 +359,7 @@ class Experiment(Strict):
         """All parameters of the experiment: the machine with the changes of the pipeline, the tracker and the predictor."""
         return [Parameter(**entry) for entry in self._native.parameters()]
 
-    def parameter_table(self) -> Table:
+    def parameter_table(self) -> Table[ParameterRow]:
         """Returns :attr:`parameters` as a table: path, value, unit, provenance, low, high, source, read_only."""
         return parameter_table(self.parameters)
 
@@ -366,10 +370,10 @@ class Experiment(Strict):
         """
         return self._made.settings.text()
 
-    def _plain_state(self) -> dict[str, object] | None:
+    def _plain_state(self) -> ExperimentState | None:
         """Returns the experiment as plain data, or None if the experiment has a Python function."""
         made = self._made
-        state: dict[str, object] = {"settings": self.settings(), "phong": made.phong}
+        state: ExperimentState = {"settings": self.settings(), "phong": made.phong}
         if made.policy is not None:
             return None
         if made.motion is not None:
@@ -377,19 +381,17 @@ class Experiment(Strict):
             if restore is _pickle.callable_motion:
                 return None
             text = arguments[0]
-            plain = [text.decode("latin-1"), *arguments[1:]] if isinstance(text, bytes) else list(arguments)
-            state["motion"] = plain
+            state["motion"] = [text.decode("latin-1"), *arguments[1:]] if isinstance(text, bytes) else list(arguments)
         if made.scene is not None:
             state["scene"] = made.scene.__reduce__()[1]
         return state
 
     @classmethod
-    def _of_plain_state(cls, state: Mapping[str, Any]) -> Experiment:
+    def _of_plain_state(cls, state: ExperimentState) -> Experiment:
         scene = _pickle.scene(*state["scene"]) if "scene" in state else None
         motion: Motion | None = None
         if "motion" in state:
-            first, *others = state["motion"]
-            motion = _pickle.recording(first.encode("latin-1"), *others) if others else _pickle.named_motion(first)
+            motion = _pickle.motion(state["motion"])
         return _experiment_of(state["settings"], scene, motion, None, state["phong"])
 
     def __reduce__(self) -> tuple[Callable[..., Experiment], tuple[object, ...]]:

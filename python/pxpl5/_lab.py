@@ -6,7 +6,8 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._checks import Strict, names, optional, whole
@@ -21,6 +22,10 @@ from ._progress import Progress, reporting
 from ._tables import table_of
 from ._types import RigData
 
+if TYPE_CHECKING:
+    from ._rows import Cell, FigureRow, LevelRow, PipelineRow, ReadingRow
+    from ._study_types import ComparisonData, FigureData
+
 
 def presets() -> dict[str, str]:
     """Returns the names of the built-in machines, each with a description and the source. Machines of the papers come first."""
@@ -32,7 +37,7 @@ def builtin_scenes() -> dict[str, str]:
     return dict(_native.builtin_scenes())
 
 
-def pipelines() -> Table:
+def pipelines() -> Table[PipelineRow]:
     """Returns a row for each pipeline: name, family, about, preset, true if it has a closed form, and its keys as JSON."""
     return table_of(_native.pipelines(), {"about": "what it is and where it was published"})
 
@@ -75,7 +80,7 @@ def figure_ids() -> dict[str, str]:
 
 def figures(
     ids: str | Sequence[str] | None = None, *, level: LevelName | str = "transaction", progress: Progress = None
-) -> Table:
+) -> Table[FigureRow]:
     """Measures the figures of the papers. Returns a row for each figure: published and simulated value, unit, error and source.
 
     Without ``ids``, the function also computes the intervals (columns low and high), which takes minutes. With ``ids``, it measures only
@@ -83,6 +88,7 @@ def figures(
 
     Raises :class:`SettingError` for the number of an unknown figure.
     """
+    rows: list[FigureData]
     with reporting(progress, "figures") as reporter:
         if ids is None:
             rows = _native.figures(level, reporter)
@@ -179,6 +185,8 @@ def limit_over(
         raise SettingError("head: expected a motion with a name, or the path of a recording, found a Motion")
     _positive("rate_hz", rate_hz)
     _positive("latency_fields", latency_fields)
+    # An unknown key is refused with the nearest one, before its range is asked for.
+    made.settings.copy().set(f"{over}=1", "over")
     with reporting(progress, "values") as reporter:
         found = _native.limit_over(
             made.settings,
@@ -190,8 +198,19 @@ def limit_over(
             fields=optional("fields", fields, LEAST_FIELDS),
             progress=reporter,
         )
-    tried = [(float(value), bool(hit)) for value, hit in found.pop("tried")]
-    return OverLimit(tried=tried, **found)
+    return OverLimit(
+        over=found["over"],
+        goal=found["goal"],
+        fields=found["fields"],
+        low=found["low"],
+        high=found["high"],
+        least=found["least"],
+        most=found["most"],
+        reached=found["reached"],
+        tried=[(float(value), bool(hit)) for value, hit in found["tried"]],
+        missed_at=found["missed_at"],
+        because=found["because"],
+    )
 
 
 #: Least number of fields of a search. Shorter runs end during the warm-up of every pipeline.
@@ -245,22 +264,23 @@ class Comparison(Strict):
 
     _fields = ("data",)
 
-    def __init__(self, data: dict[str, Any]) -> None:
+    def __init__(self, data: ComparisonData) -> None:
         #: The object of ``pxpl5 compare --json``.
         self.data = data
 
     @property
-    def table(self) -> Table:
+    def table(self) -> Table[dict[str, Cell]]:
         """A row for each pipeline: latency, head to light, rate, errors in pixels and largest number of triangles.
 
         Names of columns contain points. A mean over seeds has the column ``.mean``, and ``.low``, ``.high`` and ``.method`` for its 95 %
         interval. ``due`` and ``not_shown`` count pictures, and ``error.n`` counts evaluated pixels.
         """
         left_out = ("end_to_end", "causes", "predictors", "picture", "errors", "display_counters")
-        rows = [{key: value for key, value in row.items() if key not in left_out} for row in self.data["pipelines"]]
-        for row in rows:
-            if isinstance(row.get("error"), dict):
-                row["error"] = {key: value for key, value in row["error"].items() if key != "distribution_px"}
+        rows = []
+        for compared in self.data["pipelines"]:
+            row = {key: value for key, value in compared.items() if key not in left_out}
+            row["error"] = {key: value for key, value in compared["error"].items() if key != "distribution_px"}
+            rows.append(row)
         return table_of(rows)
 
     def plot(
@@ -296,7 +316,7 @@ class Comparison(Strict):
                 row["not_shown"],
                 row["error"]["mean_px"]["mean"],
                 row["error"]["n"],
-                row.get("triangles_possible"),
+                row["triangles_possible"],
             ]
             for row in self.data["pipelines"]
         ]
@@ -312,19 +332,43 @@ def compare(
     only: str | Sequence[str] = (),
     seeds: int | Sequence[int] = 5,
     limits: bool = False,
+    causes: bool = False,
+    predictors: bool = False,
+    confidence: float = 0.95,
+    until_precision: str | None = None,
+    max_seeds: int | None = None,
+    out: str | PathLike[str] | None = None,
+    resume: bool = False,
     settings: Mapping[str, object] | None = None,
     progress: Progress = None,
     **keys: object,
 ) -> Comparison:
-    """Runs every pipeline with the same settings, once for each seed. Returns errors in pixels by cause, and latencies.
+    """Runs every pipeline with the same settings, once for each seed. Returns errors in pixels and latencies.
+
+    ``limits`` adds the largest number of triangles of each row, ``causes`` the error by cause, ``predictors`` the error with every
+    predictor. Each of the three takes longer.
 
     - ``head``: a head whose motion has a name or is the path of a recording. The motion ``synthetic`` differs with the seed.
     - ``fields``: number of fields of each run; default: the length of the recording, or 300 without a recording.
     - ``only``: names of the rows to run; default: all rows.
     - ``limits``: True to add the largest number of triangles of each pipeline.
+    - ``confidence``: that of all intervals, between 0 and 1.
+    - ``until_precision``: greatest width of the interval of each mean error, from end to end, as a share of the mean (``"10%"``) or in
+      pixels (``"0.2px"``). A row gets more seeds until its interval is narrower, up to ``max_seeds`` (default 50). Only for the head
+      ``synthetic``.
+    - ``out``: a folder. Each row is stored in it as soon as its runs have ended, and comparison.json at the end, as
+      ``pxpl5 compare --out`` does, but without pictures. After an interruption, ``resume=True`` keeps the finished rows of the same
+      comparison and runs only the others.
 
-    Raises :class:`SettingError` for a wrong setting, or for a run that is too short for an evaluation.
+    Ctrl-C ends the runs in progress, but not a search for limits. Raises :class:`SettingError` for a setting that is wrong, or a run
+    too short to judge anything, and :class:`SweepError` for a folder that cannot be used, is in use, or holds another comparison.
     """
+    if not 0 < confidence < 1:
+        raise SettingError(f"confidence: expected a number between 0 and 1, found {confidence!r}")
+    if max_seeds is not None and until_precision is None:
+        raise SettingError("max_seeds: expected until_precision beside it, found none")
+    if resume and out is None:
+        raise SettingError("resume: expected the folder out beside it, found none")
     made = Made()
     made.put_all(None, scene, machine, head, {**({} if fields is None else {"fields": fields}), **keys, **(settings or {})})
     if made.motion is not None:
@@ -335,8 +379,25 @@ def compare(
         numbers = list(range(1, whole("seeds", seeds, 1) + 1))
     else:
         numbers = [whole("seeds", seed) for seed in seeds]
+    folder = None if out is None else Path(out)
     with reporting(progress, "runs") as reporter:
-        return Comparison(_native.compare(made.settings, names("only", only), numbers, limits, reporter))
+        data = _native.compare(
+            made.settings,
+            names("only", only),
+            numbers,
+            limits=limits,
+            causes=causes,
+            predictors=predictors,
+            confidence=confidence,
+            until_precision=until_precision,
+            max_seeds=optional("max_seeds", max_seeds, 2),
+            folder=None if folder is None else folder / "rows",
+            resume=resume,
+            progress=reporter,
+        )
+    if folder is not None:
+        (folder / "comparison.json").write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
+    return Comparison(data)
 
 
 def rig(
@@ -388,7 +449,7 @@ LEVEL_DEFINITIONS = {
 }
 
 
-def levels(*, experiments: int | None = None, speeds: bool = False, progress: Progress = None) -> Table:
+def levels(*, experiments: int | None = None, speeds: bool = False, progress: Progress = None) -> Table[LevelRow]:
     """Returns a row for each level of modelling, with its errors and its speed.
 
     - ``experiments``: number of random experiments over which the errors are measured now. By default, the function returns the
@@ -412,7 +473,7 @@ READING_DEFINITIONS = {
 }
 
 
-def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Progress = None) -> Table:
+def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Progress = None) -> Table[ReadingRow]:
     """Ranks interpretations of the papers' open questions by their agreement with the figures of Rendering Control.
 
     The table has a row for each interpretation at the analytic level. Rows for the ``best`` interpretations at the transaction level
@@ -423,8 +484,8 @@ def readings(*, best: int = 20, seeds: int = 6, frames: int = 150, progress: Pro
     with reporting(progress, "runs") as reporter:
         found = _native.readings(whole("best", best), whole("seeds", seeds, 1), whole("frames", frames, 10), reporter)
     rows = [
-        {"evaluated_at": level, **{key: fit[key] for key in READING_DEFINITIONS if key != "evaluated_at"}}
-        for level in ("analytic", "transaction")
-        for fit in found[level]
+        {"evaluated_at": level, **{key: value for key, value in fit.items() if key in READING_DEFINITIONS}}
+        for level, fits in (("analytic", found["analytic"]), ("transaction", found["transaction"]))
+        for fit in fits
     ]
     return table_of(rows, READING_DEFINITIONS)

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from difflib import get_close_matches
+from typing import TYPE_CHECKING
 
 from . import _html, _native
 from ._checks import Strict
 from ._names import MachineName
 from ._native import Table
 from ._tables import table_of
+
+if TYPE_CHECKING:
+    from ._rows import ParameterRow
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,7 @@ PARAMETER_DEFINITIONS = {
 }
 
 
-def parameter_table(parameters: list[Parameter]) -> Table:
+def parameter_table(parameters: list[Parameter]) -> Table[ParameterRow]:
     """Returns parameters as a table: path, value, unit, provenance, low, high, source, read_only."""
     rows = [asdict(parameter) for parameter in parameters]
     for row in rows:
@@ -94,7 +98,7 @@ class Machine(Strict, Mapping[str, Parameter]):
     @property
     def n_gps(self) -> int:
         """Number of graphics processors, with the master."""
-        return int(self._known["n_gps"])
+        return self._known["n_gps"]
 
     @n_gps.setter
     def n_gps(self, number: int) -> None:
@@ -103,7 +107,7 @@ class Machine(Strict, Mapping[str, Parameter]):
     @property
     def n_renderers(self) -> int:
         """Number of renderers, each with an array of 128 x 128 pixels."""
-        return int(self._known["n_renderers"])
+        return self._known["n_renderers"]
 
     @n_renderers.setter
     def n_renderers(self, number: int) -> None:
@@ -128,7 +132,7 @@ class Machine(Strict, Mapping[str, Parameter]):
         """Warnings about values outside the ranges of their sources, each with range and source."""
         return list(self._known["warnings"])
 
-    def table(self) -> Table:
+    def table(self) -> Table[ParameterRow]:
         """Returns the parameters as a table: path, value, unit, provenance, low, high, source, read_only."""
         return parameter_table(self.parameters)
 

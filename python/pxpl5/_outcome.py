@@ -7,7 +7,7 @@ import pickle
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,8 @@ from ._types import CriticalPathData, UtilisationData
 
 if TYPE_CHECKING:
     from ._experiment import Experiment
+    from ._report_types import PixelErrorsData, ReportData, StatisticsData
+    from ._rows import BoardRow, EventRow, PictureDifferenceRow, PictureRow, ResultRow, SettingRow, StageRow
 
 T = TypeVar("T")
 
@@ -45,20 +47,22 @@ class Statistics:
     definition: str = ""
 
 
-class Report(dict[str, Any]):
+class Report(dict[str, object]):
     """All results of a run as numbers: the object of ``pxpl5 run --json``. Notebooks show the report as a table."""
 
     def _repr_html_(self) -> str:
-        rows: list[list[object]] = []
-        for key in ("latency_ms", "latency_fields"):
-            rows.append([key, _spread(self.get(key))])
+        report = cast("ReportData", self)
+        rows: list[list[object]] = [
+            ["latency_ms", _spread(report["latency_ms"])],
+            ["latency_fields", _spread(report["latency_fields"])],
+        ]
         rows += [[key, value] for key, value in self.items() if not isinstance(value, (dict, list))]
         return _html.table(["quantity", "value"], rows, f"{self.get('pipeline')} on {self.get('machine')}, {self.get('scene')}")
 
 
-def _spread(found: object) -> str:
+def _spread(found: StatisticsData) -> str:
     """Returns mean, standard deviation and number of values as text."""
-    if not isinstance(found, dict) or found.get("mean") is None:
+    if found["mean"] is None:
         return "none: no picture was complete in time"
     sd = found["sd"]
     return f"{found['mean']:.4g}" + (f" +- {sd:.3g}" if sd is not None else "") + f" (n {found['n']})"
@@ -71,20 +75,20 @@ class Differences:
     #: True if both runs have the same trace and the same statistics.
     same_trace: bool
     #: A row for each different setting: key, a and b.
-    settings: Table
+    settings: Table[SettingRow]
     #: A row for each different result: key, a, b, and percent of a. Computing times are not compared.
-    results: Table
+    results: Table[ResultRow]
     #: Number of equal results.
     equal: int
     #: A row for each surface with a picture in both outcomes: surface, pixels, differing pixels, largest difference of a colour (0 to 255).
-    pictures: Table
+    pictures: Table[PictureDifferenceRow]
 
     def __repr__(self) -> str:
         trace = "the same trace" if self.same_trace else "another trace"
         return f"<pxpl5.Differences: {trace}, {len(self.settings)} settings and {len(self.results)} results differ, {self.equal} are equal>"
 
     def _repr_html_(self) -> str:
-        return "".join(part._repr_html_() for part in (self.settings, self.results, self.pictures))
+        return self.settings._repr_html_() + self.results._repr_html_() + self.pictures._repr_html_()
 
 
 class Outcome(Strict):
@@ -95,7 +99,7 @@ class Outcome(Strict):
     """
 
     #: Returns the experiment of a saved state; the module of experiments sets it.
-    _experiment_of_state: ClassVar[Callable[[dict[str, Any]], Experiment]]
+    _experiment_of_state: ClassVar[Callable[[_saved.ExperimentState], Experiment]]
 
     def __init__(
         self,
@@ -133,9 +137,10 @@ class Outcome(Strict):
         return self._value(lambda saved: saved["config_hash"], lambda native: native.config_hash)
 
     @property
-    def report(self) -> Report:
+    def report(self) -> ReportData:
         """All results as numbers with definitions: the object of ``pxpl5 run --json``. A value that was not measured is None."""
-        return Report(self._value(lambda saved: json.loads(saved["report"]), lambda native: native.report()))
+        found: ReportData = self._value(lambda saved: json.loads(saved["report"]), lambda native: native.report())
+        return cast("ReportData", Report(found))
 
     @property
     def latency_ms(self) -> Statistics:
@@ -150,8 +155,7 @@ class Outcome(Strict):
     @property
     def missed_retraces(self) -> int | None:
         """Number of due pictures that were not shown: late, incomplete or missed; None if no picture was due."""
-        missed = self.report["missed_retraces"]
-        return None if missed is None else int(missed)
+        return self.report["missed_retraces"]
 
     @property
     def advice(self) -> str | None:
@@ -161,17 +165,15 @@ class Outcome(Strict):
     @property
     def utilisation(self) -> UtilisationData | None:
         """Shares of time, 0 to 1, for which boards were busy: host, gps, renderers, ring and ports."""
-        found: UtilisationData | None = self.report["utilisation"]
-        return found
+        return self.report["utilisation"]
 
     @property
     def critical_path(self) -> CriticalPathData | None:
         """Chain of waits that makes up the latency of the last complete pictures; None if no picture was complete."""
-        found: CriticalPathData | None = self.report["critical_path"]
-        return found
+        return self.report["critical_path"]
 
     @property
-    def boards(self) -> Table:
+    def boards(self) -> Table[BoardRow]:
         """A row for each kind of board and activity: mean share of time, share of the busiest board, number of the busiest board."""
         return table_of(_board_rows(self.utilisation), BOARD_DEFINITIONS)
 
@@ -180,16 +182,17 @@ class Outcome(Strict):
 
         Raises :class:`SettingError` with the nearest name for an unknown name.
         """
-        if self._saved is not None and name in self._saved["quantities"]:
-            return self._saved["quantities"][name]
+        for known, value in [] if self._saved is None else self._saved["quantities"].items():
+            if known == name:
+                return value
         return self._live.quantity(name)
 
-    def quantities(self) -> dict[str, float | None]:
+    def quantities(self) -> dict[QuantityName, float | None]:
         """Returns all quantities by name. Most names end with the unit. A quantity without a value is None."""
         return self._value(lambda saved: dict(saved["quantities"]), lambda native: native.quantities())
 
     @property
-    def measured(self) -> dict[str, float | None]:
+    def measured(self) -> dict[QuantityName, float | None]:
         """The quantities of the experiment's setting ``measure``."""
         return self._value(lambda saved: dict(saved["measured"]), lambda native: native.measured())
 
@@ -203,7 +206,7 @@ class Outcome(Strict):
             raise DiscardedError(f"{what}: expected a run with keep=\"everything\", found one that has discarded its records")
 
     @property
-    def pictures(self) -> Table:
+    def pictures(self) -> Table[PictureRow]:
         """A row for each begun picture: times of sample, TRANSFORM, COPY and display, and the parts of the latency.
 
         Times are whole picoseconds of simulated time. Raises :class:`DiscardedError` if a run with ``keep="statistics"`` has
@@ -214,7 +217,7 @@ class Outcome(Strict):
         return self._live.pictures() if saved is None else saved
 
     @property
-    def stages(self) -> Table:
+    def stages(self) -> Table[StageRow]:
         """A row for each stage of each picture: picture, stage, surface, begin_ps and end_ps.
 
         Raises :class:`DiscardedError` as :attr:`pictures` does.
@@ -224,7 +227,7 @@ class Outcome(Strict):
         return self._live.stages() if saved is None else saved
 
     @property
-    def events(self) -> Table:
+    def events(self) -> Table[EventRow]:
         """A row for each observed event in the order of time: time_ps, board, picture and event.
 
         Events are stages of programs, regions that renderers copied, regions that arrived at displays, and swaps. Raises
@@ -295,12 +298,9 @@ class Outcome(Strict):
         return self._live.pixel_memory_fields()
 
     @property
-    def pixel_errors(self) -> dict[str, Any] | None:
-        """Distances between pixels and the right places of their content, in pixels and degrees, also for each field.
-
-        The value is None without a tracked head.
-        """
-        found: dict[str, Any] | None = self._value(
+    def pixel_errors(self) -> PixelErrorsData | None:
+        """Distances between pixels and their right places, in pixels and degrees; None without a tracked head."""
+        found: PixelErrorsData | None = self._value(
             lambda saved: json.loads(saved["pixel_errors"]), lambda native: native.pixel_errors()
         )
         return found
@@ -365,11 +365,14 @@ class Outcome(Strict):
     def load(path: str | PathLike[str]) -> Outcome:
         """Reads an outcome that :meth:`save` has written.
 
-        Raises :class:`SettingError` for another kind of file, and OSError if the file cannot be read.
+        Raises :class:`SettingError` for a foreign or damaged file, with the path, what was expected and what was found. It raises the
+        same exception if a model file or a recording that the experiment names is gone, and OSError when the file cannot be read.
         """
         saved, state = _saved.read(path)
-        experiment = None if state is None else Outcome._experiment_of_state(state)
-        return Outcome(None, experiment, saved)
+        if state is None:
+            return Outcome(None, None, saved)
+        known = state
+        return Outcome(None, _saved.read_with(path, lambda: Outcome._experiment_of_state(known)), saved)
 
     def __reduce__(self) -> tuple[type[Outcome], tuple[None, Experiment | None, _saved.Saved]]:
         # A function that is defined within another function cannot be pickled. The outcome is then pickled without its experiment.
@@ -389,7 +392,7 @@ class Outcome(Strict):
         warning = "" if self.advice is None else _html.warning(self.advice)
         both = self._value(lambda saved: saved["both"], lambda native: native.both())
         shown = _html.picture(both.png(), "what the viewer sees at the end") if both is not None else ""
-        return warning + self.report._repr_html_() + shown
+        return warning + Report(self.report)._repr_html_() + shown
 
 
 BOARD_DEFINITIONS = {

@@ -6,7 +6,8 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from types import TracebackType
+from typing import Protocol
 
 #: Values of ``progress=``: None for a bar in notebooks and terminals, True for a bar, False for no bar, or a callable. The callable
 #: gets two numbers: finished steps and all steps.
@@ -20,7 +21,22 @@ def _wants_bar(progress: bool | None) -> bool:
     return "ipykernel" in sys.modules or sys.stderr.isatty()
 
 
-def _bar(unit: str) -> Any:
+class _Bar(Protocol):
+    """The part of a bar of tqdm that is used here."""
+
+    total: float | None
+    n: float
+
+    def update(self, n: float, /) -> object: ...
+
+    def __enter__(self) -> object: ...
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None, /
+    ) -> object: ...
+
+
+def _bar(unit: str) -> _Bar | None:
     """Returns a bar of tqdm, or None if tqdm is not installed."""
     # In a notebook without ipywidgets, tqdm would warn that it shows a bar of text.
     with warnings.catch_warnings():
@@ -29,7 +45,8 @@ def _bar(unit: str) -> Any:
             from tqdm.auto import tqdm
         except ImportError:
             return None
-        return tqdm(total=0, unit=f" {unit}", leave=False)
+        bar: _Bar = tqdm(total=0, unit=f" {unit}", leave=False)
+        return bar
 
 
 @contextmanager

@@ -6,12 +6,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._checks import Strict, whole
 from ._machine import Machine
 from ._toml import toml_of
+
+if TYPE_CHECKING:
+    from ._study_types import SweepHeaderData
 
 
 @dataclass(frozen=True)
@@ -80,7 +83,7 @@ class SweepSpace(Strict):
         """Number of points of the space."""
         return self._native.points
 
-    def header(self) -> dict[str, Any]:
+    def header(self) -> SweepHeaderData:
         """Returns the data that all rows share: schema, version, machine, quantities with their definitions, axes.
 
         Raises :class:`SettingError` if no point has valid settings of an experiment.

@@ -13,6 +13,7 @@ from ._types import BoardState, EventState
 if TYPE_CHECKING:
     from ._experiment import Experiment
     from ._outcome import Outcome
+    from ._rows import ChannelRow
 
 
 class Stepper(Strict):
@@ -88,7 +89,7 @@ class Stepper(Strict):
         return self._native.board(name)
 
     @property
-    def channels(self) -> Table:
+    def channels(self) -> Table[ChannelRow]:
         """A row for each message that now occupies a channel of the ring."""
         return table_of(self._native.channels())
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._checks import Strict, optional
@@ -22,13 +22,16 @@ from ._tables import table_of
 if TYPE_CHECKING:
     from distributed import Client
 
+    from ._rows import Cell
+    from ._study_types import SweepHeaderData
+
 
 class SweepResults(Strict):
     """The rows of a sweep, in the order of its points."""
 
     _fields = ("lines", "folder", "header")
 
-    def __init__(self, lines: list[str], folder: Path | None, header: dict[str, Any]) -> None:
+    def __init__(self, lines: list[str], folder: Path | None, header: SweepHeaderData) -> None:
         #: Rows as lines of JSON. The bytes do not depend on the computer or the order of the computation.
         self.lines = lines
         #: Folder with rows.jsonl and results.csv; None if :func:`sweep` was called without ``out``.
@@ -40,7 +43,7 @@ class SweepResults(Strict):
         return len(self.lines)
 
     @property
-    def table(self) -> Table:
+    def table(self) -> Table[dict[str, Cell]]:
         """A row for each point: point, status, settings by path, quantities by name, trace_hash and error."""
         rows = []
         for line in self.lines:

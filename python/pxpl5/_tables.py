@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _native
 from ._errors import SettingError
 from ._native import Table
+
+if TYPE_CHECKING:
+    from ._rows import Row
 
 
 def _cleaned(value: object) -> object:
@@ -29,7 +32,7 @@ def _cleaned(value: object) -> object:
     return value
 
 
-def table_of(rows: Sequence[Mapping[str, Any]], definitions: Mapping[str, str] | None = None) -> Table:
+def table_of(rows: Sequence[Mapping[str, object]], definitions: Mapping[str, str] | None = None) -> Table[Row]:
     """Returns a table of dictionaries. Nested names are joined with points, and lists become JSON.
 
     A column has the type of its values if all values have the same type.
@@ -41,4 +44,5 @@ def table_of(rows: Sequence[Mapping[str, Any]], definitions: Mapping[str, str] |
         text = json.dumps([_cleaned(row) for row in rows])
     except TypeError as error:
         raise SettingError(f"rows: expected numbers, texts, truth values, lists and dictionaries ({error})") from None
-    return _native.table_of_rows(text, dict(definitions or {}))
+    table: Table[Row] = _native.table_of_rows(text, dict(definitions or {}))  # type: ignore[assignment]
+    return table

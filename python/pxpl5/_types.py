@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypedDict
+from typing import TypedDict
 
 
 class PolicyFrame(TypedDict):
@@ -31,8 +31,53 @@ class EventState(TypedDict):
     what: str
 
 
-#: State of a processor or renderer, by name.
-BoardState = dict[str, Any]
+class ProgramState(TypedDict):
+    """A program on a processor."""
+
+    #: Priority of the program.
+    priority: str
+    #: What the program waits for; None if it works.
+    waits_for: str | None
+    #: Picoseconds until the end of the current work.
+    work_left_ps: int | None
+
+
+class InboxState(TypedDict):
+    """A message that a processor has received and not read."""
+
+    arrived_ps: int
+    source: int
+
+
+class ProcessorState(TypedDict):
+    """State of a processor."""
+
+    programs: list[ProgramState]
+    inbox: list[InboxState]
+    #: Receivers that have not accepted a message of the processor.
+    unaccepted: list[int]
+    #: Lengths of the message chains in progress.
+    chains: list[int]
+    #: Bytes of memory in use, by purpose.
+    memory_bytes: dict[str, int]
+    busy_ps: int
+
+
+class RendererState(TypedDict):
+    """State of a renderer."""
+
+    #: Words in the input FIFO; None if the run does not record traffic.
+    fifo_words: int | None
+    fifo_depth_words: int
+    #: True while a copy command waits.
+    stands_at_copy: bool
+    copying_region: int | None
+    stored_regions: int
+    busy_ps: int
+
+
+#: State of a processor or renderer.
+BoardState = ProcessorState | RendererState
 
 
 class SharesData(TypedDict):

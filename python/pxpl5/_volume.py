@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._native import Scene, Table, Volume
 from ._progress import Progress, reporting
 from ._tables import table_of
+
+if TYPE_CHECKING:
+    from ._rows import VolumeFigureRow
 
 
 def _scene(scene: str | PathLike[str] | Scene) -> Scene:
@@ -40,8 +44,8 @@ def volume_keys() -> list[str]:
     return _native.volume_keys()
 
 
-def volume_figures(scenes: Sequence[str | Scene] = ("mig", "head", "molecules"), *, progress: Progress = None) -> Table:
-    """Returns a row for each figure of the SpatialGL paper, with expected value, computed value and provenance (``provenance``).
+def volume_figures(scenes: Sequence[str | Scene] = ("mig", "head", "molecules"), *, progress: Progress = None) -> Table[VolumeFigureRow]:
+    """Returns a row for each figure of the SpatialGL paper, with published value, simulated value and provenance.
 
     Raises :class:`SettingError` for a scene that cannot be drawn.
     """

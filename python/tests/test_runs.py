@@ -147,6 +147,73 @@ def test_ctrl_c_ends_a_run_and_its_dry_run(head: str) -> None:
     assert "interrupted" in out
 
 
+INTERRUPTED_SOON = """
+import pxpl5, time
+experiment = pxpl5.Experiment("rendering-control", "head", fields={fields}, pixels="off", measure="latency_ms.mean", settings={settings})
+print("begun", flush=True)
+try:
+    {call}
+except KeyboardInterrupt:
+    print("interrupted", time.monotonic(), flush=True)
+"""
+
+HEAD = {"head.motion": "pan:100", "head.tracker": "optical"}
+
+
+@pytest.mark.parametrize(
+    ("call", "fields", "settings"),
+    [
+        ("experiment.measure()", 1_000_000, {}),
+        ("experiment.measure()", 200_000, HEAD),
+        ("experiment.measure()", 200_000, {"level": "analytic"}),
+        ("list(experiment.frames())", 20_000, {}),
+        ("list(experiment.frames(first=150_000))", 200_000, {}),
+        ("experiment.film('film.png')", 20_000, {}),
+        ("experiment.film('film.png', first=150_000)", 200_000, HEAD),
+    ],
+)
+def test_ctrl_c_ends_measurements_and_films_within_half_a_second(
+    call: str, fields: int, settings: dict[str, str], tmp_path: Path
+) -> None:
+    text = INTERRUPTED_SOON.format(call=call, fields=fields, settings=settings)
+    process = subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, text=True, cwd=tmp_path)
+    assert process.stdout is not None and process.stdout.readline() == "begun\n"
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    sent_s = time.monotonic()
+    out, _ = process.communicate(timeout=60)
+    assert "interrupted" in out
+    assert float(out.split()[1]) - sent_s < 0.5
+    assert list(tmp_path.iterdir()) == [], "no half of a film is left"
+
+
+COMPARED = """
+import pxpl5, time
+print("begun", flush=True)
+try:
+    pxpl5.compare("head", fields=20_000, only=["slats", "jitp-field"], out="out", progress=False)
+except KeyboardInterrupt:
+    print("interrupted", time.monotonic(), flush=True)
+    try:
+        pxpl5.compare("head", fields=20_000, only=["slats", "jitp-field"], seeds=2, out="out", resume=True, progress=False)
+    except pxpl5.SweepError as error:
+        print(error)
+"""
+
+
+def test_ctrl_c_ends_a_comparison_and_leaves_its_folder_free(tmp_path: Path) -> None:
+    process = subprocess.Popen([sys.executable, "-c", COMPARED], stdout=subprocess.PIPE, text=True, cwd=tmp_path)
+    assert process.stdout is not None and process.stdout.readline() == "begun\n"
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    sent_s = time.monotonic()
+    out, _ = process.communicate(timeout=60)
+    first, second = out.splitlines()
+    assert float(first.split()[1]) - sent_s < 2 and "--seeds was [1, 2, 3, 4, 5], expected [1, 2]" in second
+    # Rows of stopped runs are not stored.
+    assert len((tmp_path / "out" / "rows" / "rows.jsonl").read_text().splitlines()) == 1
+
+
 def test_a_run_that_is_too_short_says_how_long_it_must_be() -> None:
     with pytest.raises(pxpl5.TooShortError, match="simulate more fields: the next one is shown after about") as raised:
         pxpl5.Experiment("rendering-control", "mig", fields=10).run()
@@ -159,7 +226,7 @@ def test_a_run_that_is_too_short_says_how_long_it_must_be() -> None:
 @pytest.mark.parametrize(
     ("keywords", "words"),
     [
-        ({"pipeline": "slat", "scene": "mig"}, "the nearest is slats"),
+        ({"pipeline": "slat", "scene": "mig"}, "there is no pipeline `slat`; did you mean `slats`"),
         ({"pipeline": "slats"}, "scene is missing: give a built-in scene"),
         ({"pipeline": "slats", "scene": "mig", "copi": "whole"}, "there is no key `copi`; did you mean `copy`"),
         ({"pipeline": "slats", "scene": "mig", "fields": 0}, "fields: expected"),

@@ -2,14 +2,13 @@
 
 use crate::address::{AddressUnit, Footprint};
 use crate::composition::{Composition, CompositionOrder};
-use crate::error::ArpError;
 use crate::face::FaceGeometry;
-use crate::lens::{Lens, LensTable, Picture, unit_words};
+use crate::lens::{Lens, LensPicture, LensTable, unit_words};
 use crate::orientation::Orientation;
-use crate::scan::{Latch, Scan};
+use crate::scan::{FaceScan, Latch};
 use crate::texel::TexelFormat;
 use crate::timing::{ArpTiming, ScanTiming};
-use pxpl5_sim::parameters::check;
+use pxpl5_sim::parameters::{SettingError, check};
 
 /// Parameters, lens and options of an address recalculation pipeline.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,18 +52,18 @@ impl ArpConfig {
     ///
     /// # Errors
     ///
-    /// [`ArpError`] names the parameter, the expected and the found value.
-    pub fn check(&self) -> Result<(), ArpError> {
+    /// [`SettingError`] names the parameter, the expected and the found value.
+    pub fn check(&self) -> Result<(), SettingError> {
         self.timing.check()?;
         self.scan.check()?;
-        check("fields_kept", self.fields_kept, (1, 1_000)).map_err(|error| ArpError::Number(format!("arp.{error}")))?;
+        check("fields_kept", self.fields_kept, (1, 1_000)).map_err(|error| error.in_table("arp"))?;
         self.lens.check(&self.picture())
     }
 
     #[must_use]
-    pub fn picture(&self) -> Picture {
+    pub fn picture(&self) -> LensPicture {
         let height = self.scan.visible_lines as u32 * 2;
-        Picture { width: self.scan.visible_pixels as u32, height, horizontal_deg: self.timing.horizontal_deg }
+        LensPicture { width: self.scan.visible_pixels as u32, height, horizontal_deg: self.timing.horizontal_deg }
     }
 
     /// Returns the table of viewing vectors.
@@ -72,7 +71,7 @@ impl ArpConfig {
     /// # Errors
     ///
     /// Fails in the same cases as [`ArpConfig::check`].
-    pub fn table(&self) -> Result<LensTable, ArpError> {
+    pub fn table(&self) -> Result<LensTable, SettingError> {
         self.check()?;
         LensTable::new(&self.lens, &self.picture(), self.timing.vector_bits)
     }
@@ -84,7 +83,7 @@ impl ArpConfig {
     /// # Errors
     ///
     /// Fails in the same cases as [`ArpConfig::check`].
-    pub fn footprint(&self, x: u32, y: u32, orientation: &Orientation) -> Result<Option<Footprint>, ArpError> {
+    pub fn footprint(&self, x: u32, y: u32, orientation: &Orientation) -> Result<Option<Footprint>, SettingError> {
         self.check()?;
         let picture = self.picture();
         if x >= picture.width || y >= picture.height {
@@ -100,8 +99,8 @@ impl ArpConfig {
     /// # Errors
     ///
     /// Fails in the same cases as [`ArpConfig::check`].
-    pub fn scan(&self) -> Result<Scan, ArpError> {
-        Scan::new(self.scan, &self.timing)
+    pub fn scan(&self) -> Result<FaceScan, SettingError> {
+        FaceScan::new(self.scan, &self.timing)
     }
 
     #[must_use]

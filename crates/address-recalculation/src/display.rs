@@ -2,7 +2,6 @@
 
 use crate::address::Footprint;
 use crate::config::ArpConfig;
-use crate::error::ArpError;
 use crate::face::Vector;
 use crate::field::{Field, Optics, ShownBuffers};
 use crate::lookup::LookStats;
@@ -10,11 +9,9 @@ use crate::memory::{DisplayMemory, MemoryKind, PixelReceipt};
 use crate::orientation::{MatrixWords, OrientationLatch};
 use crate::protocol::{ArpMessage, read};
 use image::RgbImage;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::display::{
-    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
-};
+use pxpl5_wire::display::{Counter, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, Surface};
 use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
 use std::collections::VecDeque;
 use std::sync::OnceLock;
@@ -78,9 +75,9 @@ impl AddressRecalculationPipeline {
     ///
     /// # Errors
     ///
-    /// Returns [`ArpError::Orientation`] if the matrix is not a rotation. The refusal is counted, and the previous
+    /// Returns a [`SettingError`] if the matrix is not a rotation. The refusal is counted, and the previous
     /// matrix stays valid.
-    pub fn load_orientation(&mut self, eye: Eye, rows: [Vector; 3], now: Time) -> Result<(), ArpError> {
+    pub fn load_orientation(&mut self, eye: Eye, rows: [Vector; 3], now: Time) -> Result<(), SettingError> {
         self.eyes.get_mut(eye.index()).map_or(Ok(()), |boards| boards.latch.load(rows, now))
     }
 
@@ -299,18 +296,18 @@ impl DisplayConfig for ArpConfig {
         pictures.clamp(1, Eye::BOTH.len()) * self.ports_of_an_eye()
     }
 
-    fn check(&self) -> Result<(), DisplayError> {
-        Self::check(self).map_err(refused)
+    fn check(&self) -> Result<(), SettingError> {
+        Self::check(self)
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
-        Self::check(self).map_err(refused)?;
-        let scan = self.scan().map_err(refused)?;
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
+        Self::check(self)?;
+        let scan = self.scan()?;
         // The number of ports determines the number of eyes.
         let eyes = nodes.len() / self.ports_of_an_eye();
         if nodes.len() != self.ports(eyes) {
             let expected = format!("{} ports for one eye, {} for two", self.ports(1), self.ports(2));
-            return Err(DisplayError(format!("arp: expected {expected}, found {}", nodes.len())));
+            return Err(SettingError::value("arp", expected, nodes.len()));
         }
         Ok(Box::new(AddressRecalculationPipeline {
             surfaces: Surface::of_frame_buffers(eyes, scan.width(), scan.height()),
@@ -351,8 +348,4 @@ fn boards(config: &ArpConfig) -> EyeBoards {
         memories.push(DisplayMemory::new(MemoryKind { has_depth: false, ..kind }));
     }
     EyeBoards { memories, latch: OrientationLatch::new(config.timing.matrix_bits), scanned: VecDeque::new() }
-}
-
-fn refused(error: ArpError) -> DisplayError {
-    DisplayError(error.to_string())
 }

@@ -7,7 +7,7 @@ use crate::lookup::{Addressing, LookStats, Lookup};
 use crate::memory::{MemoryKind, Regions};
 use crate::orientation::{MatrixWords, OrientationLatch};
 use crate::protocol::region_grid;
-use crate::scan::{Latch, Scan};
+use crate::scan::{FaceScan, Latch};
 use crate::texel::FaceSet;
 use image::{Rgb, RgbImage};
 use pxpl5_wire::{FieldParity, PeriodNumber};
@@ -19,7 +19,7 @@ pub(crate) struct Optics {
     pub(crate) config: ArpConfig,
     /// Table of viewing vectors, one for each pixel. The table is computed when a field is first read.
     pub(crate) table: OnceLock<LensTable>,
-    pub(crate) scan: Scan,
+    pub(crate) scan: FaceScan,
 }
 
 impl Optics {

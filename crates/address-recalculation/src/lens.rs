@@ -1,7 +1,7 @@
 //! The lens and the table of viewing vectors of all pixels.
 
-use crate::error::ArpError;
 use crate::face::Vector;
+use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
 use std::fmt;
 use std::io::BufRead;
 use std::str::FromStr;
@@ -34,7 +34,7 @@ pub enum Lens {
 
 /// Size and viewing angle of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Picture {
+pub struct LensPicture {
     /// Number of pixels in a line.
     pub width: u32,
     /// Number of lines in a frame.
@@ -43,7 +43,7 @@ pub struct Picture {
     pub horizontal_deg: f64,
 }
 
-impl Picture {
+impl LensPicture {
     /// Returns the offset of a pixel's middle from the picture's middle, in pixels to the right and downwards.
     fn offset(&self, x: u32, y: u32) -> [f64; 2] {
         [f64::from(x) + 0.5 - f64::from(self.width) / 2.0, f64::from(y) + 0.5 - f64::from(self.height) / 2.0]
@@ -76,12 +76,12 @@ impl fmt::Display for Lens {
 }
 
 impl FromStr for Lens {
-    type Err = ArpError;
+    type Err = SettingError;
 
     /// Parses `flat`, `equidistant`, `radial:K1` or `radial:K1:K2`. Only [`Lens::check`] tests if a lens suits a
     /// picture.
-    fn from_str(text: &str) -> Result<Self, ArpError> {
-        let wrong = || ArpError::Lens { expected: Self::FORMS.to_owned(), found: excerpt(text) };
+    fn from_str(text: &str) -> Result<Self, SettingError> {
+        let wrong = || wrong_lens(Self::FORMS, excerpt(text));
         let mut parts = text.split(':');
         let name = parts.next();
         // All parts after the name must be numbers.
@@ -105,13 +105,13 @@ impl Lens {
     ///
     /// # Errors
     ///
-    /// [`ArpError::Lens`] describes the expected and the found value.
-    pub fn check(&self, picture: &Picture) -> Result<(), ArpError> {
+    /// [`SettingError`] describes the expected and the found value.
+    pub fn check(&self, picture: &LensPicture) -> Result<(), SettingError> {
         let widest = if matches!(self, Self::Flat | Self::Radial { .. }) { WIDEST_FLAT_DEG } else { 360.0 };
         let angle = picture.horizontal_deg;
         if !(angle > 0.0 && angle <= widest) {
             let expected = format!("a horizontal angle above 0 and up to {widest} deg");
-            return Err(ArpError::Lens { expected, found: format!("{angle} deg") });
+            return Err(wrong_lens(expected, format_args!("{angle} deg")));
         }
         match self {
             Self::Radial { k1, k2 } => check_radial(*k1, *k2, picture.rho_squared(0, 0)),
@@ -124,7 +124,7 @@ impl Lens {
     ///
     /// x points right and y up. The head looks along -z.
     #[must_use]
-    pub fn view(&self, picture: &Picture, x: u32, y: u32) -> Vector {
+    pub fn view(&self, picture: &LensPicture, x: u32, y: u32) -> Vector {
         let [right, down] = picture.offset(x, y);
         let focal = f64::from(picture.width) / 2.0 / picture.tangent();
         match self {
@@ -149,15 +149,14 @@ impl Lens {
     ///
     /// # Errors
     ///
-    /// [`ArpError::Table`] names the line, the expected and the found content.
-    pub fn read(reader: impl BufRead, picture: &Picture) -> Result<Self, ArpError> {
+    /// [`FileError`] names the line, the expected and the found content.
+    pub fn read(reader: impl BufRead, picture: &LensPicture) -> Result<Self, FileError> {
         let wanted = picture.width as usize * picture.height as usize;
         let mut vectors = Vec::new();
         let mut last = 0;
         for (number, line) in (1..).zip(reader.lines()) {
             last = number;
-            let wrong =
-                |expected: &str, found: String| ArpError::Table { line: number, expected: expected.to_owned(), found };
+            let wrong = |expected: &str, found: String| wrong_table(number, expected, found);
             // Skip empty lines and comments.
             let line = line.map_err(|error| wrong("text in UTF-8", error.to_string()))?;
             if line.trim().is_empty() || line.trim_start().starts_with('#') {
@@ -173,10 +172,20 @@ impl Lens {
         }
         if vectors.len() < wanted {
             let expected = format!("{wanted} vectors, one for each pixel");
-            return Err(ArpError::Table { line: last + 1, expected, found: format!("{} vectors", vectors.len()) });
+            return Err(wrong_table(last + 1, &expected, format_args!("{} vectors", vectors.len())));
         }
         Ok(Self::Table(vectors.into()))
     }
+}
+
+fn wrong_lens(expected: impl fmt::Display, found: impl fmt::Display) -> SettingError {
+    SettingError::value("arp.lens", expected, found)
+}
+
+/// Returns the error for a line of a file of viewing vectors, counted from 1. If data are missing, `line` is the line
+/// after the last one.
+fn wrong_table(line: usize, expected: &str, found: impl fmt::Display) -> FileError {
+    FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("arp.lens table, line {line}"))
 }
 
 /// Returns the first 40 characters of a line, to keep error messages short.
@@ -197,16 +206,16 @@ fn is_direction(vector: Vector) -> bool {
     square.is_normal()
 }
 
-fn check_table(vectors: &[Vector], picture: &Picture) -> Result<(), ArpError> {
+fn check_table(vectors: &[Vector], picture: &LensPicture) -> Result<(), SettingError> {
     let wanted = picture.width as usize * picture.height as usize;
     if vectors.len() != wanted {
         let expected = format!("{wanted} vectors for {} x {} pixels", picture.width, picture.height);
-        return Err(ArpError::Lens { expected, found: format!("{} vectors", vectors.len()) });
+        return Err(wrong_lens(expected, format_args!("{} vectors", vectors.len())));
     }
     match vectors.iter().position(|vector| !is_direction(*vector)) {
         Some(place) => {
-            let expected = "vectors that are finite and not all 0".to_owned();
-            Err(ArpError::Lens { expected, found: format!("{:?} as vector {place}", vectors[place]) })
+            let found = format!("{:?} as vector {place}", vectors[place]);
+            Err(wrong_lens("vectors that are finite and not all 0", found))
         }
         None => Ok(()),
     }
@@ -214,7 +223,7 @@ fn check_table(vectors: &[Vector], picture: &Picture) -> Result<(), ArpError> {
 
 /// Checks that the lens does not fold the picture. The slope of rho (1 + k1 rho^2 + k2 rho^4) must be positive up to
 /// the corner of the picture.
-fn check_radial(k1: f64, k2: f64, corner: f64) -> Result<(), ArpError> {
+fn check_radial(k1: f64, k2: f64, corner: f64) -> Result<(), SettingError> {
     let slope = |square: f64| 1.0 + 3.0 * k1 * square + 5.0 * k2 * square * square;
     let turn = -3.0 * k1 / (10.0 * k2);
     let inside = if turn > 0.0 && turn < corner { slope(turn) } else { 1.0 };
@@ -222,11 +231,11 @@ fn check_radial(k1: f64, k2: f64, corner: f64) -> Result<(), ArpError> {
     if k1.is_finite() && k2.is_finite() && least > 0.0 {
         return Ok(());
     }
-    let expected = "1 + 3 k1 rho^2 + 5 k2 rho^4 above 0 up to the corner pixel".to_owned();
-    Err(ArpError::Lens { expected, found: format!("{least} for k1 {k1}, k2 {k2}") })
+    let expected = "1 + 3 k1 rho^2 + 5 k2 rho^4 above 0 up to the corner pixel";
+    Err(wrong_lens(expected, format_args!("{least} for k1 {k1}, k2 {k2}")))
 }
 
-fn equidistant(from_middle: [f64; 2], picture: &Picture) -> Vector {
+fn equidistant(from_middle: [f64; 2], picture: &LensPicture) -> Vector {
     let half = f64::from(picture.width) / 2.0;
     let [right, down] = from_middle.map(|p| p / half);
     let distance = libm::hypot(right, down);
@@ -254,13 +263,13 @@ impl LensTable {
     /// # Errors
     ///
     /// Fails in the same cases as [`Lens::check`].
-    pub fn new(lens: &Lens, picture: &Picture, vector_bits: u64) -> Result<Self, ArpError> {
+    pub fn new(lens: &Lens, picture: &LensPicture, vector_bits: u64) -> Result<Self, SettingError> {
         lens.check(picture)?;
         Ok(Self::of_checked(lens, picture, vector_bits))
     }
 
     /// Creates the table of viewing vectors for a lens that has already been checked.
-    pub(crate) fn of_checked(lens: &Lens, picture: &Picture, vector_bits: u64) -> Self {
+    pub(crate) fn of_checked(lens: &Lens, picture: &LensPicture, vector_bits: u64) -> Self {
         let mut words = [Vec::new(), Vec::new(), Vec::new()];
         for y in 0..picture.height {
             for x in 0..picture.width {

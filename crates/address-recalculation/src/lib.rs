@@ -52,7 +52,7 @@
 //!
 //! # Timing
 //!
-//! All numbers are in [`ArpTiming`] and [`ScanTiming`]. [`Scan`] computes the exact instants.
+//! All numbers are in [`ArpTiming`] and [`ScanTiming`]. [`FaceScan`] computes the exact instants.
 //!
 //! | instant | time |
 //! |---|---|
@@ -83,7 +83,6 @@ mod batch;
 mod composition;
 mod config;
 mod display;
-mod error;
 mod face;
 mod field;
 mod lens;
@@ -101,14 +100,13 @@ pub use address::{AddressUnit, Footprint};
 pub use composition::{Composition, CompositionOrder};
 pub use config::ArpConfig;
 pub use display::AddressRecalculationPipeline;
-pub use error::ArpError;
 pub use face::{CubeFace, FaceGeometry, TexelAddress, Vector};
-pub use lens::{Lens, LensTable, Picture};
+pub use lens::{Lens, LensPicture, LensTable};
 pub use lookup::{LookStats, Lookup};
 pub use memory::{DisplayMemory, MemoryStats};
 pub use orientation::{MatrixWords, Orientation, OrientationLatch};
 pub use protocol::{begin_update, face_region, orientation_message, region_grid, swap_together};
-pub use scan::{Latch, Scan};
+pub use scan::{FaceScan, Latch};
 pub use texel::{DEPTH_FARTHEST, FaceSet, TexelFormat};
 pub use timing::{ArpTiming, ScanTiming};
 

@@ -1,9 +1,9 @@
 //! The register for the head's orientation, and the checks of matrices.
 
-use crate::error::ArpError;
 use crate::face::Vector;
 use crate::lens::signed_word;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 
 /// Largest accepted deviation from a rotation matrix, measured in the scalar products of the rows.
 const TOLERANCE: f64 = 1e-3;
@@ -23,9 +23,9 @@ impl Orientation {
     ///
     /// # Errors
     ///
-    /// Returns [`ArpError::Orientation`] if the matrix is not finite, or deviates from a rotation by more than 1e-3.
-    pub fn new(rows: [Vector; 3]) -> Result<Self, ArpError> {
-        let refused = |what: String| Err(ArpError::Orientation(what));
+    /// Returns a [`SettingError`] if the matrix is not finite, or deviates from a rotation by more than 1e-3.
+    pub fn new(rows: [Vector; 3]) -> Result<Self, SettingError> {
+        let refused = |what: String| Err(SettingError::value("orientation", "a rotation within 1e-3", what));
         if let Some(component) = rows.iter().flatten().find(|component| !component.is_finite()) {
             return refused(format!("a component of {component}"));
         }
@@ -47,8 +47,8 @@ impl Orientation {
     ///
     /// # Errors
     ///
-    /// Returns [`ArpError::Orientation`] if the quaternion is not finite or has length zero.
-    pub fn from_quaternion(quaternion: [f64; 4]) -> Result<Self, ArpError> {
+    /// Returns a [`SettingError`] if the quaternion is not finite or has length zero.
+    pub fn from_quaternion(quaternion: [f64; 4]) -> Result<Self, SettingError> {
         let length = libm::sqrt(quaternion.iter().map(|component| component * component).sum());
         let [x, y, z, w] = quaternion.map(|component| component / length);
         Self::new([
@@ -128,7 +128,7 @@ impl OrientationLatch {
     ///
     /// Fails in the same cases as [`Orientation::new`]. A refused matrix is counted and does not replace the previous
     /// matrix.
-    pub fn load(&mut self, rows: [Vector; 3], now: Time) -> Result<(), ArpError> {
+    pub fn load(&mut self, rows: [Vector; 3], now: Time) -> Result<(), SettingError> {
         match Orientation::new(rows) {
             Ok(orientation) => {
                 self.loads += 1;

@@ -48,7 +48,6 @@
 mod account;
 mod cells;
 mod config;
-mod error;
 mod objects;
 mod segment;
 mod sight;
@@ -59,7 +58,6 @@ mod warp;
 pub use account::{draws_per_s, saved_percent};
 pub use cells::{Cell, CellAssignment, Cells};
 pub use config::PriorityTiming;
-pub use error::PriorityError;
 pub use objects::Objects;
 pub use segment::{CutVertex, Segmentation};
 pub use sight::{angle_to_face, mean_faces_touched, time_until_visible_s};

@@ -7,8 +7,8 @@
 //! MATRIX   nine words, row by row                an orientation, in single precision
 //! ```
 
-use crate::error::ArpError;
 use crate::face::{CubeFace, Vector};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{REGION_SIZE, RegionGrid, RegionId, Word, read_swap_request};
 use std::sync::Arc;
 
@@ -83,8 +83,8 @@ pub(crate) enum ArpMessage {
 ///
 /// # Errors
 ///
-/// [`ArpError`] describes the expected and the found content.
-pub(crate) fn read(words: &[Word], face_texels: u32) -> Result<ArpMessage, ArpError> {
+/// [`SettingError`] describes the expected and the found content.
+pub(crate) fn read(words: &[Word], face_texels: u32) -> Result<ArpMessage, SettingError> {
     // Swap requests have the same words for all displays.
     if let Some(buffer) = read_swap_request(words) {
         return Ok(ArpMessage::Swap { buffer: checked_buffer(buffer.into())?, together: 0 });
@@ -108,16 +108,16 @@ pub(crate) fn read(words: &[Word], face_texels: u32) -> Result<ArpMessage, ArpEr
     }
 }
 
-fn wrong(expected: &str, found: &dyn std::fmt::Display) -> ArpError {
-    ArpError::Number(format!("message: expected {expected}, found {found}"))
+fn wrong(expected: &str, found: &dyn std::fmt::Display) -> SettingError {
+    SettingError::value("message", expected, found)
 }
 
-fn checked_buffer(buffer: Word) -> Result<u8, ArpError> {
+fn checked_buffer(buffer: Word) -> Result<u8, SettingError> {
     u8::try_from(buffer).ok().filter(|buffer| *buffer < 2).ok_or_else(|| wrong("buffer 0 or 1", &buffer))
 }
 
 /// Returns the regions of a map, which must have exactly one bit for each region.
-fn announced(map: &[Word], count: u32) -> Result<Vec<u16>, ArpError> {
+fn announced(map: &[Word], count: u32) -> Result<Vec<u16>, SettingError> {
     if map.len() != count.div_ceil(Word::BITS) as usize {
         return Err(wrong(&format!("a map of {count} regions"), &format!("{} words", map.len())));
     }

@@ -1,9 +1,9 @@
 //! Exact times at which each pixel is displayed and its orientation is read.
 
-use crate::error::ArpError;
 use crate::timing::{ArpTiming, ScanTiming};
-use pxpl5_sim::{Clock, Span, Time};
-use pxpl5_wire::{FieldParity, PeriodNumber};
+use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{PeriodNumber, Video};
 use serde::{Deserialize, Serialize};
 
 /// Event before which the display reads (latches) the newest orientation.
@@ -26,70 +26,55 @@ impl Latch {
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 
-/// Times of retraces, of displayed pixels and of reading the orientation. All times are computed from time zero. Field
-/// `n` scans the even lines if `n` is even.
-///
-/// The times equal the times of the Pixel-Planes 5 frame buffer with the same parameters. The code is separate because
-/// crates of boards do not depend on each other.
+/// Times of retraces, of displayed pixels and of reading the orientation. Field `n` scans the even lines if `n` is
+/// even.
 #[derive(Clone, Copy, Debug)]
-pub struct Scan {
-    timing: ScanTiming,
-    pixel: Clock,
-    field: Clock,
+pub struct FaceScan {
+    video: Video,
     depth: Span,
     read_ahead: Span,
 }
 
-impl Scan {
+impl FaceScan {
     /// Creates a scan for a pipeline with the stages of `arp`.
     ///
     /// # Errors
     ///
     /// Fails in the same cases as [`ScanTiming::check`] and [`ArpTiming::check`].
-    pub fn new(timing: ScanTiming, arp: &ArpTiming) -> Result<Self, ArpError> {
+    pub fn new(timing: ScanTiming, arp: &ArpTiming) -> Result<Self, SettingError> {
         arp.check()?;
-        timing.check()?;
-        let clocks = timing.clocks().ok_or_else(|| ArpError::Number("arp_scan.pixel_ps".to_owned()))?;
-        Ok(Self { timing, pixel: clocks[0], field: clocks[1], depth: arp.depth(), read_ahead: arp.read_ahead() })
+        Ok(Self { video: timing.video()?, depth: arp.depth(), read_ahead: arp.read_ahead() })
     }
 
     /// Returns the number of visible pixels in a line.
     #[must_use]
     pub const fn width(&self) -> u32 {
-        self.timing.visible_pixels as u32
+        self.video.width()
     }
 
     /// Returns the number of visible lines in a frame of two fields.
     #[must_use]
     pub const fn height(&self) -> u32 {
-        self.timing.visible_lines as u32 * 2
+        self.video.height()
     }
 
     /// Returns the time of the retrace at which a field starts.
     #[must_use]
     pub const fn retrace(&self, field: PeriodNumber) -> Time {
-        self.field.edge(field.0)
+        self.video.retrace(field)
     }
 
     /// Returns the number of the field that is scanned at an instant. At a retrace, this is the field that begins.
     #[must_use]
     pub const fn field_at(&self, time: Time) -> PeriodNumber {
-        let n = self.field.edge_at_or_after(time);
-        PeriodNumber(if self.field.edge(n).0 == time.0 { n } else { n - 1 })
+        self.video.field_at(time)
     }
 
     /// Returns the time at which a field displays a pixel of the frame. Returns `None` if the field does not scan the
     /// pixel.
     #[must_use]
     pub fn lights(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
-        let parity = FieldParity::of_field(field).first_line();
-        if x >= self.width() || y >= self.height() || y % 2 != parity {
-            return None;
-        }
-        let start = field.0.saturating_mul(self.timing.frame_lines).div_ceil(2);
-        let line = start + self.timing.top_blanking + u64::from(y / 2);
-        let blanked = line.saturating_mul(self.timing.line_pixels).saturating_add(self.timing.left_blanking);
-        Some(self.pixel.edge(blanked.saturating_add(u64::from(x))))
+        self.video.when(x, y, field)
     }
 
     /// Returns the time at which the texels of a pixel are read. Returns `None` if the field does not scan the pixel.

@@ -1,8 +1,8 @@
 //! All parameters of the display, with their sources.
 
-use crate::error::ArpError;
-use pxpl5_sim::parameters::{MAX, ParameterTable, check};
-use pxpl5_sim::{Clock, Span};
+use pxpl5_sim::Span;
+use pxpl5_sim::parameters::{MAX, ParameterTable, SettingError, check};
+use pxpl5_wire::{Video, VideoNumbers};
 
 pxpl5_sim::parameters::parameter_table! {
     /// Word lengths, memories and stage time of the pipeline.
@@ -93,17 +93,17 @@ impl ArpTiming {
     ///
     /// # Errors
     ///
-    /// [`ArpError::Number`] names the parameter, the expected and the found value.
-    pub fn check(&self) -> Result<(), ArpError> {
-        ParameterTable::check(self).map_err(|error| ArpError::Number(format!("arp.{error}")))?;
+    /// [`SettingError`] names the parameter, the expected and the found value.
+    pub fn check(&self) -> Result<(), SettingError> {
+        ParameterTable::check(self).map_err(|error| error.in_table("arp"))?;
         rule(self.face_texels.is_multiple_of(128), "face_texels", "a multiple of 128", self.face_texels)?;
         rule([16, 24].contains(&self.depth_bits), "depth_bits", "16 or 24", self.depth_bits)?;
         rule([16, 24].contains(&self.colour_bits), "colour_bits", "16 or 24", self.colour_bits)
     }
 }
 
-fn rule(holds: bool, name: &'static str, expected: &'static str, found: u64) -> Result<(), ArpError> {
-    if holds { Ok(()) } else { Err(ArpError::Number(format!("arp.{name}: expected {expected}, found {found}"))) }
+fn rule(holds: bool, name: &'static str, expected: &'static str, found: u64) -> Result<(), SettingError> {
+    SettingError::require(holds, name, expected, found).map_err(|error| error.in_table("arp"))
 }
 
 impl ScanTiming {
@@ -112,26 +112,40 @@ impl ScanTiming {
     ///
     /// # Errors
     ///
-    /// [`ArpError::Number`] names the parameter, the expected and the found value.
-    pub fn check(&self) -> Result<(), ArpError> {
-        let path = |error| ArpError::Number(format!("arp_scan.{error}"));
-        ParameterTable::check(self).map_err(path)?;
-        check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX)).map_err(path)?;
-        check("visible_pixels", self.visible_pixels, (1, self.line_pixels)).map_err(path)?;
-        check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels)).map_err(path)?;
-        // Each field contains half of the lines of a frame.
-        let field_lines = self.frame_lines / 2;
-        check("visible_lines", self.visible_lines, (1, field_lines)).map_err(path)?;
-        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines)).map_err(path)?;
-        self.clocks()
-            .ok_or_else(|| ArpError::Number("arp_scan.pixel_ps: expected a period below 2^63 ps a field".to_owned()))?;
-        Ok(())
+    /// [`SettingError`] names the parameter, the expected and the found value.
+    pub fn check(&self) -> Result<(), SettingError> {
+        self.check_numbers().map_err(|error| error.in_table("arp_scan"))
     }
 
-    /// Returns the pixel clock and the field clock. Returns `None` if a parameter is too large.
-    pub(crate) fn clocks(&self) -> Option<[Clock; 2]> {
-        let pixels = self.frame_lines.checked_mul(self.line_pixels)?;
-        let field = Clock::new(self.pixel_ps.checked_mul(pixels)?, self.pixel_divisor.checked_mul(2)?)?;
-        Some([Clock::new(self.pixel_ps, self.pixel_divisor)?, field])
+    fn check_numbers(&self) -> Result<(), SettingError> {
+        ParameterTable::check(self)?;
+        check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;
+        check("visible_pixels", self.visible_pixels, (1, self.line_pixels))?;
+        check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels))?;
+        // Each field contains half of the lines of a frame.
+        let field_lines = self.frame_lines / 2;
+        check("visible_lines", self.visible_lines, (1, field_lines))?;
+        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))?;
+        self.signal().map(|_| ())
+    }
+
+    /// Returns the video signal that this table describes.
+    pub(crate) fn video(&self) -> Result<Video, SettingError> {
+        self.check()?;
+        self.signal().map_err(|error| error.in_table("arp_scan"))
+    }
+
+    fn signal(&self) -> Result<Video, SettingError> {
+        let video = Video::new(VideoNumbers {
+            pixel_ps: self.pixel_ps,
+            pixel_divisor: self.pixel_divisor,
+            line_pixels: self.line_pixels,
+            frame_lines: self.frame_lines,
+            visible_pixels: self.visible_pixels,
+            visible_lines: self.visible_lines,
+            left_blanking: self.left_blanking,
+            top_blanking: self.top_blanking,
+        });
+        video.ok_or_else(|| SettingError::value("pixel_ps", "a period below 2^63 ps a field", self.pixel_ps))
     }
 }

@@ -1,6 +1,6 @@
 //! Tests of invalid user input: errors name the parameter, the expected and the found value.
 
-use address_recalculation::{ArpConfig, ArpTiming, Lens, Picture, ScanTiming};
+use address_recalculation::{ArpConfig, ArpTiming, Lens, LensPicture, ScanTiming};
 use proptest::prelude::*;
 use pxpl5_wire::display::DisplayConfig;
 use std::io::Cursor;
@@ -42,7 +42,7 @@ fn numbers_are_refused_by_name() {
     ArpConfig { scan, ..ArpConfig::IDEAL }.build(&[]).expect_err("refused");
 }
 
-const TINY: Picture = Picture { width: 2, height: 1, horizontal_deg: 60.0 };
+const TINY: LensPicture = LensPicture { width: 2, height: 1, horizontal_deg: 60.0 };
 
 fn table(text: &str) -> Result<Lens, String> {
     Lens::read(Cursor::new(text), &TINY).map_err(|error| error.to_string())
@@ -53,13 +53,13 @@ fn a_table_of_vectors_is_read_and_its_lengths_do_not_matter() {
     let lens = table("# two pixels\n\n  1 0 -1\n-2e0 0 -2\n").expect("two vectors");
     assert_eq!(lens.view(&TINY, 0, 0), [1.0, 0.0, -1.0]);
     lens.check(&TINY).expect("fits");
-    let wider = lens.check(&Picture { width: 3, ..TINY }).expect_err("another picture").to_string();
+    let wider = lens.check(&LensPicture { width: 3, ..TINY }).expect_err("another picture").to_string();
     assert_eq!(wider, "arp.lens: expected 3 vectors for 3 x 1 pixels, found 2 vectors");
 }
 
 #[test]
 fn a_table_has_a_vector_for_each_pixel_row_by_row() {
-    let picture = Picture { width: 3, height: 2, ..TINY };
+    let picture = LensPicture { width: 3, height: 2, ..TINY };
     let text: Vec<String> = (1..=6).map(|n| format!("{n} 0 -1\n")).collect();
     let read = |lines: &[String]| Lens::read(Cursor::new(lines.concat()), &picture).map_err(|error| error.to_string());
     let lens = read(&text).expect("six vectors");
@@ -70,7 +70,7 @@ fn a_table_has_a_vector_for_each_pixel_row_by_row() {
     assert_eq!(lens.view(&picture, 2, 2), [0.0, 0.0, -1.0], "beyond the table it looks straight ahead");
     let short = read(&text[..5]).expect_err("five vectors");
     assert_eq!(short, "arp.lens table, line 6: expected 6 vectors, one for each pixel, found 5 vectors");
-    let other = lens.check(&Picture { height: 3, ..picture }).expect_err("another picture").to_string();
+    let other = lens.check(&LensPicture { height: 3, ..picture }).expect_err("another picture").to_string();
     assert_eq!(other, "arp.lens: expected 9 vectors for 3 x 3 pixels, found 6 vectors");
 }
 
@@ -81,9 +81,9 @@ fn a_lens_without_slope_and_a_picture_without_angle_are_refused() {
     let error = Lens::Radial { k1: -4.0 / 3.0, k2: 0.0 }.check(&TINY).expect_err("flat there").to_string();
     assert!(error.contains("found 0 for k1"), "{error}");
     for lens in [Lens::Flat, Lens::Equidistant] {
-        lens.check(&Picture { horizontal_deg: 0.0, ..TINY }).expect_err("no angle");
+        lens.check(&LensPicture { horizontal_deg: 0.0, ..TINY }).expect_err("no angle");
     }
-    Lens::Equidistant.check(&Picture { horizontal_deg: 360.0, ..TINY }).expect("all around");
+    Lens::Equidistant.check(&LensPicture { horizontal_deg: 360.0, ..TINY }).expect("all around");
 }
 
 #[test]
@@ -122,7 +122,7 @@ proptest! {
         width in 1_u32..700,
         height in 1_u32..700,
     ) {
-        let picture = Picture { width, height, horizontal_deg: 60.0 };
+        let picture = LensPicture { width, height, horizontal_deg: 60.0 };
         let [right, down] = [width, height].map(|n| (f64::from(n) - 1.0) / f64::from(width));
         let step = (right.powi(2) + down.powi(2)) / 1_000.0;
         let slope = |squared: f64| 1.0 + 3.0 * k1 * squared + 5.0 * k2 * squared.powi(2);
@@ -133,7 +133,7 @@ proptest! {
 
     #[test]
     fn no_lens_makes_it_panic(k1 in any::<f64>(), k2 in any::<f64>(), horizontal_deg in any::<f64>()) {
-        let picture = Picture { horizontal_deg, ..TINY };
+        let picture = LensPicture { horizontal_deg, ..TINY };
         let lens = Lens::Radial { k1, k2 };
         if lens.check(&picture).is_ok() {
             prop_assert!(lens.view(&picture, 0, 0).iter().all(|component| component.is_finite()));

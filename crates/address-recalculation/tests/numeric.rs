@@ -1,13 +1,14 @@
 //! Tests of the specification's numeric cases for the display: 640 x 480 pixels, 60 degrees, faces of 512 texels.
 
 use address_recalculation::{
-    AddressUnit, ArpConfig, ArpTiming, CubeFace, FaceGeometry, Latch, Lens, Orientation, Picture, TexelAddress, Vector,
+    AddressUnit, ArpConfig, ArpTiming, CubeFace, FaceGeometry, Latch, Lens, LensPicture, Orientation, TexelAddress,
+    Vector,
 };
 use glam::DQuat;
 use pxpl5_sim::SplitMix64;
 use pxpl5_wire::PeriodNumber;
 
-const PICTURE: Picture = Picture { width: 640, height: 480, horizontal_deg: 60.0 };
+const PICTURE: LensPicture = LensPicture { width: 640, height: 480, horizontal_deg: 60.0 };
 const GUARDED: FaceGeometry = FaceGeometry { texels: 512, guard: 1 };
 const BARE: FaceGeometry = FaceGeometry { texels: 512, guard: 0 };
 
@@ -74,13 +75,13 @@ fn case_5_a_lens_that_folds_is_refused() {
 
 #[test]
 fn case_6_an_equidistant_lens_sees_behind_the_head() {
-    let wide = Picture { horizontal_deg: 200.0, ..PICTURE };
+    let wide = LensPicture { horizontal_deg: 200.0, ..PICTURE };
     let seen = Lens::Equidistant.view(&wide, 639, 240);
     near(seen, [0.985276071, -0.001541903, 0.170963991], 1e-9);
     assert_eq!(CubeFace::of(seen), Some(CubeFace::PosX));
     Lens::Equidistant.check(&wide).expect("up to 360 degrees");
     Lens::Flat.check(&wide).expect_err("a plane has less than 180");
-    let odd = Picture { width: 3, height: 3, horizontal_deg: 200.0 };
+    let odd = LensPicture { width: 3, height: 3, horizontal_deg: 200.0 };
     assert_eq!(Lens::Equidistant.view(&odd, 1, 1), [0.0, 0.0, -1.0], "no distance has no direction");
 }
 
@@ -276,7 +277,7 @@ fn the_pipeline_is_shorter_than_a_microsecond() {
 /// but their numbers must agree.
 #[test]
 fn the_scan_is_that_of_the_frame_buffer() {
-    let video = pxpl5_framebuffer::Video::new(pxpl5_framebuffer::VideoTiming::PAPERS).expect("valid");
+    let video = pxpl5_framebuffer::VideoTiming::PAPERS.video().expect("valid");
     let scan = ArpConfig::IDEAL.scan().expect("valid");
     for n in [0, 1, 2, 59, 60, 1_000_001] {
         let field = PeriodNumber(n);

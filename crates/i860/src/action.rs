@@ -1,5 +1,5 @@
-//! Effects of instructions and pairs. Each effect is chosen once, at decoding, so execution does not need the
-//! instruction bits again.
+//! Effects of instructions and pairs (a floating-point and a core instruction that execute together). Each effect is
+//! chosen once, at decoding, so execution does not need the instruction bits again.
 
 use crate::decoded::Decoded;
 use crate::dual_operation::source_widths;
@@ -15,7 +15,7 @@ pub(crate) struct CoreAction {
     /// Number of the first source register, or r0 if the first operand is an immediate.
     pub(crate) first: u8,
     pub(crate) second: u8,
-    /// Number of the register that receives the address of an access, or r0 without auto-increment.
+    /// Number of the register that receives the address of a load or store, or r0 without auto-increment.
     pub(crate) increments: u8,
     /// Immediate operand or address displacement, which is added to the first source register. The value is 0 if the
     /// instruction has neither.
@@ -47,7 +47,7 @@ pub(crate) enum Core {
     PipelinedLoadDouble,
     StorePixels,
     /// All other core operations, such as control-register moves, `flush`, `trap` and `lock`. The processor executes
-    /// them from the decoded instruction.
+    /// these operations from the decoded instruction.
     System,
     Branch,
 }
@@ -106,9 +106,9 @@ pub(crate) struct FloatingAction {
     pub(crate) second: u8,
 }
 
-/// The kinds of effect that a floating-point instruction can have. Kinds that read singles come first, then kinds that
-/// read doubles. Specialized kinds do not apply if an instruction uses the result that leaves a pipe in the same clock
-/// as a source.
+/// The kinds of effect that a floating-point instruction can have. Kinds that read single-precision operands come
+/// first, then kinds that read double-precision operands. If a source can be the result that leaves a pipe in the same
+/// clock, the kind is [`Floating::Any`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Floating {
     /// Pipelined multiplication of two single-precision operands.
@@ -131,7 +131,8 @@ pub(crate) enum Floating {
     SubtractDoubles,
     /// Any other operation that reads two double-precision operands.
     Doubles,
-    /// Any operation with mixed precisions, or with a source that can be the result that leaves the pipe.
+    /// Any operation with mixed precisions, or with a source that can be the result that leaves a pipe in the same
+    /// clock.
     Any,
     Nothing,
 }
@@ -178,17 +179,17 @@ impl Floating {
     }
 }
 
-/// The effects of a single instruction, or of both halves of a pair.
+/// The effects of a single instruction, or of both halves of a pair (a floating-point and a core instruction).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Action {
     pub(crate) core: CoreAction,
     pub(crate) floating: FloatingAction,
-    /// Index of the instruction or pair in its block.
+    /// Index of the instruction or pair in its block of code.
     pub(crate) number: u8,
 }
 
 impl Action {
-    /// Chooses the effects of a single instruction, or of a pair if `second` has the core half.
+    /// Chooses the effects of a single instruction, or of a pair of instructions if `second` has the core half.
     pub(crate) fn new(number: u8, first: &Decoded, second: Option<&Decoded>) -> Action {
         // Instructions without any effect get no action.
         let floating = Some(first).filter(|first| first.is_floating() && !first.is_idle());

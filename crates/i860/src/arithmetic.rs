@@ -103,7 +103,7 @@ pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result
     PipeStage { bits, double: true }
 }
 
-/// Converts a value from a pipe to the precision in which an instruction reads it.
+/// Converts a value from a pipe to the precision in which an instruction reads the value.
 #[inline]
 pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     match (value.double, double) {

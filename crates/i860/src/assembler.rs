@@ -43,7 +43,7 @@ pub struct Program {
     pub base: u32,
     /// All bytes of the program from address `base` on, including the bytes of gaps.
     pub bytes: Vec<u8>,
-    /// Addresses of labels and values of constants, for each name.
+    /// Value of each name: the address of a label or the value of a constant.
     pub symbols: BTreeMap<String, u32>,
     /// The name and the address of each label, sorted by address.
     pub labels: Vec<(String, u32)>,
@@ -63,7 +63,7 @@ pub struct Data {
     pub address: u32,
     /// Size of the data block in bytes.
     pub bytes: u32,
-    /// Line number of the directive in its source.
+    /// Line number of the directive in its source text.
     pub line: usize,
     pub kind: DataKind,
 }

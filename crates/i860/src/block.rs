@@ -17,11 +17,11 @@ use crate::trap::TrapCause;
 /// Greatest number of instructions or pairs in a block, without the delay slot.
 const LONGEST: usize = 32;
 
-/// Code that is issued in one clock: an instruction or a pair.
+/// Code that the processor issues in one clock: an instruction, or a pair of instructions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
     pub(crate) pc: u32,
-    /// Pairing mode for this instruction or pair.
+    /// Pairing mode (single instructions or pairs) for this instruction or pair.
     pub(crate) mode: Mode,
     pub(crate) after: Mode,
     /// The single instruction, or the floating-point half of a pair.
@@ -108,13 +108,15 @@ const NEVER: u64 = u64::MAX;
 /// the greatest length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Address at which the block begins. The next field, `mode`, is the pairing mode at this address.
+    /// Address at which the block begins.
     pub(crate) pc: u32,
+    /// Pairing mode (single instructions or pairs) at the start of the block.
     mode: Mode,
     /// Pairing mode (single instructions or pairs) after the delay slot.
     pub(crate) after_slot: Mode,
-    /// Pairing mode of the code that follows the block. The next field is the address of this code.
+    /// Pairing mode (single instructions or pairs) after the block's last instruction or pair before the delay slot.
     pub(crate) after: Mode,
+    /// Address after the block's last instruction or pair before the delay slot.
     pub(crate) next: u32,
     /// Number of instructions or pairs. A pair counts as one. The delay slot does not count.
     pub(crate) count: usize,
@@ -135,7 +137,7 @@ pub(crate) struct Block {
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 
-/// A load or store in the form for the timing model, without its address and value.
+/// A load or store in the form that the timing model needs, without address and value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Access {
     pub(crate) op: Op,
@@ -153,7 +155,7 @@ impl Access {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AccessingUnit {
     pub(crate) access: Access,
-    /// Index of the instruction or pair in its block.
+    /// Index of the instruction or pair in its block of code.
     pub(crate) number: u8,
     pub(crate) is_store: bool,
     /// True if the access always goes to the bus, even if the cache holds the data.
@@ -174,7 +176,7 @@ impl AccessingUnit {
     }
 }
 
-/// Returns, for each cache line, the index of the first instruction or pair on the line.
+/// Returns, for each cache line of a block, the index of the first instruction or pair on the line.
 fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
     let mut line = None;
     let lines = (0..).zip(units);
@@ -230,7 +232,7 @@ impl Block {
         self.units.get(..execution.units + usize::from(execution.slot)).unwrap_or_default()
     }
 
-    /// Returns the number of executed instructions. A pair counts as two.
+    /// Returns the number of instructions of the block that were executed. A pair counts as two.
     #[inline]
     pub(crate) fn instructions_of(&self, execution: Execution) -> u64 {
         let executed = self.executed(execution);

@@ -3,7 +3,7 @@
 
 use crate::timing::ChipSizes;
 
-/// A set-associative tag array with pseudo-random replacement. All its sizes are powers of two.
+/// A set-associative tag array with pseudo-random replacement. All sizes of the array are powers of two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> {
     /// Tags of all sets. A tag is a line address with [`VALID`] and [`DIRTY`] in its low bits, or 0 for an empty way.
@@ -12,7 +12,7 @@ pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u
     changes: u64,
 }
 
-/// Flag in the low bits of a tag: the way holds a line.
+/// Flag in the low bits of a tag: the way (place in a set) holds a cache line.
 const VALID: u32 = 1;
 const DIRTY: u32 = 2;
 
@@ -39,7 +39,8 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Raises the number of changes above `latest`. The number then differs from the numbers of all earlier states.
+    /// Raises the number of changes above `latest`, so that later states of the array differ in this number from all
+    /// earlier states.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }
@@ -49,13 +50,13 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (address / LINE_BYTES) as usize % SETS
     }
 
-    /// Returns the tag of a line that is held and clean.
+    /// Returns the tag of a cache line that is held and clean.
     #[inline]
     fn tag(address: u32) -> u32 {
         address & !(LINE_BYTES - 1) | VALID
     }
 
-    /// Returns true if the array holds the line of an address.
+    /// Returns true if the array holds the cache line of an address.
     #[inline]
     pub(crate) fn holds(&self, address: u32) -> bool {
         self.sets[Self::set(address)].iter().any(|held| held & !DIRTY == Self::tag(address))
@@ -101,7 +102,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
     }
 }
 
-/// A 16-bit maximal-length shift register. Its pseudo-random numbers choose the cache lines to replace.
+/// A 16-bit maximal-length shift register. The pseudo-random numbers of the register choose the cache lines to replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Chance(u16);
 

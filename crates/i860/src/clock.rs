@@ -1,5 +1,5 @@
-//! The clock of the processor: instruction issue, freezes, caches and queues. The clock receives every executed block
-//! and changes no value of the program.
+//! The clock of the processor: instruction issue, freezes, caches and queues. The clock counts the time of every
+//! executed block of code, and changes no register or memory.
 
 use crate::block::{Access, Block, Unit};
 use crate::bus::Bus;
@@ -30,7 +30,7 @@ pub(crate) struct Accesses {
 }
 
 impl Accesses {
-    /// Capacity in accesses. The number is a power of two that is greater than the length of a block.
+    /// Greatest number of accesses in the list. The number is a power of two and greater than the length of a block.
     const MOST: usize = 64;
 
     pub(crate) fn new() -> Accesses {
@@ -120,7 +120,8 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the numbering of scoreboard states with `numbers`. Several processors share `numbers`.
+    /// Exchanges the numbering of scoreboard states with `numbers`, the numbering of a shared store of decoded
+    /// programs. The memoized clocks of the store refer to this numbering.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -143,7 +144,7 @@ impl Clock {
         self.on && self.memo.is_some() && !self.translation.is_on() && self.sampler.is_none()
     }
 
-    /// Counts the clocks of the part of a block that was executed.
+    /// Counts the clocks of the executed part of a block. Memoized clocks are reused if possible.
     #[inline]
     pub(crate) fn pass<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !(accesses.all_held && self.reuse_block_clocks(block, execution)) {
@@ -151,7 +152,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a block whose whole execution is not memoized as one run.
+    /// Counts the clocks of an executed block whose clocks are not memoized as a whole.
     #[inline(never)]
     fn count_block<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {
@@ -234,7 +235,7 @@ impl Clock {
         }
     }
 
-    /// Counts the freezes of a single instruction, then the clock of its issue.
+    /// Counts the clocks of all freezes of a single instruction, then the clock of the instruction's issue.
     #[inline]
     fn issue_single(&mut self, d: &Decoded) {
         if self.board.may_wait(d) {
@@ -312,7 +313,8 @@ impl Clock {
         Some(transfer)
     }
 
-    /// Delays instructions of a hazard class until a cache miss ends at clock `until`, if the freeze row is enabled.
+    /// Delays instructions of a hazard class until a cache miss ends at clock `until`, if row `why` of the freeze table
+    /// is enabled.
     fn delay_hazard(&mut self, hazard: u16, until: u64, why: Freeze) {
         if self.common.costs.applies(why) {
             self.board.set_hazard_until(hazard, until + self.common.costs.clocks(why), why);

@@ -18,7 +18,7 @@ fn place(pc: u32) -> usize {
 pub(crate) struct Code {
     blocks: Box<[Option<Box<Block>>]>,
     pub(crate) words: CodeMap,
-    /// True if decoded blocks were discarded because memory may have changed.
+    /// True if decoded blocks were discarded because the code in memory may have changed.
     changed: bool,
 }
 
@@ -34,7 +34,8 @@ impl Code {
         Code { words: CodeMap::new(program.base..end), ..Code::new() }
     }
 
-    /// Removes and returns the block that begins at address `pc` in pairing mode `mode`, if it was decoded.
+    /// Removes and returns the block that begins at address `pc` in pairing mode `mode`. Returns `None` if this block
+    /// was not decoded.
     #[inline]
     pub(crate) fn take(&mut self, pc: u32, mode: Mode) -> Option<Box<Block>> {
         self.blocks.get_mut(place(pc))?.take().filter(|block| block.begins(pc, mode))
@@ -55,7 +56,7 @@ impl Code {
         self.blocks[place(pc)] = Some(block);
     }
 
-    /// Discards all decoded blocks, because memory may have changed.
+    /// Discards all decoded blocks, because the code in memory may have changed.
     pub(crate) fn clear(&mut self) {
         self.blocks.fill(None);
         self.words.clear();

@@ -59,7 +59,7 @@ impl Common {
     }
 
     /// Freezes the processor until clock `until`. If an instruction-cache line is arriving, the freeze lasts at least
-    /// until the end of the line's arrival (row 1).
+    /// until the whole line has arrived (row 1 of the freeze table).
     #[inline]
     pub(crate) fn freeze_until(&mut self, until: u64, why: Freeze) {
         if until > self.now {
@@ -71,13 +71,15 @@ impl Common {
         }
     }
 
-    /// Freezes the processor until an instruction arrives at clock `until`. The clocks count only for row 1a.
+    /// Freezes the processor until an instruction arrives at clock `until`. The profile counts these clocks only for
+    /// row 1a of the freeze table.
     #[inline]
     pub(crate) fn await_instruction(&mut self, until: u64) {
         self.stand_still(until, Freeze::InstructionMiss);
     }
 
-    /// Freezes the processor for the additional clocks of an instruction-cache miss during a data-cache fill (row 1b).
+    /// Freezes the processor for the additional clocks of an instruction-cache miss during a data-cache fill (row 1b of
+    /// the freeze table).
     pub(crate) fn await_instruction_behind_data(&mut self) {
         let until = self.now + self.costs.clocks(Freeze::InstructionMissBehindData);
         self.stand_still(until, Freeze::InstructionMissBehindData);
@@ -97,7 +99,7 @@ impl Common {
         }
     }
 
-    /// Freezes the processor for the constant part of a freeze row's cost.
+    /// Freezes the processor for the constant part of the delay in a row of the freeze table.
     #[inline]
     pub(crate) fn charge(&mut self, why: Freeze) {
         self.freeze_until(self.now + self.costs.clocks(why), why);

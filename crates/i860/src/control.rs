@@ -110,8 +110,8 @@ impl Cpu {
         immediate(equal == (i.op == Op::Bte), target)
     }
 
-    /// Executes `bla`, which branches if LCC was set. Afterwards, LCC is set if the sum of the operands is not
-    /// negative.
+    /// Executes `bla`, which branches if the loop condition code LCC was set. Afterwards, LCC is set if the sum of the
+    /// operands is not negative.
     fn branch_on_loop(&mut self, i: &Instruction, target: u32) -> Flow {
         let a = self.state.r(i.src1);
         let b = self.state.r(i.src2);
@@ -122,8 +122,8 @@ impl Cpu {
         if taken { Flow::Delayed(target) } else { Flow::Next }
     }
 
-    /// Executes `bri`, an indirect branch. If a trap bit is set, `bri` also returns from the trap and restores U, IM
-    /// and the pairing mode.
+    /// Executes `bri`, an indirect branch. If a trap bit is set, `bri` also returns from the trap: it restores user
+    /// mode (U), interrupt mode (IM) and the pairing mode.
     fn branch_indirect(&mut self, i: &Instruction) -> Flow {
         let target = self.state.r(i.src1);
         if self.state.psr & psr::TRAPS != 0 {

@@ -24,7 +24,7 @@ pub struct Cpu {
     pub state: State,
     pub(crate) time: Clock,
     pub(crate) seeds: SeedTable,
-    /// Pairing mode to use after the delay slot. A return from a trap sets this mode.
+    /// Pairing mode (single instructions or pairs) to use after the delay slot. A return from a trap sets this mode.
     pub(crate) mode_after_slot: Option<Mode>,
     /// Addresses of the data that the current block has loaded or stored.
     pub(crate) accesses: Accesses,
@@ -32,7 +32,7 @@ pub struct Cpu {
     cause: Option<TrapCause>,
     /// New value of the directory-base register, if the current block has written the register.
     pub(crate) directory_base: Option<u32>,
-    /// True if memory may have changed since its code was decoded.
+    /// True if memory may have changed since the code in memory was decoded.
     pub(crate) code_changed: bool,
     pub(crate) code: Code,
     config: Config,
@@ -104,7 +104,7 @@ impl Cpu {
         self.time.profile()
     }
 
-    /// Sets all counts of the profile to zero. Caches, queues and the clock are unchanged.
+    /// Sets all counts of the profile to zero. The caches, queues and the clock keep their state.
     pub fn clear_profile(&mut self) {
         self.time.clear_profile();
     }
@@ -115,7 +115,7 @@ impl Cpu {
         self.time.empty_caches();
     }
 
-    /// Starts to count clocks for each code address in `addresses`. With `None`, the processor stops to count.
+    /// Starts to count clocks for each code address in `addresses`. With `None`, the processor stops this count.
     pub fn watch(&mut self, addresses: Option<AddressProfile>) {
         self.time.sampler = addresses;
     }
@@ -183,8 +183,8 @@ impl Cpu {
         self.advance(bus, None, 1)
     }
 
-    /// Executes the block that begins at `pc`. If the block contains `stop` or has more than `most` instructions, only
-    /// its first instruction or pair is executed.
+    /// Executes the block that begins at `pc`. If the block contains the address `stop` or has more than `most`
+    /// instructions, only the first instruction or pair of the block is executed.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
         let pc = self.state.pc;
         // Take the decoded block out of the store, or decode it now.
@@ -276,7 +276,8 @@ impl Cpu {
         }
     }
 
-    /// Returns the control flow after an instruction. If the instruction trapped, the cause is recorded.
+    /// Returns the control flow after an instruction. If the instruction trapped, the function records the cause of the
+    /// trap.
     #[inline(always)]
     pub(crate) fn flow(&mut self, done: Result<Flow, TrapCause>) -> Flow {
         done.unwrap_or_else(|cause| self.trapped(cause))
@@ -288,8 +289,8 @@ impl Cpu {
         Flow::Trapped
     }
 
-    /// Executes instructions and pairs of a block until one of them branches or traps. Returns the number of executed
-    /// instructions or pairs, and the control flow after the last of them.
+    /// Executes instructions and pairs of a block until an instruction branches or traps. Returns the number of
+    /// executed instructions or pairs, and the control flow after the last instruction.
     fn units<B: Bus>(&mut self, block: &Block, range: Range<usize>, bus: &mut B) -> (usize, Flow) {
         let actions = &block.actions[range];
         for action in actions {

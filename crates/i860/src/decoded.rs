@@ -102,8 +102,8 @@ impl Decoded {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 
-    /// Returns two booleans. The first is true if the first source is a pair of registers, and the second is true if
-    /// the second source is a pair.
+    /// Returns two booleans. The first is true if the first source is a pair of registers (double precision). The
+    /// second states the same for the second source.
     #[inline]
     pub(crate) fn source_widths(&self) -> (bool, bool) {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)

@@ -1,5 +1,5 @@
-//! The external bus and the page-mode memory behind it. The model computes the arrival time of all data at the request,
-//! without an event for each transfer.
+//! The external bus and the page-mode memory on the bus. The model computes the arrival time of all data at the
+//! request, without an event for each transfer.
 
 use crate::timing::{ChipSizes, DramTiming};
 
@@ -108,10 +108,10 @@ impl Dram {
         transfer
     }
 
-    /// Reads `beats` transfers of 8 bytes. The requested 8 bytes come first.
+    /// Reads `beats` transfers of 8 bytes. The requested 8 bytes arrive first.
     ///
-    /// Requests to the open DRAM row overlap. The first data of the next request follow `next` clocks after the last
-    /// data of this request. A DRAM row is closed after the transfer of its last data.
+    /// Requests to the open DRAM row overlap. The first data of the next request follow [`DramTiming::next`] clocks
+    /// after the last data of this request. A DRAM row is closed after the transfer of its last data.
     pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);

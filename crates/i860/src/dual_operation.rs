@@ -73,8 +73,8 @@ const fn multiplier_for_adder(source: Source) -> Source {
     }
 }
 
-/// Returns two booleans. The first is true if the first source is a pair of registers, and the second is true if the
-/// second source is a pair.
+/// Returns two booleans. The first is true if the first source is a pair of registers (double precision). The second
+/// states the same for the second source.
 pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     let s = i.has(Flags::SOURCE_DOUBLE);
     let r = i.has(Flags::RESULT_DOUBLE);

@@ -17,9 +17,9 @@ const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;
 #[derive(Clone, Debug)]
 pub(crate) struct Fetch {
     cache: InstructionTags,
-    /// Number of the cache line of the last fetch.
+    /// Number of the cache line from which the last instruction was fetched.
     line: u32,
-    /// Clocks at which the transfers of the line arrive, sorted by their position in the line.
+    /// Clocks at which the 8-byte transfers of the cache line arrive, sorted by their position in the line.
     arrivals: [u64; BEATS as usize],
     /// Position, within the cache line, of the 8-byte transfer that arrives first.
     first: u8,
@@ -36,7 +36,8 @@ impl Fetch {
         self.line
     }
 
-    /// Records `line` as the cache line of the last fetch. This call follows the reuse of a run's memoized clocks.
+    /// Records `line` as the cache line of the last fetch. The clock calls this function after it has reused memoized
+    /// clocks instead of counting each fetch.
     #[inline]
     pub(crate) fn continue_in(&mut self, line: u32) {
         self.line = line;
@@ -67,7 +68,7 @@ impl Fetch {
         self.cache.number_changes_from(latest);
     }
 
-    /// Returns the number of the cache's current state. The number changes with every line fill.
+    /// Returns the number of the instruction cache's current state. The number changes with every line fill.
     pub(crate) fn states(&self) -> u64 {
         self.cache.changes()
     }

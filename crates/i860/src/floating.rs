@@ -160,8 +160,8 @@ impl Cpu {
         self.adder_result(i, sum);
     }
 
-    /// Sets the condition code CC by a comparison. The real chip pushes an undefined value into the pipe. This model
-    /// pushes zero.
+    /// Sets the condition code CC by a comparison. The real chip pushes an undefined value into the adder's pipe. This
+    /// model pushes zero.
     fn compare(&mut self, i: &Instruction, Operands { a, b }: Operands) {
         let double = i.has(Flags::SOURCE_DOUBLE);
         let x = number(a, double);

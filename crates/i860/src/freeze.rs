@@ -1,21 +1,23 @@
 //! Freezes: hazards for which the processor stops issuing instructions. This module has the rules, and [`FreezeClocks`]
-//! has their costs in clocks.
+//! has the delays in clocks.
 
 use crate::timing::FreezeClocks;
 use pxpl5_sim::parameters::{ParameterInfo, ParameterTable};
 
-/// One row of the freeze table.
+/// One row of the freeze table [`FREEZES`]: a condition under which the processor stops issuing instructions, and the
+/// delay.
 #[derive(Clone, Copy, Debug)]
 pub struct FreezeRow {
-    /// Identifier of the row in code.
+    /// Name of the row in Rust code.
     pub id: Freeze,
-    /// Row number in Intel's list, from memory. A letter is added if one row of the list has several costs.
+    /// Number of the row in Intel's list of instruction timings, quoted from memory. A letter is added if one row of
+    /// Intel's list has several delays.
     pub number: &'static str,
-    /// Description of the condition under which the row applies.
+    /// Description of the condition under which the processor stops issuing instructions.
     pub condition: &'static str,
-    /// Description of the variable part of the cost, which is added to or subtracted from the constant part.
+    /// Description of the variable part of the delay, which is added to or subtracted from the constant part.
     pub variable: &'static str,
-    /// Description of the constant part of the cost: value, range and source. The field of [`FreezeClocks`] with the
+    /// Description of the constant part of the delay: value, range and source. The field of [`FreezeClocks`] with the
     /// same position holds the value.
     pub clocks: &'static ParameterInfo,
 }
@@ -83,65 +85,65 @@ freezes! {
     SeedUse "25" "result of frcp or frsqr used by the next instruction" "";
 }
 
-/// The freeze rows that are enabled, and the constant parts of their costs.
+/// The rows of the freeze table that are enabled, and the constant parts of their delays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FreezeRules {
     enabled: u32,
-    /// Constant parts of the costs of all rows, including disabled rows.
+    /// Constant parts of the delays in all rows of the freeze table, including disabled rows.
     pub clocks: FreezeClocks,
-    /// True if row 8 also applies after and, andnot, or and xor. Intel's list does not decide this question. The
-    /// default is false.
+    /// True if row 8 of the freeze table, the delay of a conditional branch after an operation that sets CC, also
+    /// applies after and, andnot, or and xor. Intel's list does not decide this question. The default is false.
     pub logicals_delay_branches: bool,
 }
 
 impl FreezeRules {
-    /// Returns rules with all rows of [`FREEZES`] enabled.
+    /// Returns rules with all rows of the freeze table [`FREEZES`] enabled.
     #[must_use]
     pub fn all() -> FreezeRules {
         let enabled = (1 << N_FREEZES) - 1;
         FreezeRules { enabled, clocks: FreezeClocks::PAPERS, logicals_delay_branches: false }
     }
 
-    /// Returns rules with all rows disabled: each instruction or pair takes one clock.
+    /// Returns rules with all rows of the freeze table disabled: each instruction or pair takes one clock.
     #[must_use]
     pub fn none() -> FreezeRules {
         FreezeRules { enabled: 0, ..FreezeRules::all() }
     }
 
-    /// Returns the same rules with one row disabled.
+    /// Returns the same rules with one row of the freeze table disabled.
     #[must_use]
     pub fn without(mut self, id: Freeze) -> FreezeRules {
         self.enabled &= !(1 << id as u32);
         self
     }
 
-    /// Returns the same rules with one row enabled.
+    /// Returns the same rules with one row of the freeze table enabled.
     #[must_use]
     pub fn with(mut self, id: Freeze) -> FreezeRules {
         self.enabled |= 1 << id as u32;
         self
     }
 
-    /// Returns the numbers of the enabled rows in order. If row 8 also applies after logical operations, the list
-    /// states this fact.
+    /// Returns the numbers of the enabled rows of the freeze table, in order. If row 8 also applies after logical
+    /// operations, the list states this fact.
     pub(crate) fn names(&self) -> String {
         let applying = FREEZES.iter().filter(|row| self.applies(row.id)).map(|row| row.number);
         let logicals = self.logicals_delay_branches.then_some("logicals delay branches");
         applying.chain(logicals).collect::<Vec<_>>().join(" ")
     }
 
-    /// Returns true if a row is enabled.
+    /// Returns true if a row of the freeze table is enabled.
     #[must_use]
     pub fn applies(&self, id: Freeze) -> bool {
         self.enabled & 1 << id as u32 != 0
     }
 }
 
-/// The costs of the freeze rules, stored for quick access by the clock.
+/// The delays of the freeze table, stored for quick access by the clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Costs {
     enabled: u32,
-    /// Constant part of each row's cost in clocks, or 0 if the row is disabled.
+    /// Constant part of the delay in each row of the freeze table, in clocks, or 0 if the row is disabled.
     clocks: [u64; N_FREEZES],
     pub(crate) logicals_delay_branches: bool,
 }
@@ -162,7 +164,7 @@ impl Costs {
         self.enabled & 1 << id as u32 != 0
     }
 
-    /// Returns the constant part of a row's cost in clocks, or 0 if the row is disabled.
+    /// Returns the constant part of the delay in a row of the freeze table, in clocks, or 0 if the row is disabled.
     #[inline]
     pub(crate) fn clocks(&self, id: Freeze) -> u64 {
         self.clocks[id as usize]

@@ -100,7 +100,8 @@ pub enum Op {
     Fnop,
     /// `fmul`, `pfmul`: floating-point multiply.
     Fmul,
-    /// `pfmul3`: pipelined multiply of doubles through three stages. Trap handlers use it to refill the pipe.
+    /// `pfmul3`: pipelined multiply of doubles through three stages. Trap handlers use this operation to refill the
+    /// pipe.
     Fmul3,
     /// `fmlow`: multiplies two significands and returns the low bits of the product.
     Fmlow,

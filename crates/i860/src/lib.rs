@@ -56,10 +56,10 @@
 //! and pseudo-random replacement. A write miss allocates no line. The TLB has 64 entries.
 //!
 //! All rows are *assumed*. Their numbers are quoted from memory from Intel's list of instruction timings. Tests compare
-//! them with published figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, about 48 clocks
-//! for a square root. One published figure is a tree-traversal loop of 117 instructions in 106 clocks. The published
-//! description is not sufficient to write the same code. The test runs a loop of the same shape (pairs, odd entry,
-//! taken `bnc.t`). The test therefore checks the issue rules, but not the published program.
+//! the model with published figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, and about 48
+//! clocks for a square root. One published figure is a tree-traversal loop of 117 instructions in 106 clocks. The
+//! published description is not sufficient to write the same code. The test runs a loop of the same shape (pairs, odd
+//! entry, taken `bnc.t`). The test therefore checks the issue rules, but not the published program.
 //!
 //! # Speed
 //!

@@ -58,18 +58,10 @@ mod parse;
 mod place;
 mod settings;
 
+use crate::AssemblyError;
 use crate::assembler::select;
 use std::cell::RefCell;
 use std::fmt::Write as _;
-
-/// An error in straight-line code between `.linear` and `.endlinear`.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {reason}")]
-pub struct LinearError {
-    pub line: usize,
-    /// Description of the error, with the expected and the found text.
-    pub reason: String,
-}
 
 /// The numbers of floating-point and core operations in a stretch of linear code, and the number of pairs in its
 /// schedule. Without freezes, each pair takes one clock.
@@ -81,7 +73,7 @@ pub struct Slots {
     /// Number of core operations. The number of pairs in a schedule is at least the greater number of `floating` and
     /// `core`.
     pub core: usize,
-    /// Number of pairs in the schedule.
+    /// Number of instruction pairs in the schedule.
     pub pairs: usize,
 }
 
@@ -89,7 +81,7 @@ pub struct Slots {
 ///
 /// # Errors
 /// Returns the errors of [`schedule`].
-pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
+pub fn slots(source: &str) -> Result<Vec<Slots>, AssemblyError> {
     let mut found = Vec::new();
     stretches(
         source,
@@ -112,8 +104,8 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
 /// become empty. Other lines stay unchanged.
 ///
 /// # Errors
-/// Returns [`LinearError`] for the first line with an error, or for a stretch whose values need too many registers.
-pub fn schedule(source: &str) -> Result<String, LinearError> {
+/// Returns an [`AssemblyError`] for the first line with an error, or for a stretch whose values need too many registers.
+pub fn schedule(source: &str) -> Result<String, AssemblyError> {
     let out = RefCell::new(String::with_capacity(source.len()));
     stretches(
         source,
@@ -129,14 +121,14 @@ pub fn schedule(source: &str) -> Result<String, LinearError> {
     Ok(out.into_inner())
 }
 
-/// Passes the operations of each stretch of linear code, with their pairs, to `linear`. Passes every other line to
-/// `other`. The calls have the order of the source.
+/// Passes the operations of each stretch of linear code, with their pairs, to the function `linear`. Passes every other
+/// line of the source to the function `other`. The calls have the order of the source.
 fn stretches(
     source: &str,
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),
     mut other: impl FnMut(&str),
-) -> Result<(), LinearError> {
-    let source = select(source).map_err(|(line, reason)| LinearError { line, reason })?;
+) -> Result<(), AssemblyError> {
+    let source = select(source).map_err(|(line, reason)| AssemblyError::in_line(line, reason))?;
     let mut pool = Vec::new();
     let mut lines = source.lines().enumerate().map(|(n, text)| (n + 1, text));
     while let Some((line, text)) = lines.next() {
@@ -149,8 +141,8 @@ fn stretches(
                 // A stretch extends to the end directive.
                 let block: Vec<(usize, &str)> = lines.by_ref().take_while(|(_, t)| t.trim() != ".endlinear").collect();
                 let operations = parse::operations(&block)?;
-                let pairs =
-                    place::pairs_of(&operations, &pool, settings).map_err(|reason| LinearError { line, reason })?;
+                let pairs = place::pairs_of(&operations, &pool, settings)
+                    .map_err(|reason| AssemblyError::in_line(line, reason))?;
                 linear(&operations, &pairs);
             }
             _ => other(text),

@@ -9,7 +9,7 @@ const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LoadPipe {
-    /// Clocks at which the data of the latest pipelined loads arrive, the oldest load first.
+    /// Clocks at which the data of the latest pipelined loads (`pfld`) arrive, the oldest load first.
     arrivals: [u64; DEPTH],
 }
 

@@ -45,10 +45,10 @@ pub(crate) struct Numbers {
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard state after a memoized run. `None` means that the [`Scoreboard`] itself holds
-    /// the state.
+    /// Number of the current scoreboard state, if memoized clocks were reused last. `None` means that the
+    /// [`Scoreboard`] itself holds the state.
     present: Option<Number>,
-    /// Number of executed instructions whose clocks were reused.
+    /// Number of executed instructions whose memoized clocks were reused.
     pub(crate) instructions: u64,
 }
 
@@ -85,15 +85,15 @@ impl Memo {
         Some(number)
     }
 
-    /// Makes the state after a memoized run the current scoreboard state.
+    /// Makes the scoreboard state after the memoized run `remembered` the current state. A run is a part of a block.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
         self.instructions += u64::from(remembered.instructions);
     }
 
-    /// Stops using the number of the current state. Returns the waits from which the [`Scoreboard`] must be restored,
-    /// or `None` if the [`Scoreboard`] is up to date.
+    /// Discards the number of the current scoreboard state, so that the [`Scoreboard`] holds the state again. Returns
+    /// the waits from which the [`Scoreboard`] must be restored, or `None` if the [`Scoreboard`] is up to date.
     #[inline]
     pub(crate) fn leave(&mut self) -> Option<&PendingWaits> {
         self.present.take().map(|number| &self.numbers.leftovers[(number.0 & !Number::FILLING) as usize])
@@ -117,36 +117,36 @@ pub(crate) struct ArrivingLine {
 pub(crate) struct Run(u64);
 
 impl Run {
-    /// Makes the key of a run. `entry` is the number of the scoreboard before the run. `from` and `to` are the first
-    /// and the last position in the block. The flags are true if the branch was taken, if the last instruction trapped,
-    /// and if the first fetch is from a cache line that is still arriving.
+    /// Makes the key of a run (a part of a block). `entry` is the number of the scoreboard state before the run. `from`
+    /// and `to` are the first and the last position in the block. The flags are true if the branch was taken, if the
+    /// last instruction trapped, and if the first fetch is from a cache line that is still arriving.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
         let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;
         Run(u64::from(entry.0) << 32 | flags << 16 | (from as u64 & 0xFF) << 8 | to as u64 & 0xFF)
     }
 
-    /// Returns the position in the block at which the run ends.
+    /// Returns the position in the block at which the run (a part of the block) ends.
     #[inline]
     pub(crate) fn end(self) -> usize {
         usize::from(self.0 as u8)
     }
 
-    /// Returns a hash of the key.
+    /// Returns a hash of the key, which gives the position in a hash table.
     #[inline]
     fn hash(self) -> usize {
         (self.0.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as usize
     }
 }
 
-/// Clocks of delay, by cause. Each entry has the cause in its lower five bits and the clocks above. Unused entries at
-/// the end are zero.
+/// Clocks of delay in a run, by cause. Each entry has the cause in its lower five bits and the number of clocks above.
+/// Unused entries at the end are zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WaitedClocks([u16; WaitedClocks::MOST]);
 
 impl WaitedClocks {
     const CAUSE_BITS: u32 = 5;
-    /// Greatest number of causes of delay in one run.
+    /// Greatest number of causes of delay that a run (a part of a block) can have.
     const MOST: usize = 6;
 
     /// Returns the clocks of delay between the profiles `before` and `after`, by cause. Returns `None` if there are too
@@ -160,7 +160,7 @@ impl WaitedClocks {
         Some(all)
     }
 
-    /// Adds the clocks to `frozen`, an array with one sum for each freeze row.
+    /// Adds the clocks to `frozen`, an array with one sum for each row of the freeze table.
     #[inline]
     pub(crate) fn add_to(&self, frozen: &mut [u64; N_FREEZES]) {
         for wait in self.0 {
@@ -174,18 +174,18 @@ impl WaitedClocks {
     }
 }
 
-/// The memoized clocks of a run. The entry fills half a cache line of most host computers.
+/// The memoized clocks of a run, which is a part of a block. The entry fills half a cache line of most host computers.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct RememberedClocks {
     run: Run,
-    /// Number of the scoreboard state after the run.
+    /// Number of the scoreboard state after the run (a part of a block).
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,
-    /// Number of the cache line from which the run's last fetch came.
+    /// Number of the cache line from which the last fetch of the run came. A run is a part of a block.
     pub(crate) line: u32,
-    /// Clocks of delay in the run, by cause.
+    /// Clocks of delay in the run (a part of a block), by cause.
     pub(crate) waited: WaitedClocks,
 }
 
@@ -199,8 +199,8 @@ impl RememberedClocks {
         waited: WaitedClocks([0; WaitedClocks::MOST]),
     };
 
-    /// Makes the entry of a run. The delays are the difference between the profiles before and after the run. Returns
-    /// `None` if a number is too large for its field.
+    /// Makes the memory entry of a run (a part of a block). The delays are the difference between the profiles before
+    /// and after the run. Returns `None` if a number is too large for its field.
     pub(crate) fn new(run: Run, exit: Number, clocks: u64, line: u32, [before, after]: [&Profile; 2]) -> Option<Self> {
         let waited = WaitedClocks::between(before, after)?;
         let instructions = u16::try_from(after.instructions - before.instructions).ok()?;
@@ -208,8 +208,8 @@ impl RememberedClocks {
     }
 }
 
-/// The memoized runs of a block, as a hash table. Each run lies within [`BlockMemory::REACH`] entries of the position
-/// that its hash gives.
+/// The memoized runs (parts) of a block, as a hash table. Each run lies within [`BlockMemory::REACH`] entries of the
+/// position that its hash gives.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMemory(Box<[RememberedClocks]>);
 
@@ -217,7 +217,7 @@ impl BlockMemory {
     /// Smallest size of the hash table, in entries.
     const LEAST: usize = 8;
     const MOST: usize = 1 << 11;
-    /// Number of successive entries in which a run is searched.
+    /// Number of successive entries of the hash table in which a run (a part of a block) is searched.
     const REACH: usize = 4;
 
     #[inline]
@@ -229,8 +229,8 @@ impl BlockMemory {
         })
     }
 
-    /// Adds a run that the table does not contain. If a table of the greatest size has no free entry, the run replaces
-    /// another run.
+    /// Adds a run (a part of a block) that the table does not contain. If a table of the greatest size has no free
+    /// entry, the run replaces another run.
     pub(crate) fn add(&mut self, remembered: RememberedClocks) {
         while !self.put(remembered) {
             if self.0.len() >= BlockMemory::MOST {
@@ -242,7 +242,8 @@ impl BlockMemory {
         }
     }
 
-    /// Puts a run into a free entry near the position that its hash gives. Returns false if no entry is free.
+    /// Puts a run (a part of a block) into a free entry near the position that its hash gives. Returns false if no
+    /// entry is free.
     fn put(&mut self, remembered: RememberedClocks) -> bool {
         let length = self.0.len();
         let mut places = (0..BlockMemory::REACH.min(length)).map(|n| (remembered.run.hash() + n) & (length - 1));
@@ -250,7 +251,7 @@ impl BlockMemory {
         free.map(|place| self.0[place] = remembered).is_some()
     }
 
-    /// Doubles the size of the hash table. Runs without a free entry in the new table are discarded.
+    /// Doubles the size of the hash table. Runs (parts of a block) without a free entry in the new table are discarded.
     fn grow(&mut self) {
         let larger = vec![RememberedClocks::NOTHING; (2 * self.0.len()).max(BlockMemory::LEAST)];
         let all = std::mem::replace(&mut self.0, larger.into_boxed_slice());

@@ -38,7 +38,8 @@ impl Cpu {
         Ok(())
     }
 
-    /// Returns the control flow after a store. The flow is different if the store has changed decoded code.
+    /// Returns the control flow after a store: [`Flow::NextOfChangedCode`] if the store has changed decoded code, else
+    /// [`Flow::Next`].
     #[inline(always)]
     fn after_store(&self) -> Flow {
         if self.code_changed { Flow::NextOfChangedCode } else { Flow::Next }
@@ -165,8 +166,8 @@ impl Cpu {
         Ok(self.after_store())
     }
 
-    /// Executes `flush`. The function does not check the alignment of the address, and the address need not have
-    /// memory.
+    /// Executes `flush`. The function does not check the alignment of the address. Memory need not exist at this
+    /// address.
     pub(crate) fn flush_line(&mut self, i: &Instruction) {
         let offset = if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) };
         let address = offset.wrapping_add(self.state.r(i.src2));

@@ -10,7 +10,7 @@ pub struct Profile {
     pub instructions: u64,
     /// Number of clocks in which an instruction or a pair was issued.
     pub issue: u64,
-    /// Number of clocks lost to each freeze row, in the order of [`FREEZES`].
+    /// Number of clocks lost to each row of the freeze table, in the order of [`FREEZES`].
     pub frozen: [u64; N_FREEZES],
     /// Number of requests on the bus.
     pub bus_requests: u64,
@@ -35,7 +35,7 @@ impl Profile {
         }
     }
 
-    /// Returns the number of clocks lost to one freeze row.
+    /// Returns the number of clocks lost to one row of the freeze table.
     #[must_use]
     pub fn frozen_by(&self, id: Freeze) -> u64 {
         self.frozen[id as usize]
@@ -83,8 +83,8 @@ impl AddressProfile {
         }
     }
 
-    /// Returns the clocks and the number of executions of the instruction or pair at an address. Both are zero outside
-    /// the range.
+    /// Returns the clocks and the number of executions of the instruction or pair at an address. Both numbers are zero
+    /// outside the range.
     #[must_use]
     pub fn at(&self, pc: u32) -> (u64, u64) {
         let at = (pc.wrapping_sub(self.base) / 4) as usize;

@@ -25,17 +25,18 @@ struct Course<'a> {
     units: usize,
     /// Index of the block's last instruction or pair.
     last: usize,
-    /// Addresses of all data accesses of the block. The next field, `accessed`, is the number of accesses counted so
-    /// far.
+    /// Addresses of all data accesses of the block.
     accesses: &'a [u32],
+    /// Number of data accesses whose clocks were counted so far.
     accessed: usize,
-    /// Position in the block up to which clocks are counted, in thirds of an instruction or pair.
+    /// Position in the block up to which clocks are counted. Each instruction or pair has [`PLACES`] positions.
     at: usize,
 }
 
 impl Course<'_> {
-    /// Returns the flags in the key of a run that ends at position `to`. The flags are true if the branch was taken, if
-    /// the last instruction trapped, and if the first fetch is from a cache line that is still arriving.
+    /// Returns the flags in the key of a run (a part of a block) that ends at position `to`. The flags are true if the
+    /// branch was taken, if the last instruction trapped, and if the first fetch is from a cache line that is still
+    /// arriving.
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;
@@ -44,8 +45,8 @@ impl Course<'_> {
 }
 
 impl Clock {
-    /// Reuses the clocks of a whole block whose data accesses all hit the cache. Returns false if the instruction cache
-    /// does not hold the block, or if the block is not memoized as one run.
+    /// Reuses the memoized clocks of a whole block whose data accesses all hit the cache. Returns false if the
+    /// instruction cache does not hold the block, or if the clocks of the whole block are not memoized.
     #[inline]
     pub(crate) fn reuse_block_clocks(&mut self, block: &mut Block, execution: Execution) -> bool {
         let Some(entry) = self.memo.as_ref().and_then(Memo::present) else { return false };
@@ -68,8 +69,8 @@ impl Clock {
         !self.common.costs.applies(Freeze::InstructionMiss) || self.fetch.holds(block)
     }
 
-    /// Counts the clocks of a block. The block is split at accesses that need the bus. The clocks of the runs between
-    /// these accesses are reused.
+    /// Counts the clocks of a block. The block is split at accesses that need the bus. The memoized clocks of the parts
+    /// between these accesses are reused.
     #[inline]
     pub(crate) fn go<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &[u32], bus: &B) {
         let units = execution.units + usize::from(execution.slot);
@@ -96,8 +97,8 @@ impl Clock {
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Writes the state after the last memoized run into the scoreboard. Memoized runs change only the number of this
-    /// state.
+    /// Writes the state after the last memoized part of a block into the scoreboard. The reuse of memoized clocks
+    /// changes only the number of this state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
@@ -105,7 +106,8 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks to the end of the current run, and the clocks of the access or cache miss that ends the run.
+    /// Counts the clocks to the end of the current run (a part of the block), and the clocks of the access or cache
+    /// miss that ends the run.
     #[inline]
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;
@@ -209,7 +211,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a run and memoizes them for later executions of the same run.
+    /// Counts the clocks of a run (a part of the block) and memoizes the clocks for later executions of the same run.
     #[cold]
     fn learn<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, run: Run, bus: &B) {
         // Count the run with the full rules and compare the profiles before and after.

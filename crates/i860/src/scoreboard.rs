@@ -25,7 +25,7 @@ const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
 /// A remaining wait, packed into 16 bits. The upper seven bits are the place: the register or hazard that is not ready.
-/// The next four bits hold the remaining clocks, and the lower five bits the freeze row.
+/// The next four bits hold the remaining clocks, and the lower five bits the row of the freeze table.
 struct Left {
     place: u8,
     clocks: u8,
@@ -75,7 +75,7 @@ pub(crate) struct PendingWaits {
 #[derive(Clone, Debug)]
 pub(crate) struct Scoreboard {
     costs: Costs,
-    /// Hazard classes that at least one enabled freeze rule uses, as a bit mask.
+    /// Hazard classes that at least one enabled row of the freeze table uses, as a bit mask.
     arms_seen: u16,
     /// Mask of the registers whose value may be unavailable: integer registers in the low word, floating-point
     /// registers in the high word.
@@ -83,13 +83,14 @@ pub(crate) struct Scoreboard {
     ready: [Wait; 64],
     armed: u16,
     hazards: [Wait; hazard::COUNT],
-    /// Destination register of the last floating-point instruction. Freeze row 9 compares sources with this register.
+    /// Destination register of the last floating-point instruction. Row 9 of the freeze table delays a multiplication
+    /// whose first source is this register.
     last_result: u8,
     last_result_until: u64,
     scalar_double: bool,
     graphics_result: u64,
     stored: u64,
-    /// A clock at which all waits have ended.
+    /// A clock at which all recorded waits have ended.
     latest: u64,
 }
 
@@ -120,8 +121,8 @@ impl Scoreboard {
         }
     }
 
-    /// Returns the waits that remain at clock `now`, together with `beside`. Returns `None` if there are too many
-    /// waits, or if a wait lasts longer than `most` clocks.
+    /// Returns the waits that remain at clock `now`, together with the two numbers `beside` of an arriving cache line.
+    /// Returns `None` if there are too many waits, or if a wait lasts longer than `most` clocks.
     pub(crate) fn leftover(&self, now: u64, most: u8, beside: [u8; 2]) -> Option<PendingWaits> {
         if self.latest > now + u64::from(most) {
             return None;

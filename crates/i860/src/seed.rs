@@ -11,8 +11,9 @@ use crate::arithmetic::{narrow, widen};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SeedTable {
-    /// The correctly rounded double, with its fraction cut to 8 bits. The relative error is below 2^-8, and the
-    /// magnitude is never too great. This choice is assumed. Functional emulators usually have this table.
+    /// The correctly rounded result in double precision, with its fraction cut to 8 bits. The relative error is below
+    /// 2^-8, and the magnitude is never too great. This choice is assumed. Functional emulators usually have this
+    /// table.
     Truncated8,
     /// The result for the middle of the interval that contains the operand, rounded to 8 fraction bits. The first 8
     /// fraction bits of the operand determine the interval. A ROM of 256 entries can hold these values (512 entries for

@@ -44,7 +44,7 @@ impl DecodedPrograms {
     }
 
     /// Takes the decoded code of a program out of the store. If the store has no code of this program, the function
-    /// makes an empty code.
+    /// makes a [`Code`] without blocks.
     pub(crate) fn take(&mut self, program: &Arc<Program>) -> Code {
         self.place(program).take().unwrap_or_else(|| Code::of(program))
     }

@@ -10,76 +10,86 @@ pxpl5_sim::parameters::parameter_table! {
     /// The constant part of the delay of each row of [`FREEZES`], in the same order. Intel's list is quoted from
     /// memory. Unless a published figure narrows a value, its range is therefore one clock less to one clock more.
     pub struct FreezeClocks {
-        /// Cost of freeze row 1a: a miss of the instruction cache.
+        /// Delay by row 1a of the freeze table: a miss of the instruction cache.
         instruction_miss: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
-        /// Cost of freeze row 1b: instruction-cache miss while a line fill of the data cache is running.
+        /// Delay by row 1b of the freeze table: instruction-cache miss while a line fill of the data cache is running.
         instruction_miss_behind_data: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 2: an instruction uses the destination of an integer load that missed the data cache.
+        /// Delay by row 2 of the freeze table: an instruction uses the destination of an integer load that missed the
+        /// data cache.
         load_miss_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 3: an fld misses the data cache.
+        /// Delay by row 3 of the freeze table: an fld misses the data cache.
         floating_load_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 4: call, calli, ixfr, fxfr, ld.c or st.c while a line fill of the data cache is running.
+        /// Delay by row 4 of the freeze table: call, calli, ixfr, fxfr, ld.c or st.c while a line fill of the data
+        /// cache is running.
         transfer_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 5: load, store or pfld while a line fill of the data cache is running.
+        /// Delay by row 5 of the freeze table: load, store or pfld while a line fill of the data cache is running.
         access_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 6: an instruction uses the destination of the previous instruction, which is ld, ld.c,
-        /// call, calli or fxfr.
+        /// Delay by row 6 of the freeze table: an instruction uses the destination of the previous instruction, which
+        /// is ld, ld.c, call, calli or fxfr.
         load_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 7: one of the next two instructions uses the destination of an fld, pfld or ixfr.
+        /// Delay by row 7 of the freeze table: one of the next two instructions uses the destination of an fld, pfld or
+        /// ixfr.
         floating_load_use: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected; period matrix code issues an extra operation because loads need time";
-        /// Cost of freeze row 8: bc, bnc, bc.t or bnc.t right after addu, adds, subu, subs or a compare.
+        /// Delay by row 8 of the freeze table: bc, bnc, bc.t or bnc.t right after addu, adds, subu, subs or a compare.
         condition_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 9: a multiplier operation has the result of the previous operation as its first source.
+        /// Delay by row 9 of the freeze table: a multiplier operation has the result of the previous operation as its
+        /// first source.
         multiplier_first_source: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 10a: a floating-point operation or fst is issued before the end of a scalar fadd, fsub,
-        /// fix, ftrunc, famov, fmlow, fmul.ss or fmul.sd.
+        /// Delay by row 10a of the freeze table: a floating-point operation or fst is issued before the end of a scalar
+        /// fadd, fsub, fix, ftrunc, famov, fmlow, fmul.ss or fmul.sd.
         scalar_busy: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected; a measured square root of 48.4 clocks needs it";
-        /// Cost of freeze row 10b: a floating-point operation or fst is issued before the end of a scalar fmul.dd.
+        /// Delay by row 10b of the freeze table: a floating-point operation or fst is issued before the end of a scalar
+        /// fmul.dd.
         scalar_double_multiply_busy: 3, "clocks", Assumed, 2..=4 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 10c, in addition to row 10a or 10b: the new operation has another precision.
+        /// Delay by row 10c of the freeze table, in addition to row 10a or 10b: the new operation has another
+        /// precision.
         scalar_precision_change: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 10d, in addition to row 10a or 10b: the new operation is pipelined and has a destination.
+        /// Delay by row 10d of the freeze table, in addition to row 10a or 10b: the new operation is pipelined and has
+        /// a destination.
         scalar_then_pipelined: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 11: a multiplier operation right after a double-precision multiply.
+        /// Delay by row 11 of the freeze table: a multiplier operation right after a double-precision multiply.
         double_multiply: 1, "clocks", Assumed, 1..=1 in 0..=1_000_000, "Intel's list, recollected; the published peak of 60 MFLOPS double at 40 MHz needs it";
-        /// Cost of freeze row 12: TLB miss. This row applies only while address translation is on.
+        /// Delay by row 12 of the freeze table: TLB miss. This row applies only while address translation is on.
         tlb_miss: 5, "clocks", Assumed, 4..=6 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 13: a pfld is issued while three earlier pfld are outstanding.
+        /// Delay by row 13 of the freeze table: a pfld is issued while three earlier pfld are outstanding.
         load_pipe_full: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 14: a pfld hits the data cache.
+        /// Delay by row 14 of the freeze table: a pfld hits the data cache.
         pipelined_load_hit: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 15: a store misses while three stores wait or a write-back is pending.
+        /// Delay by row 15 of the freeze table: a store misses while three stores wait or a write-back is pending.
         store_pipe_full: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 16: a bus request is issued while three requests are outstanding.
+        /// Delay by row 16 of the freeze table: a bus request is issued while three requests are outstanding.
         address_pipe_full: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
-        /// Cost of freeze row 17: ld or fld right after a store that hit the data cache.
+        /// Delay by row 17 of the freeze table: ld or fld right after a store that hit the data cache.
         load_after_store_hit: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 18: a bc.t, bnc.t or bla is not taken.
+        /// Delay by row 18 of the freeze table: a bc.t, bnc.t or bla is not taken.
         delayed_branch_not_taken: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected; a taken bnc.t costs no more than its slot in period code";
-        /// Cost of freeze row 19a: a bc or bnc is taken.
+        /// Delay by row 19a of the freeze table: a bc or bnc is taken.
         branch_taken: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 19b: a bte or btne is taken.
+        /// Delay by row 19b of the freeze table: a bte or btne is taken.
         compare_branch_taken: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 20: a bri or calli is executed.
+        /// Delay by row 20 of the freeze table: a bri or calli is executed.
         indirect_branch: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 21: an st.c to any control register is executed.
+        /// Delay by row 21 of the freeze table: an st.c to any control register is executed.
         control_store: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 22a: the next adder or multiplier operation uses a result of the graphics unit.
+        /// Delay by row 22a of the freeze table: the next adder or multiplier operation uses a result of the graphics
+        /// unit.
         graphics_to_floating: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 22b: the next graphics operation uses a result of the graphics unit (except by fmov.dd).
+        /// Delay by row 22b of the freeze table: the next graphics operation uses a result of the graphics unit (except
+        /// by fmov.dd).
         graphics_to_graphics: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 23: a flush right after another flush.
+        /// Delay by row 23 of the freeze table: a flush right after another flush.
         flush_after_flush: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 24: a pipelined operation overwrites the register that the previous instruction, fst or
-        /// pst, stores.
+        /// Delay by row 24 of the freeze table: a pipelined operation overwrites the register that the previous
+        /// instruction, fst or pst, stores.
         store_then_overwrite: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Cost of freeze row 25: an instruction uses the result of the previous instruction, which is frcp or frsqr.
+        /// Delay by row 25 of the freeze table: an instruction uses the result of the previous instruction, which is
+        /// frcp or frsqr.
         seed_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list leaves the seeds out of row 10; a three-way root of 39 clocks allows 0 to 2";
     }
 }
 
 pxpl5_sim::parameters::parameter_table! {
-    /// Timing of the memory behind the bus: one bank of page-mode DRAM with a data path of 64 bits. The defaults lie in
+    /// Timing of the memory on the bus: one bank of page-mode DRAM with a data path of 64 bits. The defaults lie in
     /// the middle of the known values of boards of the period.
     pub struct DramTiming {
         /// Time from a request to the arrival of the first 8 bytes if the DRAM row is already open.
@@ -135,11 +145,11 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-/// Path prefix of the freeze costs, the first table that can be set.
+/// Prefix of the parameter names in the table of freeze delays.
 const FREEZES_PATH: &str = "i860.freezes";
 const DRAM_PATH: &str = "i860.dram";
 
-/// Path prefix of the on-chip sizes. Lists of parameters show these sizes, but they cannot be set.
+/// Prefix of the names of on-chip sizes. Lists of parameters show these sizes, but users cannot set them.
 pub const CHIP_PATH: &str = "i860.chip";
 
 /// Configuration of a processor: timing rules, memory timing, and results of the reciprocal approximations.
@@ -147,9 +157,9 @@ pub const CHIP_PATH: &str = "i860.chip";
 pub struct Config {
     /// True if the processor counts clocks. If false, only instructions are counted.
     pub timing: bool,
-    /// Freeze rules that are enabled, and their costs in clocks.
+    /// Rows of the freeze table that are enabled, and their delays in clocks.
     pub freezes: FreezeRules,
-    /// Timing of the memory behind the bus.
+    /// Timing of the memory on the bus.
     pub dram: DramTiming,
     /// Results of the reciprocal approximations `frcp` and `frsqr`, as a table.
     pub seeds: crate::SeedTable,
@@ -175,7 +185,7 @@ impl Config {
         }
     }
 
-    /// Returns all tables of timing parameters, each with its path prefix.
+    /// Returns all tables of timing parameters, each with the prefix of its parameter names.
     #[must_use]
     pub fn tables(&self) -> [(&'static str, &dyn ParameterTable); 3] {
         [(FREEZES_PATH, &self.freezes.clocks), (DRAM_PATH, &self.dram), (CHIP_PATH, &ChipSizes::PAPERS)]

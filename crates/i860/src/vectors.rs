@@ -13,15 +13,16 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Instruction budget of a vector. A longer run fails. The vectors execute fewer than 1,000 instructions.
+/// Largest number of instructions that the program of a vector may execute. A longer run fails. The programs execute
+/// fewer than 1,000 instructions.
 pub const BUDGET: u64 = 10_000;
 
-/// One vector: a program, the state before its run and the state expected after its run.
+/// One conformance vector: a program, the state before its run and the state expected after its run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
-pub struct Vector {
+pub struct TestVector {
     /// Identifier, unique in its file.
     pub id: String,
-    /// Group of the vector within the collection.
+    /// Name of the group to which the vector belongs in the collection.
     #[serde(default)]
     pub group: String,
     /// Description of the tested behaviour.
@@ -176,13 +177,13 @@ pub struct MalformedLine {
 ///
 /// # Errors
 /// Returns the error of the first line that does not contain a valid vector.
-pub fn parse(text: &str) -> Result<Vec<Vector>, MalformedLine> {
+pub fn parse(text: &str) -> Result<Vec<TestVector>, MalformedLine> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     lines.map(|(n, line)| parse_line(n + 1, line)).collect()
 }
 
-fn parse_line(line: usize, text: &str) -> Result<Vector, MalformedLine> {
-    let vector: Vector = serde_json::from_str(text).map_err(|e| MalformedLine { line, reason: e.to_string() })?;
+fn parse_line(line: usize, text: &str) -> Result<TestVector, MalformedLine> {
+    let vector: TestVector = serde_json::from_str(text).map_err(|e| MalformedLine { line, reason: e.to_string() })?;
     // Instruction addresses must be aligned.
     let unaligned = [vector.load, vector.entry, vector.stop].iter().any(|address| address % 4 != 0);
     if unaligned {
@@ -192,7 +193,7 @@ fn parse_line(line: usize, text: &str) -> Result<Vector, MalformedLine> {
     Ok(vector)
 }
 
-impl Vector {
+impl TestVector {
     fn memory(&self) -> Sparse {
         let mut memory = Sparse::default();
         for (n, word) in self.code.iter().enumerate() {
@@ -204,7 +205,7 @@ impl Vector {
         memory
     }
 
-    /// Runs the vector on a new processor and compares the state after the run.
+    /// Runs the program of the vector on a new processor and compares the state after the run.
     ///
     /// # Errors
     /// Returns the differences in the state, or the reason why the program did not reach its stop address.
@@ -213,10 +214,10 @@ impl Vector {
         self.check_on(&mut cpu)
     }
 
-    /// Resets a processor, runs the vector on it and compares the state after the run.
+    /// Resets a processor, runs the program of the vector on this processor, and compares the state after the run.
     ///
     /// # Errors
-    /// Returns the same errors as [`Vector::check`].
+    /// Returns the same errors as [`TestVector::check`].
     pub fn check_on(&self, cpu: &mut Cpu) -> Result<(), Failure> {
         cpu.reset();
         // Registers are zero after the reset. Only the start address is set here.
@@ -242,7 +243,7 @@ impl Vector {
     }
 }
 
-/// Results of a set of vectors.
+/// Results of the conformance tests with a set of vectors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct VectorSummary {
     /// Number of vectors that passed.
@@ -259,9 +260,9 @@ impl VectorSummary {
     }
 }
 
-/// Runs all vectors on one processor. The processor is reset before each vector.
+/// Runs the programs of all vectors on one processor. The processor is reset before each program.
 #[must_use]
-pub fn run(vectors: &[Vector], config: Config) -> VectorSummary {
+pub fn run(vectors: &[TestVector], config: Config) -> VectorSummary {
     let mut cpu = Cpu::new(config);
     let mut summary = VectorSummary::default();
     for vector in vectors {

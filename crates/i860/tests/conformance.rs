@@ -4,7 +4,7 @@ use flate2::read::GzDecoder;
 use i860::{Config, vectors};
 use std::io::Read;
 
-fn open_vectors() -> Vec<vectors::Vector> {
+fn open_vectors() -> Vec<vectors::TestVector> {
     let packed = include_bytes!("data/i860-open.jsonl.gz");
     let mut text = String::new();
     GzDecoder::new(packed.as_slice()).read_to_string(&mut text).expect("the file is gzip");

@@ -3,6 +3,7 @@
 use crate::timing::JitpTiming;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{
@@ -10,20 +11,19 @@ use pxpl5_wire::{
 };
 use std::fmt;
 use std::sync::Arc;
-use thiserror::Error;
 
 /// Mode of interpolation between the two views of a field. The mode determines the paths of vertices from the start to
 /// the end of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interpolation {
-    /// Interpolates the vertex's screen positions, after the division by depth.
+    /// Interpolates the screen positions of vertices, after the division by depth.
     Screen,
-    /// Interpolates the vertex's eye-space positions, before the division by depth.
+    /// Interpolates the eye-space positions of vertices, before the division by depth.
     View,
 }
 
-/// The choice of the times for which the parts of a field's picture are computed. Each part shows the view from the
-/// viewer's position and orientation at its time.
+/// The choice of the times for which the parts of a field's picture are computed. Each part shows the scene as seen by
+/// the viewer at the time of this part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
     /// One time for the whole field.
@@ -148,7 +148,8 @@ pub struct JitpConfig {
     pub schedule: DrawingSchedule,
     /// Timing of the beam.
     pub beam: Beam,
-    /// Time within a view's display time for which the view is drawn, such as the middle of the display time.
+    /// Instant for which each view is drawn, chosen from the times at which the display shows the view. An example is
+    /// the middle of these times.
     pub aim: Aim,
     /// Division of pixel memory among contexts.
     pub layout: Layout,
@@ -156,23 +157,6 @@ pub struct JitpConfig {
     pub pixels: bool,
     /// Times of this firmware that the processor's timing table lacks.
     pub timing: JitpTiming,
-}
-
-/// The error for a configuration that cannot run.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum JitpConfigError {
-    /// The configuration has no slave GP.
-    #[error("just-in-time pixels need a master and at least one slave GP, found no slave")]
-    NoSlave,
-    /// A strip or block has an invalid size.
-    #[error("strips or blocks must have {} to {} lines, found {found}", expected.0, expected.1)]
-    Size {
-        /// Smallest and largest number of lines.
-        expected: (u32, u32),
-        /// Requested number of lines.
-        found: u32,
-    },
 }
 
 /// Number of view numbers for each field. A field has at most 240 strips.
@@ -183,23 +167,27 @@ impl JitpConfig {
     ///
     /// # Errors
     ///
-    /// Returns [`JitpConfigError`] with the expected and the found value.
-    pub fn check(&self) -> Result<(), JitpConfigError> {
+    /// Returns [`SettingError`] with the expected and the found value.
+    pub fn check(&self) -> Result<(), SettingError> {
         if self.slaves.is_empty() {
-            return Err(JitpConfigError::NoSlave);
+            let reason = "just-in-time pixels need a master and at least one slave GP, found no slave";
+            return Err(SettingError::combination(reason));
         }
         let (found, expected) = match self.schedule {
             DrawingSchedule::Beam { strip_rows, .. } => (strip_rows, (1, 128)),
             DrawingSchedule::Roam { block, .. } => (block, (4, 128)),
         };
-        let fits = (expected.0..=expected.1).contains(&found);
-        if fits { Ok(()) } else { Err(JitpConfigError::Size { expected, found }) }
+        if (expected.0..=expected.1).contains(&found) {
+            return Ok(());
+        }
+        let (low, high) = expected;
+        Err(SettingError::combination(format_args!("strips or blocks must have {low} to {high} lines, found {found}")))
     }
 
     /// Returns the number of the view for one strip of a field.
     ///
-    /// A view of the whole field has the number of strip 0. The two views for the start and the end of a field have the
-    /// numbers of strips 0 and 1.
+    /// The single view of a whole field has the view number of strip 0. The two views for the start and the end of a
+    /// field have the view numbers of strips 0 and 1.
     #[must_use]
     pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
         ViewNumber(field.0 * VIEWS_PER_FIELD + strip)
@@ -254,26 +242,26 @@ impl JitpConfig {
         self.beam.at(field, self.rows(strip).0, 0)
     }
 
-    /// Returns true for the middle strip of a field. In the trace, the events of this strip represent the
-    /// whole field.
+    /// Returns true for the middle strip of a field. In the trace, the events of this strip represent the whole field.
     pub fn is_middle(&self, strip: u32) -> bool {
         strip == self.grid().rows() / 2
     }
 
-    /// Returns the time for which a strip is drawn.
+    /// Returns the instant for which a strip is drawn. [`JitpConfig::aim`] chooses the instant from the times of the
+    /// strip's scan.
     #[must_use]
     pub fn aimed_at_strip(&self, field: PeriodNumber, strip: u32) -> Time {
         let (first, last) = self.rows(strip);
         self.aimed_at(field, first, last)
     }
 
-    /// Returns the time for which a field with a single view is drawn.
+    /// Returns the instant for which a field is drawn if all of its strips share one view.
     #[must_use]
     pub fn aimed_at_field(&self, field: PeriodNumber) -> Time {
         self.aimed_at(field, 0, self.grid().height - 1)
     }
 
-    /// Returns the time for which a range of rows of a field is drawn.
+    /// Returns the instant for which the rows `first` to `last` of a field are drawn.
     fn aimed_at(&self, field: PeriodNumber, first: u32, last: u32) -> Time {
         let shown = LightTimes {
             tick: self.beam.retrace(field),
@@ -290,8 +278,9 @@ impl JitpConfig {
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
     }
 
-    /// Returns the time for which a strip is drawn, on a scale from T0 (0) to T1 (1). If strips are drawn for the
-    /// retrace, the result is negative, because the retrace is before T0.
+    /// Returns the instant for which a strip is drawn, on a scale from T0 (result 0) to T1 (result 1). The beam scans
+    /// the field's first pixel at T0 and the field's last pixel at T1. If [`JitpConfig::aim`] is the retrace, the
+    /// result is negative, because the retrace precedes T0.
     #[must_use]
     pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);
@@ -301,8 +290,8 @@ impl JitpConfig {
 
     /// Returns the duration from the order of a strip to the strip's deadline.
     ///
-    /// A slave draws every n-th strip, so it has the time of n strips, where n is the number of slaves. Strips that do
-    /// not race the beam are ordered one field earlier.
+    /// If there are n slaves, each slave draws every n-th strip. Each slave thus has the time that the beam needs for n
+    /// strips. If strips do not race the beam, the master orders the strips one field earlier.
     ///
     /// Every second field uses the same lines of the frame buffer. A strip must not overwrite lines of the second
     /// previous field that the beam has not scanned. A strip is therefore ordered only after the beam has scanned its

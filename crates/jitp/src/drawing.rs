@@ -14,10 +14,11 @@ use std::sync::{Arc, OnceLock};
 /// Number of subpixels along the side of a pixel. Coordinates of outlines are in subpixels.
 const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 
-/// Largest deviation, in subpixels, between a straight line and the path of a triangle's corner on the screen. With
-/// interpolation in eye space, this path is curved.
+/// Largest deviation, in subpixels, between a straight line and the path of a triangle's corner on the screen. The path
+/// is curved if positions are interpolated in eye space.
 ///
-/// A head that turns by 10 degrees during a field causes a deviation of 5 pixels. Real heads do not turn so fast.
+/// The limit is 8 pixels. A head that turns by 10 degrees during a field causes a deviation of 5 pixels, and real heads
+/// do not turn so fast.
 const CURVED: i32 = 8 * SUBPIXELS;
 
 /// A rectangle of pixels. `across` has its first and last column, and `lines` has its first and last line of the frame.
@@ -130,8 +131,8 @@ impl DrawnList {
         all
     }
 
-    /// Calls `sink` for each triangle on the screen. Triangles that cannot touch the range `near` of lines are left out
-    /// (see [`near`]).
+    /// Calls `sink` for each triangle on the screen. Triangles that cannot touch the lines `near` are left out. The
+    /// function [`near`] returns such a range of lines.
     fn each_outline(&self, near: [i32; 2], mut sink: impl FnMut(&Outline)) {
         let mut stats = SetupStats::default();
         for (i, place) in self.placed.iter().enumerate() {
@@ -146,8 +147,8 @@ impl DrawnList {
         }
     }
 
-    /// Returns the positions of a structure's k-th triangle in both views, the position between the views, and the mode
-    /// of interpolation. Returns `None` if the triangle has no such positions.
+    /// Returns the positions of the k-th triangle of a structure in both views, the position between the views, and the
+    /// mode of interpolation. Returns `None` if the triangle is not interpolated.
     fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Interpolation)> {
         let Between { ends, part, interpolation, .. } = self.between.as_ref()?;
         Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *part, *interpolation))
@@ -164,7 +165,7 @@ impl DrawnList {
     }
 
     /// Calls `sink` with the command of each triangle that touches the window, in the order of the display list. The
-    /// window must have the lines of a window in an earlier call of [`Self::count`].
+    /// window must be a window of an earlier call of [`Self::count`], so that the number of commands equals the count.
     pub(crate) fn triangle_commands(&self, window: &Window, mut sink: impl FnMut(Command)) {
         let near = near(std::slice::from_ref(window));
         let mut stats = SetupStats::default();
@@ -201,8 +202,8 @@ impl DrawnList {
     /// Returns the work of interpolating the primitives near the given windows. Returns `None` if there is only one
     /// view.
     ///
-    /// The part `ends` of the board's memory holds the triangles of both views. The part `commands` receives the
-    /// commands.
+    /// The last parameter has two parts of the board's memory, `ends` and `commands`. The part `ends` holds the
+    /// triangles of both views. The part `commands` receives the commands of the interpolated primitives.
     pub(crate) fn interpolating<'a>(
         &'a self,
         share: &'a Share,
@@ -265,7 +266,7 @@ fn sink_if_met(
     }
 }
 
-/// Counts the primitives that touch windows.
+/// Numbers of the primitives that touch windows: a count for each window, and a count over all windows.
 struct WindowCounts<'a> {
     windows: &'a [Window],
     /// Distance of the highest window's top from the frame's top, and distance of the lowest window's bottom, in

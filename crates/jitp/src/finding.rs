@@ -1,4 +1,4 @@
-//! CPU work of searching the primitives in the regions of a strip or of a batch of blocks.
+//! CPU work of the search for the primitives in the regions of a strip or of a batch of blocks.
 //!
 //! The work has three parts: to interpolate primitives, to find the primitives in each region, and to list the messages
 //! that draw these primitives.

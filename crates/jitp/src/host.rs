@@ -14,7 +14,8 @@ use pxpl5_sim::Time;
 ///
 /// # Errors
 ///
-/// The function never returns an error. Its return type is the return type of all programs.
+/// The function never returns an error. The function returns a `Result` only because all programs have this return
+/// type.
 pub async fn host(
     gp: Gp,
     config: JitpConfig,

@@ -13,22 +13,23 @@
 //! - One GP is the [`master`](fn@master). The master synchronizes with the beam, stores the newest tracking data and
 //!   orders the strips. Slave k of n draws strips k, k + n, k + 2n and so on. For each strip, a slave has the time that
 //!   the beam needs for n strips. Every slave holds the whole display list.
-//! - A *strip* consists of one line or a few lines of a field ([`DrawingSchedule::Beam`]). Its regions are 128 pixels
-//!   wide. Successive regions use the renderers in turn. No second buffer is needed. A field is written while the beam
-//!   scans the other field, or each line is written just before the beam reaches it.
-//! - The [`Viewpoint`] sets the time for which a strip is drawn. This can be one time for the whole field (a
-//!   conventional picture), or one time for each strip. With a *dual display list*, every vertex is transformed for the
-//!   start T0 and the end T1 of the field. Strips are interpolated between T0 and T1, on the screen or in eye space
+//! - A *strip* consists of one line or a few lines of a field ([`DrawingSchedule::Beam`]). The regions of a strip are
+//!   128 pixels wide. Successive regions use the renderers in turn. No second buffer is needed, because a field is
+//!   written while the beam scans the other field. If strips race the beam, each line is written just before the beam
+//!   reaches this line.
+//! - The [`Viewpoint`] sets the time for which a strip is drawn. The time can be the same for the whole field (a
+//!   conventional picture), or different for each strip. With a *dual display list*, every vertex is transformed for
+//!   the start T0 and the end T1 of the field. Strips are interpolated between T0 and T1, on the screen or in eye space
 //!   before the division by depth ([`Interpolation`]).
 //! - *Racing the beam* is a separate choice. A strip is ordered either just in time for the beam, or one field earlier.
-//!   In the second case the whole field is complete before its retrace.
+//!   If strips are ordered one field earlier, the whole field is complete before its retrace.
 //! - All slaves draw in the same region context of a renderer. A region's commands may need several messages. These
 //!   messages reserve the renderer's port until the last message, which copies the region. No other slave can therefore
 //!   draw into the region.
-//! - Every second field uses the same lines of the frame buffer. A strip is therefore never ordered before the beam has
-//!   scanned its lines in the second previous field, for any number of slaves.
-//! - A strip is skipped if the beam passes it before a slave can begin it. The lines of the earlier field then stay on
-//!   the screen.
+//! - Every second field uses the same lines of the frame buffer. For any number of slaves, a strip is therefore ordered
+//!   only after the beam has scanned the strip's lines in the second previous field.
+//! - A strip is skipped if the beam reaches the strip before a slave can begin to draw it. The lines of the earlier
+//!   field then stay on the screen.
 //! - *Frameless* rendering ([`DrawingSchedule::Roam`]) draws blocks in a random order. Each order to a slave contains
 //!   the newest view. The blocks go directly into the visible buffer.
 //!
@@ -36,14 +37,15 @@
 //!
 //! If the boards run i860 code, every step has its own code ([`pphigs`]):
 //!
-//! - TRANSFORM of the whole list stores commands and their bounding boxes, or the positions of triangles at the start
-//!   and the end of the field.
-//! - The triangles of a strip are interpolated between both positions. Such a strip begins a separate pass with the
-//!   interpolated matrices.
+//! - For one view, TRANSFORM of the whole list stores commands with their bounding boxes. For two views, TRANSFORM
+//!   stores the positions of triangles at the start and at the end of the field.
+//! - For a strip between two views, code interpolates the triangles between these two positions. The strip begins with
+//!   a separate pass that uses the interpolated matrices.
 //! - Code finds the primitives in a strip or block by their bounding boxes, and sends them like the bin of a region.
 //! - Code assembles the master's orders.
 //!
-//! With i860 code, the lead time of a field and the number of blocks in a batch are constants.
+//! With i860 code, the time from the order of a field to the field's first strip is a constant. The number of blocks in
+//! a batch is a constant, too.
 //!
 //! **Not modelled:** culling of the display list by line (a slave transforms every primitive for each strip),
 //! transforms shared among slaves, Phong shading. Frameless rendering draws square blocks, because a message for a
@@ -66,7 +68,7 @@ mod slave;
 pub mod timing;
 mod whole;
 
-pub use config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, JitpConfigError, Viewpoint, Wanted};
+pub use config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint, Wanted};
 pub use host::host;
 pub use master::master;
 pub use slave::{Transforms, slave};

@@ -91,7 +91,8 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Returns the time at which slaves must begin to transform for a field.
+    /// Returns the time at which slaves must begin to transform the display list for a field. This time precedes the
+    /// order of the field's first strip by a lead time.
     ///
     /// With the timing table, the lead time is 1.5 times the TRANSFORM time, because the slaves also draw strips during
     /// TRANSFORM. With i860 code, the lead time is a whole field, because the time of the code is not known in advance
@@ -170,7 +171,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Returns the time for which a batch of blocks is drawn if the master orders the batch now.
+    /// Returns the instant for which a batch of blocks is drawn if the master orders the batch now.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;
@@ -188,7 +189,7 @@ struct Expected {
     standing: Span,
 }
 
-/// Times of recent orders. From these times, the master estimates the duration of the next order.
+/// Times of recent orders, from which the master estimates the duration of the next order.
 struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
     /// Times of the orders of the last pass over all blocks of the frame, oldest first.

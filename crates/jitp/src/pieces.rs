@@ -38,8 +38,8 @@ struct Part {
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// Divides a region's triangles and spheres into messages, triangles first. The number of messages is as small as their
-/// maximum length permits.
+/// Divides a region's triangles and spheres into messages, triangles first. Each message gets as many primitives as its
+/// maximum length permits. All messages keep room for the copy command.
 fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut triangle = 0;
@@ -60,8 +60,8 @@ fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     }
 }
 
-/// Returns the first part of `remaining`. The part has as many primitives of `words_each` words as fit into
-/// `room_words`.
+/// Returns the first part of `remaining`: as many primitives of `words_each` words as fit into `room_words`. Subtracts
+/// the words of these primitives from `room_words`.
 fn take_run(remaining: Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let n = (remaining.end - remaining.start).min(*room_words / words_each);
     *room_words -= n * words_each;

@@ -15,7 +15,7 @@ const DONE: Word = 0x1F1E_1D04;
 /// number has 64 bits.
 pub(crate) const REPORT_WORDS: u32 = 20;
 
-/// A message between the boards.
+/// A message between the host, the master and the slaves.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum DrawingOrder {
     /// Order to transform the whole display list for the views of a field.
@@ -24,7 +24,8 @@ pub(crate) enum DrawingOrder {
     Strip { field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView> },
     /// Order to draw blocks of the random order, beginning at the step with index `step`.
     Blocks { update: PictureNumber, step: u64, view: FrameView },
-    /// Notice about reports of the tracker. All reports that the host received before the time `known` have arrived.
+    /// Notice about reports of the tracker. The master may use all reports that the host received before the time
+    /// `known`.
     Report { known: Time },
     /// Notice that a slave can take another order.
     Done { slave: u32 },

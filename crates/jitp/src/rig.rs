@@ -18,7 +18,7 @@ pub(crate) const SLAVE: NodeId = NodeId(2);
 pub(crate) const RENDERER: NodeId = NodeId(3);
 pub(crate) const FIELD_US: u64 = 20_000;
 pub(crate) const ROW_US: u64 = 50;
-/// Time from the cause of a signal until the signal leaves the board.
+/// Time from the cause of an output signal until the signal leaves the board, in picoseconds.
 pub(crate) const CYCLE: Span = Span(25_000);
 
 pub(crate) const fn us(us: u64) -> Time {

@@ -35,7 +35,8 @@ struct SlaveFields {
     n_transformed: usize,
 }
 
-/// The transformed triangles of a field, and the prepared list that all strips of a conventional picture share.
+/// The transformed triangles of a field, and the display list as prepared for the field's first view. All strips of a
+/// field with a single view share this prepared list.
 #[derive(Clone)]
 struct Field {
     ends: Ends,
@@ -214,8 +215,8 @@ impl Slave {
         self.state.borrow().transformed.back().is_some_and(|newest| newest.0 >= field)
     }
 
-    /// Returns a strip's prepared list, and the part of memory that holds the transformed triangles of the field.
-    /// Returns `None` if the field was skipped.
+    /// Returns the display list as prepared for a strip, and the part of memory that holds the transformed triangles of
+    /// the strip's field. Returns `None` if TRANSFORM of the field was skipped.
     async fn drawing_of_field(
         &self,
         field: PeriodNumber,
@@ -259,7 +260,7 @@ impl Slave {
         Ok(())
     }
 
-    /// Finds the primitives of some regions, and sends the messages of all regions as one chain.
+    /// Finds the primitives of the given regions, and sends the messages of all these regions as one chain.
     ///
     /// All slaves draw in the same region context of a renderer. A region's messages therefore reserve the renderer's
     /// port until the last message, which copies the region. Otherwise another slave could draw into the region or

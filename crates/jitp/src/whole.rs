@@ -30,8 +30,8 @@ impl Work for WholeList<'_> {
         self.pass.span(timing) * self.views.len() as u64
     }
 
-    /// Runs the code. For one view, the code stores commands with their bounding boxes. For two views, the code stores
-    /// the positions of triangles in both views.
+    /// Runs the i860 code of the pass. For one view, the code stores commands with their bounding boxes. For two views,
+    /// the code stores the positions of triangles in both views.
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let Self { share, part, .. } = *self;
         let picture = picture(self.viewport, self.layout);

@@ -68,7 +68,7 @@ pub use placing::place_all;
 pub use sending::send_as_tracked;
 pub use structure::{DisplayStructure, ModelFrame};
 pub use surrounding::{CubeTransform, CubeTransformOutput};
-pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};
+pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit};
 pub use windows::{MemoryPart, SearchOutput, WindowSearchWork};
 
 /// Compiles and runs the example of the README.

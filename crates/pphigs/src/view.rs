@@ -1,6 +1,7 @@
 //! The host's message for a frame: matrices of the eyes and edits of structures, encoded as words for the ring.
 
 use glam::{DMat4, Mat4};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, ViewNumber, Word};
 
 /// The matrices of one eye.
@@ -41,16 +42,6 @@ const HEADER_WORDS: usize = 4;
 /// Largest number of edits that fit in one message together with the transforms of two eyes.
 pub const MAX_EDITS: usize = (MAX_MESSAGE_WORDS as usize - 8 - HEADER_WORDS - 2 * EYE_WORDS) / EDIT_WORDS;
 
-/// An error in a message: its length does not match its header.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("view: expected {expected} words, found {found}")]
-pub struct ViewWordsError {
-    /// Number of words according to the header, including the words of the header.
-    pub expected: usize,
-    /// Number of words found.
-    pub found: usize,
-}
-
 impl FrameView {
     /// Encodes the view as words: number of the view (two words), number of eyes, number of edits, then the matrices
     /// column by column.
@@ -73,15 +64,15 @@ impl FrameView {
     ///
     /// # Errors
     ///
-    /// Returns [`ViewWordsError`] if the number of words does not match the header.
-    pub fn from_words(words: &[Word]) -> Result<Self, ViewWordsError> {
+    /// Returns a [`SettingError`] if the number of words does not match the header.
+    pub fn from_words(words: &[Word]) -> Result<Self, SettingError> {
         let n_eyes = header_word(words, 2);
         let n_edits = header_word(words, 3);
         let expected =
             HEADER_WORDS + n_eyes.saturating_mul(EYE_WORDS).saturating_add(n_edits.saturating_mul(EDIT_WORDS));
         // Check the length once, so that the slices below cannot fail.
         if words.len() != expected {
-            return Err(ViewWordsError { expected, found: words.len() });
+            return Err(SettingError::value("view", format_args!("{expected} words"), words.len()));
         }
         let (eyes, edits) = words[HEADER_WORDS..].split_at(n_eyes * EYE_WORDS);
         Ok(Self {

@@ -1,4 +1,4 @@
-//! TRANSFORM and RENDER of Slats on one GP, computed for several machine configurations at once.
+//! TRANSFORM and RENDER of Slats on one GP, computed for several machine configurations together.
 
 use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
@@ -71,15 +71,16 @@ impl<const N: usize> MessageCosts<N> {
     }
 }
 
-/// A clump of triangles, and its message to each region. The message selects the region and draws triangles. In the
-/// field's first clump, the message also clears the region.
+/// A clump (group of triangles), and the message that a renderer receives for each region. The message selects the
+/// region and draws the triangles. In the field's first clump, the message also clears the region.
 struct Clump<const N: usize> {
     transform: Times<N>,
     message: Commands<N>,
-    /// Time until a renderer's FIFO has [room](Commands::room_behind) for a message behind a message of the previous
-    /// clump.
+    /// Time until a renderer's FIFO has [room](Commands::room_behind) for a message that follows a message of the
+    /// previous clump (group of triangles).
     behind_last: Times<N>,
-    /// Time until a renderer's FIFO has room for a message behind another message of the same clump.
+    /// Time until a renderer's FIFO has room for a message that follows another message of the same clump (group of
+    /// triangles).
     behind_itself: Times<N>,
 }
 
@@ -93,7 +94,7 @@ impl<const N: usize> Clump<N> {
         Self { transform, message, behind_last: Times::all(f64::NEG_INFINITY), behind_itself }
     }
 
-    /// Returns the clump of `triangles` triangles that follows this clump.
+    /// Returns the clump (group) of `triangles` triangles that is sent after this clump.
     #[inline(always)]
     fn next(&self, models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select, triangles, each);
@@ -107,9 +108,9 @@ impl<const N: usize> Clump<N> {
 struct Chain<const N: usize> {
     /// Time at which the processor has finished its latest work.
     cpu: Times<N>,
-    /// Time at which the last message of the latest clump was accepted.
+    /// Time at which the last message of the latest clump (group of triangles) was accepted.
     accepted: Times<N>,
-    /// Time at which every renderer has accepted its first message of the latest clump.
+    /// Time at which every renderer has accepted its first message of the latest clump (group of triangles).
     draining: Times<N>,
 }
 
@@ -159,8 +160,8 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Records the time from which the earliest channel is free again, and sorts this time among the times of the other
-    /// channels.
+    /// Replaces the first time by `free`, the time from which this channel is free again, and restores the ascending
+    /// order of the times.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {
         let mut here = free;

@@ -2,7 +2,7 @@
 
 use super::renderer::{Array, Times};
 
-/// Computes a value for each lane, one lane for each configuration. The compiler turns the loop into vector
+/// Computes an array with one value (lane) for each machine configuration. The compiler turns the loop into vector
 /// instructions.
 macro_rules! lanes {
     ($i:ident => $lane:expr) => {{
@@ -14,7 +14,7 @@ macro_rules! lanes {
     }};
 }
 
-/// Largest number of renderers in the model. A field has 20 regions, so further renderers would have no work.
+/// Largest number of renderers in the analytic model. A field has 20 regions, so further renderers would have no work.
 pub(super) const MAX_RENDERERS: usize = 20;
 
 /// Copies that a renderer has to make, with two bits for each copy. The first copy is in the lowest bits.
@@ -42,7 +42,7 @@ impl Queue {
     /// remain.
     ///
     /// If `begins_right` is true and a right copy exists, the first copy goes to the right frame buffer. Otherwise the
-    /// first copy is on the same side as before.
+    /// first copy goes to the same frame buffer as the first copy of the given order.
     pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];
@@ -71,8 +71,8 @@ pub struct CopyTimes {
     pub end_ns: f64,
 }
 
-/// The two frame-buffer ports of several configurations: times from which they are free, and times of the copies so
-/// far.
+/// The two frame-buffer ports in several machine configurations: the times from which the ports are free, and the times
+/// of the copies so far.
 struct Ports<const N: usize> {
     free: [Times<N>; 2],
     begins: Times<N>,
@@ -81,9 +81,9 @@ struct Ports<const N: usize> {
 
 /// Makes all copies of the renderers. Each copy takes `region` nanoseconds.
 ///
-/// The renderer that is ready first goes first; among equals, the renderer with the lowest index. The renderer's free
-/// time becomes the end of its last copy. As long as the same renderer is first in all configurations, all lanes are
-/// computed by the same steps.
+/// The renderer that is ready first copies first. If several renderers are ready at the same time, the lowest index
+/// comes first. The free time of a renderer becomes the end of its last copy. As long as the same renderer is first in
+/// all configurations, one computation serves all configurations.
 #[inline(always)]
 pub(super) fn make<const N: usize>(
     arrays: &mut [Array<N>],
@@ -103,9 +103,9 @@ pub(super) fn make<const N: usize>(
     std::array::from_fn(|i| CopyTimes { begin_ns: ports.begins.0[i], end_ns: ports.ends.0[i] })
 }
 
-/// Returns the index of the renderer that goes first in all configurations.
+/// Returns the index of the renderer that makes the next copy in all configurations.
 ///
-/// Returns `None` if different renderers go first in different configurations, or if all copies are done.
+/// Returns `None` if the next renderer differs between configurations, or if all copies are done.
 #[inline(always)]
 fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MAX_RENDERERS]) -> Option<usize> {
     let waiting = || (0..arrays.len()).filter(|r| left[*r].0 != 0);
@@ -131,8 +131,8 @@ impl<const N: usize> Ports<N> {
         Self { free: [Times::all(f64::MIN); 2], begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
     }
 
-    /// Makes a copy to one of the two ports. The copy starts at `ready`, or when the port is free. Returns the time of
-    /// its end.
+    /// Makes a copy to one of the two frame-buffer ports. The copy starts at `ready`, or when the port is free. Returns
+    /// the end time of the copy.
     #[inline(always)]
     fn copy(&mut self, ready: Times<N>, to_right: bool, region: Times<N>) -> Times<N> {
         let begin = self.free[usize::from(to_right)].later(ready);
@@ -149,7 +149,7 @@ impl<const N: usize> Ports<N> {
         self.ends = self.ends.later(end);
     }
 
-    /// Makes the remaining copies. The order of renderers can differ between configurations.
+    /// Makes the remaining copies of the renderers. The order of the renderers can differ between configurations.
     #[inline(always)]
     fn copy_apart(&mut self, arrays: &mut [Array<N>], queues: &[Queue; MAX_RENDERERS], region: Times<N>) {
         let never = [f64::INFINITY; N];
@@ -180,8 +180,8 @@ impl<const N: usize> Ports<N> {
         }
     }
 
-    /// Makes one copy in each lane: to the right port where the mask is set, otherwise to the left port. Returns the
-    /// time of its end.
+    /// Makes one copy in each configuration: to the right port where the mask is set, otherwise to the left port.
+    /// Returns the end times of the copies.
     #[inline(always)]
     fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
         let [left, right] = self.free;
@@ -193,7 +193,7 @@ impl<const N: usize> Ports<N> {
     }
 }
 
-/// A condition for each lane: all bits are set if the condition is true, and no bit is set otherwise.
+/// A condition for each configuration: all bits are set if the condition is true, and no bit is set otherwise.
 type Mask<const N: usize> = [u64; N];
 
 #[inline(always)]

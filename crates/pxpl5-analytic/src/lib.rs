@@ -20,9 +20,9 @@
 //!
 //! # Not modelled
 //!
-//! - Channels that pixels use.
+//! - Ring channels that messages with pixels occupy.
 //! - Interrupts of a GP by messages of other boards.
-//! - Words of a clump's last message besides its primitives.
+//! - Words of a clump's last message, except the words of primitives.
 //! - The host's own messages. A mean rate replaces them.
 //! - Views after the first view (Slats).
 //! - Memory.
@@ -41,9 +41,10 @@ pub use model::{FieldTimes, PerTriangle, SlatsModel};
 pub use rendering_control::{StereoModel, StereoTimes, stereo_loads};
 
 use pxpl5_framebuffer::{FrameBufferConfig, Video};
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Pipeline, Registry, Summary};
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use std::any::Any;
 use std::sync::Arc;
 
@@ -117,16 +118,16 @@ fn is_in_time(summary: &Summary) -> Option<bool> {
     summary.due.map(|due| due.not_shown() == 0)
 }
 
-fn no_form(what: &str) -> ConfigError {
-    ConfigError::Board(format!("the analytic level has no closed form of {what}"))
+fn no_form(what: &str) -> SettingError {
+    SettingError::combination(format_args!("the analytic level has no closed form of {what}"))
 }
 
 /// Returns the video timing of the first display, which must be an NTSC display.
-fn video_of(config: &MachineConfig) -> Result<Video, ConfigError> {
+fn video_of(config: &MachineConfig) -> Result<Video, SettingError> {
     let display: Option<&FrameBufferConfig> =
         config.displays.first().and_then(|display| (display.as_ref() as &dyn Any).downcast_ref());
     let display = display.ok_or_else(|| no_form("a display other than ntsc"))?;
-    Video::new(display.video).map_err(|error| ConfigError::Board(error.to_string()))
+    display.video.video()
 }
 
 /// Compiles and runs the example of the README.

@@ -20,14 +20,14 @@ pub struct Load {
     pub clipped: f64,
     /// Number of structures in the display list.
     pub structures: f64,
-    /// Number of structures that contain spheres.
+    /// Number of structures of the display list that contain spheres.
     pub sphere_views: f64,
     /// For each region, the number of triangles and the number of spheres in its bin.
     pub bins: Vec<[f64; 2]>,
 }
 
 impl Load {
-    /// Returns the load of one structure. Its triangles touch every region and are never clipped.
+    /// Returns the load of one structure whose triangles touch every region and are never clipped.
     #[must_use]
     pub fn full_screen(triangles: u32, regions: usize) -> Self {
         let triangles = f64::from(triangles);

@@ -5,11 +5,12 @@ use super::renderer::Cost;
 use crate::{no_form, video_of};
 use pphigs::TransformCost;
 use pxpl5_gp::GpTiming;
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{DuePictures, PictureResult, Pipeline, Slats, WARM_UP_PERIODS};
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{PeriodNumber, RegionGrid};
 
 /// Number of regions of a field, both eyes together.
@@ -18,14 +19,14 @@ pub(super) const REGIONS: usize = 20;
 /// Largest number of ring channels in the model.
 pub(super) const MAX_CHANNELS: usize = 8;
 
-/// Number of channels that copies to two frame buffers need.
+/// Number of ring channels that copies to two frame buffers need.
 const COPY_CHANNELS: u64 = 2;
 
-/// Number of eyes. Each structure is placed once per eye.
+/// Number of eyes. A graphics processor transforms each structure of the display list once per eye.
 const EYES: f64 = 2.0;
 
-/// Returns the time to begin a pass over structures for both eyes, in nanoseconds. `sphere_views` is the number of
-/// structures with spheres.
+/// Returns the time that a graphics processor needs to begin a pass over all structures for both eyes, in nanoseconds.
+/// `sphere_views` is the number of structures with spheres.
 fn begin_ns(gp: &GpTiming, structures: usize, sphere_views: usize) -> f64 {
     let [structures, sphere_views] = [structures, sphere_views].map(|n| EYES * n as f64);
     TransformCost { passes: 1.0, structures, sphere_views, ..TransformCost::default() }.ns(gp)
@@ -71,7 +72,7 @@ pub struct FieldTimes {
     pub in_time: bool,
 }
 
-/// Mean values of a triangle, for one eye.
+/// Mean numbers that one triangle causes, for one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerTriangle {
     /// Number of entries in all bins together.
@@ -86,19 +87,12 @@ impl SlatsModel {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] if there are too few renderers, or if messages to renderers leave fewer than two
+    /// Returns a [`SettingError`] if there are too few renderers, or if messages to renderers leave fewer than two
     /// channels for split copies. Such copies would wait for each other, and the analytic level does not model this
     /// wait.
-    pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
+    pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, SettingError> {
         // Each renderer holds as many regions as its memory layout permits.
-        let contexts = usize::from(program.layout().plan().contexts.max(1));
-        if config.n_renderers < REGIONS.div_ceil(contexts) {
-            let error = slats::SlatsConfigError::TooFewRenderers {
-                found: config.n_renderers,
-                expected: REGIONS.div_ceil(contexts),
-            };
-            return Err(ConfigError::Board(error.to_string()));
-        }
+        slats::Binding::new(config.n_renderers, program.layout().plan().contexts, program.copy)?;
         if program.code.is_some() {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
         }

@@ -3,7 +3,7 @@
 use pxpl5_renderer::{CommandKind, RendererTiming};
 use std::ops::{Add, Mul, Sub};
 
-/// Returns the later of two times. Neither time is NaN, so this is faster than `f64::max`.
+/// Returns the later of two times. Neither time is NaN, so this function can be faster than `f64::max`.
 #[inline]
 pub(super) fn later(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
@@ -53,13 +53,13 @@ impl<const N: usize> Times<N> {
         Self(all)
     }
 
-    /// Applies [`later`] to each lane.
+    /// Returns the later of two times for each configuration.
     #[inline(always)]
     pub(super) fn later(self, other: Self) -> Self {
         Self::each(|i| later(self.0[i], other.0[i]))
     }
 
-    /// Applies [`sooner`] to each lane. In lanes with equal times the result is the time of `other`.
+    /// Returns the earlier of two times for each configuration. For equal times the result is the time of `other`.
     #[inline(always)]
     pub(super) fn sooner(self, other: Self) -> Self {
         Self::each(|i| sooner(self.0[i], other.0[i]))
@@ -119,7 +119,7 @@ impl<const N: usize> Add for Costs<N> {
     }
 }
 
-/// A message of equal commands after a head of other commands. The type holds all times that do not depend on the
+/// A message of equal commands after a header of other commands. The type holds all times that do not depend on the
 /// arrival of the message.
 ///
 /// All other times follow from the arrival of the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b +
@@ -127,11 +127,13 @@ impl<const N: usize> Add for Costs<N> {
 /// operations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Commands<const N: usize> {
-    /// Time that the head takes on the channel. The head consists of commands such as selection and clearing.
+    /// Time that the message's header takes on the channel. The header consists of commands such as selection and
+    /// clearing of a region.
     head_wire: Times<N>,
-    /// Execution time of the head.
+    /// Execution time of the message's header.
     head: Times<N>,
-    /// Time from the head's last word to the start of the first equal command, if the array is free.
+    /// Time from the last word of the message's header to the start of the first equal command, if the pixel array is
+    /// free.
     lead: Times<N>,
     /// Number of commands.
     count: f64,
@@ -139,22 +141,22 @@ pub(super) struct Commands<const N: usize> {
     each: Times<N>,
     /// Time that the whole message takes on the channel.
     wire: Times<N>,
-    /// Time from the start of the first equal command to the end of the last command. Execution or the arrival of words
-    /// limits it.
+    /// Time from the start of the first equal command to the end of the last command. Either the execution of commands
+    /// or the arrival of words determines this time.
     drawing: Times<N>,
     /// Time until the FIFO has room for the last word, counted from the start of this message's first equal command.
     ///
     /// The FIFO has room when a certain command has started: the command that contains the word one FIFO depth before
     /// the last word. The value is `f64::MIN` if this command belongs to the previous message.
     room_after: Times<N>,
-    /// Position of the command that must have started before the FIFO has room for the last word. The position is
-    /// counted back from the end of the previous message. The value is infinite if the command belongs to the same
-    /// message.
+    /// Position of the command that must have started before the FIFO has room for the last word. The position is a
+    /// number of commands, counted back from the end of the previous message. The value is infinite if the command
+    /// belongs to the same message.
     room_before: Times<N>,
 }
 
 impl<const N: usize> Commands<N> {
-    /// Creates a message of a head and `count` equal commands.
+    /// Creates a message of a header and `count` equal commands.
     #[inline(always)]
     pub(super) fn new(fifos: &Fifos<N>, head: &Costs<N>, count: f64, each: &Costs<N>) -> Self {
         let (word_ns, counts) = (fifos.word_ns, Times::all(count));
@@ -201,19 +203,19 @@ impl<const N: usize> Commands<N> {
     }
 }
 
-/// State of a renderer between messages.
+/// State of a renderer between two messages: the times from which its parts are free.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Array<const N: usize> {
     /// Time at which all commands so far were executed, or at which the current copy has ended.
     pub(super) free: Times<N>,
     /// Time from which the renderer's port is free.
     pub(super) released: Times<N>,
-    /// Start of the last message's first command after its head.
+    /// Start of the first command after the header of the last message.
     last_start: Times<N>,
 }
 
 impl<const N: usize> Array<N> {
-    /// Returns an array that has executed all its commands.
+    /// Returns a renderer that has executed all its commands.
     pub(super) const fn idle() -> Self {
         Self { free: Times::all(0.0), released: Times::all(0.0), last_start: Times::all(0.0) }
     }
@@ -221,7 +223,7 @@ impl<const N: usize> Array<N> {
     /// Receives a message whose first word arrives at `first_word`. Returns the time at which its last word has entered
     /// the FIFO.
     ///
-    /// `behind` is the time until the previous message leaves room ([`Commands::room_behind`]).
+    /// `behind` is the time until the FIFO has room after the previous message ([`Commands::room_behind`]).
     #[inline(always)]
     pub(super) fn take(&mut self, first_word: Times<N>, commands: &Commands<N>, behind: Times<N>) -> Times<N> {
         let start = (first_word + commands.head_wire + commands.lead).later(self.free + commands.head);

@@ -6,12 +6,13 @@ use crate::{pipeline_of, video_of};
 use pphigs::{BIN_ENTRY_BYTES, RegionBinning, Shading, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{GpTiming, HostTiming};
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{
     ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureResult, Pipeline, RenderingControl,
     Samples, Summary, WARM_UP_PICTURES, retraces,
 };
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Time, mix};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
@@ -64,12 +65,12 @@ impl StereoTimes {
     }
 }
 
-/// Returns the mean of a quantity over frames, in milliseconds. `ns` returns the quantity of one frame in nanoseconds.
+/// Returns the mean of a time over frames, in milliseconds. `ns` returns the time of one frame in nanoseconds.
 fn mean_ms(frames: &[&StereoTimes], ns: impl Fn(&StereoTimes) -> f64) -> f64 {
     frames.iter().map(|frame| ns(frame)).sum::<f64>() / frames.len().max(1) as f64 * 1e-6
 }
 
-/// Times at which all pictures so far completed each stage. A picture before the first picture counts as complete at
+/// Times at which all pictures so far completed each stage. The predecessor of the first picture counts as complete at
 /// time 0.
 #[derive(Debug, Default)]
 struct History {
@@ -120,11 +121,14 @@ impl StereoModel {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] if the machine has no slaves, or if it has no closed form.
-    pub fn new(config: &MachineConfig, program: RenderingControl) -> Result<Self, ConfigError> {
+    /// Returns a [`SettingError`] if the machine has no slaves, or if it has no closed form.
+    pub fn new(config: &MachineConfig, program: RenderingControl) -> Result<Self, SettingError> {
         if config.n_gps < 2 {
-            let what = "n_gps of Rendering Control (a master and slaves)".to_owned();
-            return Err(ConfigError::Value { what, expected: (2, 1_000), found: config.n_gps as u64 });
+            return Err(SettingError::limits(
+                "n_gps of Rendering Control (a master and slaves)",
+                (2, 1_000),
+                config.n_gps,
+            ));
         }
         // Timing of messages and commands.
         let video = video_of(config)?;

@@ -30,23 +30,25 @@ use slats::CLUMP;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// A clump of one GP: up to [`CLUMP`] primitives, transformed and sent together.
+/// A clump of one graphics processor (GP): up to [`CLUMP`] primitives, transformed and sent together.
 #[derive(Clone, Debug, PartialEq)]
 struct Clump {
-    /// TRANSFORM time of the clump for both eyes.
+    /// TRANSFORM time of the clump (group of primitives) for both eyes.
     transform_ns: f64,
     /// Numbers of triangles and of spheres for each region, in the order in which regions are sent.
     bins: [[f64; 2]; REGIONS],
 }
 
-/// The clumps of every GP, and the number of words of the view that the first GP sends to the other GPs.
+/// The clumps (groups of primitives) of every GP, and the number of words of the view that the first GP sends to the
+/// other GPs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Clumps {
     of_gps: Vec<Vec<Clump>>,
     view_words: f64,
 }
 
-/// Number of words of a view of two eyes without edits: its number, two counts, and three matrices for each eye.
+/// Number of words of a message with the view of two eyes without edits. The message has the number of the view, two
+/// counts, and three matrices for each eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
@@ -138,7 +140,8 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
     [accepted_ns, ring.all_done_ns(&senders)]
 }
 
-/// Words of a command that have left a FIFO. Each word makes room for the word that follows one FIFO depth later.
+/// Words of a command that have left a renderer's FIFO. Each word makes room for the word that follows one FIFO depth
+/// later.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     first_word: f64,
@@ -193,21 +196,23 @@ struct Message {
     runs: [(Cost, f64); 4],
 }
 
-/// A GP that sends its clumps. The messages of a clump form a chain: they are sent in order, one after the other.
+/// A graphics processor that sends its clumps (groups of primitives). The messages of a clump are sent in order, one
+/// after the other.
 #[derive(Debug)]
 struct Sender<'a> {
     gp: usize,
     clumps: &'a [Clump],
-    /// Number of clumps whose sending has begun.
+    /// Number of clumps (groups of primitives) whose sending has begun.
     begun: usize,
-    /// Messages of the current clump that the ring has not granted yet. Empty after the last clump.
+    /// Messages of the current clump (group of primitives) to which the ring has not granted a channel yet. Empty after
+    /// the last clump.
     messages: VecDeque<Message>,
-    /// Time at which the next message became the first of the queue.
+    /// Time at which the next message became the first in the queue of its sender.
     since_ns: f64,
     /// Time from which each channel of the port is free.
     channels_ns: Vec<f64>,
     cpu_ns: f64,
-    /// Time at which the last message of the current clump was accepted.
+    /// Time at which the last message of the current clump (group of primitives) was accepted.
     accepted_ns: f64,
     /// Time by which every renderer has accepted its first message of the current clump.
     draining_ns: f64,
@@ -352,7 +357,8 @@ impl<'a> Ring<'a> {
         messages
     }
 
-    /// Returns two times for a sender's next message: when the message can be granted, and since when it has waited.
+    /// Returns two times for a sender's next message. At the first time, the ring can grant channels to the message.
+    /// The message has waited since the second time.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
         let region = sender.messages.front().map_or(0, |message| message.region);
         let port = &self.renderers[region % self.renderers.len()];
@@ -360,17 +366,18 @@ impl<'a> Ring<'a> {
         (later(later(since, port.released_ns), soonest(&self.channels_ns).1), since)
     }
 
-    /// Returns the index of the sender whose message is granted next.
+    /// Returns the index of the sender whose message gets the next channels of the ring.
     ///
-    /// If several messages can be granted at the same time, the message that has waited longest goes first. Among equal
-    /// waits, the sender with the lowest index goes first.
+    /// If several messages can get channels at the same time, the message that has waited longest comes first. For
+    /// equal waits, the sender with the lowest index comes first.
     fn first_head(&self, senders: &[Sender<'_>]) -> Option<usize> {
         let waiting = senders.iter().enumerate().filter(|(_, sender)| !sender.is_done());
         let heads = waiting.map(|(place, sender)| (self.head(sender), place));
         heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
     }
 
-    /// Grants the next message of a sender. The message occupies port and channels until its last word is in the FIFO.
+    /// Grants channels of the ring to the next message of a sender. The message occupies port and channels until its
+    /// last word is in the FIFO.
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;
         let (granted, _) = self.head(sender);
@@ -439,7 +446,7 @@ impl<'a> Ring<'a> {
 /// Number of ports of the two frame buffers.
 const FRAME_BUFFERS: usize = 2;
 
-/// Returns the earliest time and its index.
+/// Returns the earliest of some times, and the index of this time.
 fn soonest(times: &[f64]) -> (usize, f64) {
     let all = times.iter().copied().enumerate();
     all.reduce(|first, time| if time.1 < first.1 { time } else { first }).unwrap_or((0, f64::MIN))

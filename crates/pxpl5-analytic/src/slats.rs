@@ -38,8 +38,8 @@ impl SlatsModel {
     /// Returns the times of a field for many machines, in their order. The times are identical to the results of
     /// [`field`](Self::field).
     ///
-    /// Sixteen consecutive machines are computed together if they have one GP, equal numbers of renderers and channels,
-    /// and the same program. This is faster.
+    /// Sixteen consecutive machines are computed together, which is faster, if each has one GP. The machines must also
+    /// have equal numbers of renderers and channels, and the same program.
     #[must_use]
     pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
         let mut all = Vec::with_capacity(models.len());
@@ -55,19 +55,20 @@ impl SlatsModel {
     }
 }
 
-/// Number of configurations computed together. Their times fill two registers of 512 bits, or four registers of 256
-/// bits.
+/// Number of machine configurations computed together. The times of the configurations fill two registers of 512 bits,
+/// or four registers of 256 bits.
 ///
 /// Each computing step depends on the previous step. Two registers therefore take little more time than one register.
 const TOGETHER: usize = 16;
 
-/// Computes fields of 16 machines with the widest vector instructions of the host's processor.
+/// Computes the times of a field for 16 machines, with the widest vector instructions of the host's processor.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTriangle) -> [FieldTimes; TOGETHER] {
     fields_at_once(models, triangles, each)
 }
 
-/// Computes a field on each of `N` machines. All machines have one GP and equal values of [`SlatsModel::structure`].
+/// Computes the times of a field on each of `N` machines. All machines have one GP and equal values of
+/// [`SlatsModel::structure`].
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
     let mut arrays = [Array::idle(); MAX_RENDERERS];
@@ -77,7 +78,8 @@ fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each
     end(models, arrays, done)
 }
 
-/// Starts renderers with the copies of the previous field's bottom regions, if copies are split.
+/// Lets the renderers begin with the copies of the previous field's bottom regions, if copies are split into top and
+/// bottom regions.
 #[inline(always)]
 fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     if models[0].split {
@@ -111,8 +113,8 @@ fn end<const N: usize>(
     std::array::from_fn(|i| models[i].times(rendered.0[i], top[i], bottom.map(|times| times[i])))
 }
 
-/// Computes the copies of all renderers. From the time `from`, the renderers receive their commands one after the
-/// other.
+/// Computes the copies of all renderers to the frame buffers. From the time `from`, the renderers receive their copy
+/// commands one after the other.
 #[inline(always)]
 fn copy<const N: usize>(
     models: &[SlatsModel; N],
@@ -245,8 +247,8 @@ mod tests {
     }
 
     proptest! {
-        /// Results must be bit-identical to those of single machines, for any number of machines, even with different
-        /// structures.
+        /// Checks that the times are bit-identical to the times of single machines, for any number of machines and for
+        /// different [`SlatsModel::structure`] values.
         #[test]
         fn machines_that_are_computed_together_are_what_they_are_alone(
             gps in 1usize..5,

@@ -1,9 +1,9 @@
 //! Comparison of all policies and kinds of warping during one walk through one scene.
 
 use crate::experiment::WalkOutcome;
-use crate::plan::Plan;
-use crate::report::Report;
-use crate::tears::Percentiles;
+use crate::plan::WalkPlan;
+use crate::report::ArpReport;
+use crate::tears::TearWidths;
 use pxpl5_scene::Scene;
 use serde::Serialize;
 
@@ -42,9 +42,9 @@ pub struct ComparedRow {
     /// Distance between the eye and the position from which a memory was drawn, in mm, averaged over memories.
     pub eye_age_mm: f64,
     /// Widths of the displayed tears (gaps between memories), in texels. Null in JSON if no memories meet in a cut.
-    pub tears: Option<Percentiles>,
+    pub tears: Option<TearWidths>,
     /// Angles by which warping moves vertices, in texels, as percentiles. Null in JSON without warping.
-    pub stretch: Option<Percentiles>,
+    pub stretch: Option<TearWidths>,
     /// Number of times that cells (squares of the floor) were assigned to memories anew. With the policy `objects`,
     /// number of times that an object changed its memory.
     pub changes: u64,
@@ -70,7 +70,7 @@ pub struct ArpComparison {
 /// Simulates the walk with every variant. Calls `finished` with the number of finished variants and the number of all
 /// variants.
 #[must_use]
-pub fn compare(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> ArpComparison {
+pub fn compare(scene: &Scene, plan: &WalkPlan, finished: impl Fn(u64, u64)) -> ArpComparison {
     let mut comparison = ArpComparison {
         schema: "pxpl5-arp-comparison/1",
         scene: scene.name().to_owned(),
@@ -94,7 +94,7 @@ pub fn compare(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> ArpCo
 
 impl ComparedRow {
     fn of(variant: &'static str, outcome: &WalkOutcome) -> Self {
-        let Report { memories, priority, tears_px, .. } = &outcome.report.report;
+        let ArpReport { memories, priority, tears_px, .. } = &outcome.report.report;
         Self {
             variant,
             rates_hz: memories.iter().map(|memory| memory.updates_hz).collect(),

@@ -1,10 +1,11 @@
 //! Contents of a display memory.
 
-use crate::cube_faces::{CubeView, Drawing};
+use crate::cube_faces::{CubeView, DrawCounts};
 use crate::world::World;
 use address_recalculation::FaceSet;
-use address_recalculation::priority::{CellAssignment, PriorityError, RegionWarp};
+use address_recalculation::priority::{CellAssignment, RegionWarp};
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 
 /// The data from which a display memory is drawn. Its cube faces are drawn later, when they are read.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +37,7 @@ impl Content {
     }
 
     /// Draws the memory's segments (parts of objects) into faces.
-    pub fn draw(&self, world: &World, view: &CubeView, faces: &mut FaceSet) -> Drawing {
+    pub fn draw(&self, world: &World, view: &CubeView, faces: &mut FaceSet) -> DrawCounts {
         view.draw(self.eye, world.triangles(&self.segments, |vertex| self.place(vertex)), faces)
     }
 
@@ -49,11 +50,11 @@ impl Content {
 
 /// Returns the warp that joins a memory to the next slower memory. `places` are the two eye positions.
 pub(crate) fn warp(
-    settings: &crate::settings::Settings,
+    settings: &crate::settings::WalkSettings,
     dealing: &CellAssignment,
     memory: usize,
     places: [DVec3; 2],
-) -> Result<Option<(RegionWarp, CellAssignment, usize)>, PriorityError> {
+) -> Result<Option<(RegionWarp, CellAssignment, usize)>, SettingError> {
     let warp = RegionWarp::new(settings.falloff, settings.numbers.falloff_length_m(), places[0], places[1])?;
     Ok(Some((warp, *dealing, memory)))
 }

@@ -36,5 +36,5 @@ mod edges;
 mod rows;
 mod view;
 
-pub use depth::{DepthError, DepthRange};
-pub use view::{Corner, CubeView, Drawing};
+pub use depth::DepthRange;
+pub use view::{Corner, CubeView, DrawCounts};

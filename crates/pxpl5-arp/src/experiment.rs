@@ -1,15 +1,15 @@
 //! A complete experiment: a viewer's walk through a scene, and the view at its end.
 
-use crate::error::WalkError;
 use crate::hall::{path_of, scaled};
-use crate::look::Faces;
+use crate::look::WalkFaces;
 use crate::pictures::ahead;
-use crate::plan::Plan;
-use crate::report::{Report, ViewStatistics};
-use crate::settings::Settings;
+use crate::plan::WalkPlan;
+use crate::report::{ArpReport, ViewStatistics};
+use crate::settings::WalkSettings;
 use crate::walk::{WalkTally, at_frames, walked};
 use crate::world::World;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use tracking::motion::Walk;
@@ -19,7 +19,7 @@ use tracking::motion::Walk;
 pub struct WalkReport {
     /// Counters of the viewer's walk, and results of the view at its end.
     #[serde(flatten)]
-    pub report: Report,
+    pub report: ArpReport,
     pub scene: String,
     /// Number of triangles in the scene after cutting: the sum over all segments (parts of objects in one cell).
     pub triangles: u64,
@@ -40,7 +40,7 @@ pub struct WalkOutcome {
     pub world: World,
     /// Path through the scene.
     pub path: Walk,
-    pub settings: Settings,
+    pub settings: WalkSettings,
     /// Counters of the viewer's walk.
     pub tally: WalkTally,
     /// Report of the viewer's walk, including a view along the path at its end.
@@ -52,8 +52,8 @@ impl WalkOutcome {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError`] if a setting is invalid or the scene is not supported.
-    pub fn of(scene: &Scene, plan: &Plan, finished: impl Fn(u64, u64)) -> Result<Self, WalkError> {
+    /// Returns a [`SettingError`] if a setting is invalid or the scene is not supported.
+    pub fn of(scene: &Scene, plan: &WalkPlan, finished: impl Fn(u64, u64)) -> Result<Self, SettingError> {
         // Prepare the scene, the path and the segments.
         let settings = plan.settings()?;
         let scaled = (plan.walk.hall_scale != 1.0).then(|| scaled(scene, plan.walk.hall_scale)).transpose()?;
@@ -67,13 +67,13 @@ impl WalkOutcome {
             finished(frame + 1, frames);
             eye(frame)
         })?;
-        let faces = Faces::of(&simulation)?;
+        let faces = WalkFaces::of(&simulation)?;
         let (_, stats) =
             faces.seen(ahead(&path, plan.walk.m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz))?;
         let looked = ViewStatistics { stats, drawing: faces.drawing };
         // Collect the report.
         let report = WalkReport {
-            report: Report::of(&world, &settings, &tally, Some(&looked)),
+            report: ArpReport::of(&world, &settings, &tally, Some(&looked)),
             scene: scene.name().to_owned(),
             triangles: world.segments.iter().map(|segment| segment.triangles.len() as u64).sum(),
             segments: world.segments.len() as u64,

@@ -1,5 +1,7 @@
 //! Comparison of the papers' figures with simulated figures.
 
+use pxpl5_sim::parameters::SettingError;
+
 mod compared;
 mod definitions;
 mod document;
@@ -12,12 +14,12 @@ mod row;
 mod rows;
 mod rules;
 
-pub use definitions::{Definition, SEGMENTS, definitions};
+pub use definitions::{SEGMENTS, definitions};
 pub use document::{interpretations as interpretations_text, markdown, missed, table};
 pub(crate) use experiments::looking_at;
 pub use experiments::{
-    EXPERIMENT_FRAMES, Experiments, Fit, NamedWalk, SizeLimit, SizeRow, SlowRendererResult, point_objects_reduction,
-    size_limits, size_rows,
+    CellFit, EXPERIMENT_FRAMES, Experiments, NamedWalk, SizeLimit, SizeRow, SlowRendererResult,
+    point_objects_reduction, size_limits, size_rows,
 };
 pub use fit::{RATE_FITTED, RATES_HZ, fitted_cell_m, policy_rates_hz};
 pub(crate) use gallery::gallery;
@@ -25,18 +27,18 @@ pub use interpretations::{
     Interpretations, LeftOutRate, PIXEL_DEG, RankedRules, Situation, ThresholdRow, Trial, Tried, threshold_rows,
 };
 pub use lens::straight_edge;
-pub use row::{Provenance, Row};
+pub use row::{limit, row, shape, verdict};
 pub use rows::rows;
 pub use rules::Rules;
 
-use crate::error::WalkError;
+use pxpl5_sim::figures::FigureRow;
 
 /// Runs all experiments and returns them with the rows of the comparison.
 ///
 /// # Errors
 ///
 /// Fails in the same cases as [`Experiments::run`].
-pub fn all() -> Result<(Experiments, Vec<Row>), WalkError> {
+pub fn all() -> Result<(Experiments, Vec<FigureRow>), SettingError> {
     let experiments = Experiments::run()?;
     let rows = rows(&experiments);
     Ok((experiments, rows))

@@ -1,8 +1,8 @@
 //! Scaling of a hall, and routes of the viewer through it.
 
-use crate::error::WalkError;
 use glam::{DVec3, Vec3};
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use tracking::motion::Walk;
 
@@ -34,17 +34,14 @@ const MARGIN: f64 = 0.015;
 ///
 /// # Errors
 ///
-/// Returns [`WalkError::Scene`] if the scene has no path of its own. The scene's path defines the height of the
+/// Returns a [`SettingError`] if the scene has no path of its own. The scene's path defines the height of the
 /// eye.
-pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, WalkError> {
+pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, SettingError> {
     // The scene's own path defines the height of the eye.
     let own: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
     if own.len() < 2 {
-        return Err(WalkError::Scene {
-            scene: scene.name().to_owned(),
-            expected: "a path to walk along, as gallery and gallery:full have",
-            found: "none".to_owned(),
-        });
+        let expected = "a path to walk along, as gallery and gallery:full have";
+        return Err(SettingError::scene(&format!("scene {}", scene.name()), expected, "none"));
     }
     // All other routes are derived from the bounding box of the scene.
     let places = || scene.vertices().iter().map(|vertex| vertex.position.as_dvec3());
@@ -58,15 +55,15 @@ pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, WalkError> {
         Route::Diagonal => vec![at(near, near), at(far, far)],
         Route::Round => vec![at(0.25, 0.25), at(0.75, 0.25), at(0.75, 0.75), at(0.25, 0.75)],
     };
-    Ok(Walk::new(&corners, 1.0)?)
+    Walk::new(&corners, 1.0)
 }
 
 /// Returns a copy of a scene with its length, width and path multiplied by `factor`. Heights stay the same.
 ///
 /// # Errors
 ///
-/// Returns [`WalkError::Scene`] if the result is invalid, for example because coordinates are too large.
-pub fn scaled(scene: &Scene, factor: f64) -> Result<Scene, WalkError> {
+/// Returns a [`SettingError`] if the result is invalid, for example because coordinates are too large.
+pub fn scaled(scene: &Scene, factor: f64) -> Result<Scene, SettingError> {
     let mut parts = scene.clone().into_parts();
     let factor = factor as f32;
     let on_plan = |place: Vec3| Vec3::new(place.x * factor, place.y, place.z * factor);
@@ -81,10 +78,9 @@ pub fn scaled(scene: &Scene, factor: f64) -> Result<Scene, WalkError> {
         sphere.centre = on_plan(sphere.centre);
     }
     parts.path.iter_mut().for_each(|corner| *corner = on_plan(*corner));
-    Scene::new(parts).map_err(|error| WalkError::Scene {
-        scene: scene.name().to_owned(),
-        expected: "a scene that can be scaled by walk.hall_scale",
-        found: error.to_string(),
+    Scene::new(parts).map_err(|error| {
+        let expected = "a scene that can be scaled by walk.hall_scale";
+        SettingError::scene(&format!("scene {}", scene.name()), expected, error)
     })
 }
 

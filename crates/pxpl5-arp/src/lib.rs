@@ -1,22 +1,22 @@
 //! Experiments on address recalculation with an ideal renderer: walks, reports, the papers' figures and pictures.
 //!
 //! ```text
-//!  Scene ---------> World --+                     +--> WalkTally --> Report, comparison, figures
+//!  Scene ---------> World --+                     +--> WalkTally --> ArpReport, comparison, figures
 //!  Walk  ---------> eye ----+--> Simulation ------+
-//!  Plan --> Settings -------+     policy, source  +--> Faces --> what the eye sees, pictures
+//!  WalkPlan --> WalkSettings -------+     policy, source  +--> WalkFaces --> what the eye sees, pictures
 //! ```
 //!
 //! # Behaviour
 //!
-//! - [`Plan`] holds settings by path (`priority.cell_m=5`). The defaults of some settings depend on other settings.
+//! - [`WalkPlan`] holds settings by path (`priority.cell_m=5`). The defaults of some settings depend on other settings.
 //! - [`World`] cuts a scene at the borders of cells, once.
 //! - [`Simulation::frame`] asks the policy which memories are due for an update at a position of the eye, and passes
 //!   the work to the renderer.
 //! - An ideal renderer draws within the same frame. A renderer of limited speed draws memories in ascending order. The
 //!   renderer shows complete updates in the next frame and counts incomplete updates.
 //! - A memory holds the data from which it is drawn ([`Content`]). Its faces are drawn only when they are read
-//!   ([`Faces`]).
-//! - [`walk()`] counts the updates, draws and tears (gaps between memories) of a whole walk. [`Report`] writes them as
+//!   ([`WalkFaces`]).
+//! - [`walk()`] counts the updates, draws and tears (gaps between memories) of a whole walk. [`ArpReport`] writes them as
 //!   JSON.
 //! - [`WalkOutcome`] holds the results of one plan. [`compare()`] simulates a walk with every policy and kind of
 //!   warping.
@@ -34,7 +34,6 @@
 mod compare;
 mod content;
 pub mod cube_faces;
-mod error;
 mod experiment;
 pub mod figures;
 mod hall;
@@ -52,15 +51,14 @@ mod world;
 pub use address_recalculation;
 pub use compare::{ArpComparison, ComparedRow, compare, variant_count};
 pub use content::Content;
-pub use error::WalkError;
 pub use experiment::{WalkOutcome, WalkReport};
 pub use hall::{Route, path_of, scaled};
-pub use look::Faces;
-pub use plan::{Plan, WalkNumbers};
-pub use report::{Latency, MemoryReport, PriorityReport, Report, SCHEMA, TearsReport, ViewStatistics};
-pub use settings::{PolicyKind, Settings, SourceKind};
+pub use look::WalkFaces;
+pub use plan::{WalkNumbers, WalkPlan};
+pub use report::{ArpReport, PriorityReport, SCHEMA, TearsReport, ViewStatistics, WalkLatency, WalkMemoryReport};
+pub use settings::{PolicyKind, SourceKind, WalkSettings};
 pub use simulation::{FrameOutcome, Simulation};
-pub use tears::{Percentiles, Tears};
+pub use tears::{TearWidths, Tears};
 pub use walk::{MemoryTally, WalkTally, at_frames, walk};
 pub use world::{Object, Segment, SharedVertex, Tint, World};
 

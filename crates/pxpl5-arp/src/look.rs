@@ -1,33 +1,33 @@
 //! The view that the eye sees: cube faces are drawn from the memories' contents and then sampled by the display.
 
-use crate::cube_faces::Drawing;
-use crate::error::WalkError;
+use crate::cube_faces::DrawCounts;
 use crate::simulation::Simulation;
 use address_recalculation::{ArpConfig, FaceSet, LensTable, LookStats, Lookup, Orientation};
 use glam::DQuat;
 use image::{Rgb, RgbImage};
+use pxpl5_sim::parameters::SettingError;
 
 /// Cube faces of all memories, drawn only when a view needs them.
 #[derive(Clone, Debug)]
-pub struct Faces {
+pub struct WalkFaces {
     /// Cube faces of each display memory. The faces are empty before the memory's first update.
     pub memories: Vec<FaceSet>,
     /// Counts of the triangles drawn into the faces.
-    pub drawing: Drawing,
+    pub drawing: DrawCounts,
     config: ArpConfig,
     background: u32,
 }
 
-impl Faces {
+impl WalkFaces {
     /// Draws the current contents of all memories.
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`crate::Settings::view`].
-    pub fn of(simulation: &Simulation<'_>) -> Result<Self, WalkError> {
+    /// Fails in the same cases as [`crate::WalkSettings::view`].
+    pub fn of(simulation: &Simulation<'_>) -> Result<Self, SettingError> {
         let settings = simulation.settings();
         let view = settings.view()?;
-        let mut drawing = Drawing::default();
+        let mut drawing = DrawCounts::default();
         let mut memories = Vec::new();
         // Memories without an update stay empty.
         for content in simulation.shown() {
@@ -58,8 +58,8 @@ impl Faces {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError::Display`] if the lens or the orientation is invalid.
-    pub fn seen(&self, orientation: DQuat) -> Result<(RgbImage, LookStats), WalkError> {
+    /// Returns a [`SettingError`] if the lens or the orientation is invalid.
+    pub fn seen(&self, orientation: DQuat) -> Result<(RgbImage, LookStats), SettingError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
         let mut pixels = vec![0; (table.width() * table.height()) as usize];
@@ -72,8 +72,8 @@ impl Faces {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Faces::seen`].
-    pub fn winners(&self, orientation: DQuat) -> Result<(u32, Vec<Option<u8>>), WalkError> {
+    /// Fails in the same cases as [`WalkFaces::seen`].
+    pub fn winners(&self, orientation: DQuat) -> Result<(u32, Vec<Option<u8>>), SettingError> {
         let table = self.config.table()?;
         let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
         let mut winners = vec![None; (table.width() * table.height()) as usize];

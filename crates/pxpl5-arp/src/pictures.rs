@@ -10,13 +10,12 @@ mod wires;
 pub use faces::cross;
 pub use plan::{cells_svg, updates_svg};
 pub(crate) use views::without_lens;
-pub use views::{Views, difference};
+pub use views::{MemoryViews, difference};
 pub use wires::cuts_svg;
 
-use crate::error::WalkError;
 use crate::figures::{Experiments, gallery, looking_at};
-use crate::look::Faces;
-use crate::settings::{PolicyKind, Settings};
+use crate::look::WalkFaces;
+use crate::settings::{PolicyKind, WalkSettings};
 use crate::simulation::Simulation;
 use crate::tears::Tears;
 use crate::walk::{at_frames, walk};
@@ -25,11 +24,12 @@ use address_recalculation::Lens;
 use address_recalculation::priority::Falloff;
 use glam::{DQuat, DVec3};
 use image::RgbImage;
+use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// A picture, and the name of its file without extension.
 #[derive(Clone, Debug)]
-pub enum Picture {
+pub enum ArpPicture {
     /// Pixels, written as PNG.
     Pixels(String, RgbImage),
     /// A drawing, written as SVG.
@@ -52,11 +52,11 @@ pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
 ///
 /// # Errors
 ///
-/// Returns [`WalkError`] if a lens, scene or number is invalid. The built-in lenses, scenes and numbers are valid.
-pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, WalkError> {
+/// Returns a [`SettingError`] if a lens, scene or number is invalid. The built-in lenses, scenes and numbers are valid.
+pub fn all(experiments: &Experiments) -> Result<Vec<ArpPicture>, SettingError> {
     let (scene, path) = gallery()?;
     let world = World::new(&scene, experiments.fits[0].cell_m)?;
-    let mut torn = Settings::CELLS.with_cells(experiments.fits[0].cell_m);
+    let mut torn = WalkSettings::CELLS.with_cells(experiments.fits[0].cell_m);
     // The lens is visible only in the picture `eye`.
     torn.display.lens = Lens::Radial { k1: 0.32, k2: 0.0 };
     of_walk(world, &path, &torn, 1.0, FRAMES)
@@ -73,21 +73,21 @@ pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, WalkError> {
 ///
 /// # Errors
 ///
-/// Returns [`WalkError`] if settings are invalid, or if they do not match the cells of the world.
+/// Returns a [`SettingError`] if settings are invalid, or if they do not match the cells of the world.
 pub fn of_walk(
     mut world: World,
     path: &Walk,
-    settings: &Settings,
+    settings: &WalkSettings,
     m_per_s: f64,
     frames: u64,
-) -> Result<Vec<Picture>, WalkError> {
+) -> Result<Vec<ArpPicture>, SettingError> {
     let eye = at_frames(path, m_per_s, settings.numbers.frame_hz);
     // Choose the frame and the direction of view.
     let is_cut = settings.policy == PolicyKind::Cells && settings.is_segmented;
     let mut gaped = Vec::new();
     let last = (frames - 1, ahead(path, m_per_s * (frames - 1) as f64 / settings.numbers.frame_hz));
     let (frame, orientation) = if is_cut {
-        let torn = Settings { falloff: Falloff::None, has_cascade: false, ..settings.clone() };
+        let torn = WalkSettings { falloff: Falloff::None, has_cascade: false, ..settings.clone() };
         let background = std::mem::replace(&mut world.background, WHITE);
         let found = best_tear_view(&world, &torn, &eye, frames)?.unwrap_or(last);
         gaped = gaps(&world, &torn, found.0, &eye, found.1)?;
@@ -101,13 +101,13 @@ pub fn of_walk(
     let mut pictures = seen(&simulation, orientation, eye(frame))?;
     let side = settings.numbers.cell_m;
     let screen = settings.display.picture();
-    pictures.push(Picture::Drawing("cells".to_owned(), cells_svg(&world, &simulation, path, eye(frame))));
+    pictures.push(ArpPicture::Drawing("cells".to_owned(), cells_svg(&world, &simulation, path, eye(frame))));
     if Lens::Flat.check(&screen).is_ok() {
-        pictures.push(Picture::Drawing("cuts".to_owned(), cuts_svg(&world, side, eye(frame), orientation, &screen)));
+        pictures.push(ArpPicture::Drawing("cuts".to_owned(), cuts_svg(&world, side, eye(frame), orientation, &screen)));
     }
     // Draw the updates around this frame.
     let tally = walk(&world, settings, frame + 60, &eye)?;
-    pictures.push(Picture::Drawing("updates".to_owned(), updates_svg(&tally, frame.saturating_sub(60)..frame + 60)));
+    pictures.push(ArpPicture::Drawing("updates".to_owned(), updates_svg(&tally, frame.saturating_sub(60)..frame + 60)));
     pictures.extend(gaped);
     pictures.extend(tinted(world, settings, eye(frame), orientation)?);
     Ok(pictures)
@@ -125,38 +125,43 @@ pub(crate) fn ahead(path: &Walk, way_m: f64) -> DQuat {
 ///
 /// The faces include the faces of a reference memory, which holds the whole scene. Views are drawn with and without the
 /// lens.
-fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<Picture>, WalkError> {
-    let faces = Faces::of(simulation)?;
-    let mut pictures: Vec<Picture> = Vec::new();
+fn seen(simulation: &Simulation<'_>, orientation: DQuat, eye: DVec3) -> Result<Vec<ArpPicture>, SettingError> {
+    let faces = WalkFaces::of(simulation)?;
+    let mut pictures: Vec<ArpPicture> = Vec::new();
     // Unfolded faces of each memory.
     for (memory, set) in faces.memories.iter().enumerate() {
-        pictures.push(Picture::Pixels(format!("faces-{memory}"), cross(set, faces.background())));
+        pictures.push(ArpPicture::Pixels(format!("faces-{memory}"), cross(set, faces.background())));
     }
     // Faces of a reference memory with the whole scene.
-    let whole = Settings { display: simulation.settings().display.clone(), ..Settings::FULL }.with_memories(1);
-    let whole = Faces::of(&shown(simulation.world(), &whole, 0..1, &|_| eye)?)?;
-    pictures.push(Picture::Pixels("faces-whole".to_owned(), cross(&whole.memories[0], faces.background())));
+    let whole = WalkSettings { display: simulation.settings().display.clone(), ..WalkSettings::FULL }.with_memories(1);
+    let whole = WalkFaces::of(&shown(simulation.world(), &whole, 0..1, &|_| eye)?)?;
+    pictures.push(ArpPicture::Pixels("faces-whole".to_owned(), cross(&whole.memories[0], faces.background())));
     // Views without a lens, then through the display's lens.
     let display = &simulation.settings().display;
-    let views = Views { faces: &faces, orientation, lens: without_lens(display) };
+    let views = MemoryViews { faces: &faces, orientation, lens: without_lens(display) };
     if views.lens == Lens::Flat {
-        pictures.push(Picture::Pixels("eye-flat".to_owned(), views.seen()?));
+        pictures.push(ArpPicture::Pixels("eye-flat".to_owned(), views.seen()?));
     }
-    let through = Views { lens: display.lens.clone(), ..views.clone() };
-    pictures.push(Picture::Pixels("eye".to_owned(), through.seen()?));
-    pictures.push(Picture::Pixels("memories".to_owned(), views.memories()?));
-    pictures.push(Picture::Pixels("error".to_owned(), views.errors(simulation, eye)?));
+    let through = MemoryViews { lens: display.lens.clone(), ..views.clone() };
+    pictures.push(ArpPicture::Pixels("eye".to_owned(), through.seen()?));
+    pictures.push(ArpPicture::Pixels("memories".to_owned(), views.memories()?));
+    pictures.push(ArpPicture::Pixels("error".to_owned(), views.errors(simulation, eye)?));
     Ok(pictures)
 }
 
 /// Returns two views: one with a colour per object, and one with a colour per cell.
-fn tinted(mut world: World, settings: &Settings, eye: DVec3, orientation: DQuat) -> Result<Vec<Picture>, WalkError> {
+fn tinted(
+    mut world: World,
+    settings: &WalkSettings,
+    eye: DVec3,
+    orientation: DQuat,
+) -> Result<Vec<ArpPicture>, SettingError> {
     let mut pictures = Vec::new();
     for (tint, name) in [(Tint::Objects, "objects"), (Tint::Cells, "cells-seen")] {
         world.tint = tint;
-        let faces = Faces::of(&shown(&world, settings, 0..1, &|_| eye)?)?;
-        let seen = Views { faces: &faces, orientation, lens: without_lens(&settings.display) }.seen()?;
-        pictures.push(Picture::Pixels(name.to_owned(), seen));
+        let faces = WalkFaces::of(&shown(&world, settings, 0..1, &|_| eye)?)?;
+        let seen = MemoryViews { faces: &faces, orientation, lens: without_lens(&settings.display) }.seen()?;
+        pictures.push(ArpPicture::Pixels(name.to_owned(), seen));
     }
     Ok(pictures)
 }
@@ -174,10 +179,10 @@ const EVERY: u64 = 29;
 /// Each tried frame is viewed towards its widest tear in an upright surface. Returns `None` if there is no tear.
 fn best_tear_view(
     world: &World,
-    torn: &Settings,
+    torn: &WalkSettings,
     eye: &impl Fn(u64) -> DVec3,
     frames: u64,
-) -> Result<Option<(u64, DQuat)>, WalkError> {
+) -> Result<Option<(u64, DQuat)>, SettingError> {
     let mut simulation = Simulation::new(world, torn)?;
     let mut best = (0, DQuat::IDENTITY, 0);
     for frame in 0..frames {
@@ -189,8 +194,8 @@ fn best_tear_view(
         // Look horizontally towards the widest tear.
         let Some(vertex) = widest_upright(world, &simulation) else { continue };
         let orientation = looking_at(outcome.eye, vertex.with_y(outcome.eye.y));
-        let faces = Faces::of(&simulation)?;
-        let seen = Views { faces: &faces, orientation, lens: without_lens(&torn.display) }.seen()?;
+        let faces = WalkFaces::of(&simulation)?;
+        let seen = MemoryViews { faces: &faces, orientation, lens: without_lens(&torn.display) }.seen()?;
         // Antialiasing mixes the pixels of a gap with their neighbours. Nothing else in the gallery is as bright.
         let white = seen.pixels().filter(|pixel| pixel.0.iter().all(|part| *part > 238)).count();
         if white > best.2 {
@@ -214,32 +219,32 @@ fn widest_upright(world: &World, simulation: &Simulation<'_>) -> Option<DVec3> {
 /// A last picture is the difference of the first two pictures.
 fn gaps(
     world: &World,
-    torn: &Settings,
+    torn: &WalkSettings,
     frame: u64,
     eye: &impl Fn(u64) -> DVec3,
     orientation: DQuat,
-) -> Result<Vec<Picture>, WalkError> {
+) -> Result<Vec<ArpPicture>, SettingError> {
     let mut both = Vec::new();
     // Draw the frame torn, warped and uncut.
     for (falloff, is_segmented) in [(Falloff::None, true), (Falloff::Linear, true), (Falloff::None, false)] {
-        let settings = Settings { falloff, has_cascade: falloff != Falloff::None, is_segmented, ..torn.clone() };
+        let settings = WalkSettings { falloff, has_cascade: falloff != Falloff::None, is_segmented, ..torn.clone() };
         let simulation = shown(world, &settings, 0..frame + 1, eye)?;
-        let faces = Faces::of(&simulation)?;
-        both.push(Views { faces: &faces, orientation, lens: without_lens(&torn.display) }.seen()?);
+        let faces = WalkFaces::of(&simulation)?;
+        both.push(MemoryViews { faces: &faces, orientation, lens: without_lens(&torn.display) }.seen()?);
     }
-    let mut pictures = vec![Picture::Pixels("difference".to_owned(), difference(&both[0], &both[1]))];
+    let mut pictures = vec![ArpPicture::Pixels("difference".to_owned(), difference(&both[0], &both[1]))];
     let names = ["tears", "warped", "unsegmented"].map(str::to_owned);
-    pictures.extend(names.into_iter().zip(both).map(|(name, picture)| Picture::Pixels(name, picture)));
+    pictures.extend(names.into_iter().zip(both).map(|(name, picture)| ArpPicture::Pixels(name, picture)));
     Ok(pictures)
 }
 
 /// Runs a walk over a range of frames and returns its final state.
 fn shown<'a>(
     world: &'a World,
-    settings: &Settings,
+    settings: &WalkSettings,
     frames: std::ops::Range<u64>,
     eye: &impl Fn(u64) -> DVec3,
-) -> Result<Simulation<'a>, WalkError> {
+) -> Result<Simulation<'a>, SettingError> {
     let mut simulation = Simulation::new(world, settings)?;
     for frame in frames {
         simulation.frame(eye(frame))?;

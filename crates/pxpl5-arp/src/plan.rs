@@ -1,11 +1,10 @@
 //! Settings of a simulated walk of the viewer through a scene. Each setting has a path such as `priority.theta_deg`.
 
-use crate::error::WalkError;
 use crate::hall::Route;
-use crate::settings::{PolicyKind, Settings, SourceKind};
+use crate::settings::{PolicyKind, SourceKind, WalkSettings};
 use address_recalculation::priority::Falloff;
-use address_recalculation::{ArpConfig, CompositionOrder, Latch, Lens, Picture};
-use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
+use address_recalculation::{ArpConfig, CompositionOrder, Latch, Lens, LensPicture};
+use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, SettingError, Value};
 use std::collections::BTreeMap;
 
 pxpl5_sim::parameters::parameter_table! {
@@ -40,10 +39,10 @@ const CHOICES: [&str; 10] = [
 /// have a cascade, and only the policy `cells` cuts objects. `priority.threshold` in pixels or texels overrides
 /// `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct WalkPlan {
     /// Speed and length of the viewer's walk.
     pub walk: WalkNumbers,
-    chosen: Settings,
+    chosen: WalkSettings,
     is_segmented: Option<bool>,
     has_cascade: Option<bool>,
     threshold: Option<ThresholdChoice>,
@@ -85,14 +84,14 @@ fn threshold(text: &str) -> Result<ThresholdChoice, String> {
 /// A table of parameters, and the first part of their paths.
 type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
-impl Plan {
+impl WalkPlan {
     /// Returns the default plan: objects cut at the borders of cells and warped, an ideal renderer, half a minute at 1
     /// m/s.
     #[must_use]
     pub fn usual() -> Self {
         Self {
             walk: WalkNumbers::PAPERS,
-            chosen: Settings::WARPED,
+            chosen: WalkSettings::WARPED,
             is_segmented: None,
             has_cascade: None,
             threshold: None,
@@ -135,8 +134,8 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// [`WalkError::UnknownKey`], with the most similar path, or [`WalkError::Value`].
-    pub fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), WalkError> {
+    /// [`SettingError`] with the most similar path, or with the allowed values.
+    pub fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), SettingError> {
         let done = match path {
             "policy" => choose(&mut self.chosen.policy, &PolicyKind::ALL, text),
             "warp" => choose(&mut self.chosen.falloff, &Falloff::ALL, text),
@@ -160,8 +159,8 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Self::set`]. Returns [`WalkError::Value`] if the text has no equals sign.
-    pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), WalkError> {
+    /// Fails in the same cases as [`Self::set`]. Also an error if the text has no equals sign.
+    pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), SettingError> {
         match assignment.split_once('=') {
             Some((path, text)) => self.set(path.trim(), text.trim(), place),
             None => Err(wrong("PATH=VALUE", assignment, place, "an equals sign".to_owned())),
@@ -178,7 +177,7 @@ impl Plan {
 
     /// Returns the size and viewing angle of the display's picture. A lens table must match both.
     #[must_use]
-    pub fn picture(&self) -> Picture {
+    pub fn picture(&self) -> LensPicture {
         self.chosen.display.picture()
     }
 
@@ -191,8 +190,8 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Settings::check`].
-    pub fn settings(&self) -> Result<Settings, WalkError> {
+    /// Fails in the same cases as [`WalkSettings::check`].
+    pub fn settings(&self) -> Result<WalkSettings, SettingError> {
         let mut settings = self.chosen.clone();
         // Fill in the defaults that depend on other settings.
         let is_of_cells = settings.policy == PolicyKind::Cells;
@@ -214,11 +213,9 @@ impl Plan {
     /// # Errors
     ///
     /// The outer error reports an unknown path. The inner error describes the valid values.
-    fn set_number(&mut self, path: &str, text: &str, place: &str) -> Result<Result<(), String>, WalkError> {
+    fn set_number(&mut self, path: &str, text: &str, place: &str) -> Result<Result<(), String>, SettingError> {
         let Some((_, Entry { info, value: now })) = self.numbers().into_iter().find(|(key, _)| key == path) else {
-            let keys = self.keys();
-            let nearest = nearest(path, keys.iter().map(String::as_str)).unwrap_or_default().to_owned();
-            return Err(WalkError::UnknownKey { place: place.to_owned(), found: path.to_owned(), nearest });
+            return Err(SettingError::unknown_path("key", path, self.keys()).at(place));
         };
         // Parse the value as the type of the parameter.
         let is_real = matches!(now, Value::Real(_));
@@ -274,6 +271,6 @@ fn source(text: &str) -> Result<SourceKind, String> {
     timed.ok_or_else(|| "ideal, or triangles a second".to_owned())
 }
 
-fn wrong(key: &str, found: &str, place: &str, expected: String) -> WalkError {
-    WalkError::Value { place: place.to_owned(), key: key.to_owned(), expected, found: found.to_owned() }
+fn wrong(key: &str, found: &str, place: &str, expected: String) -> SettingError {
+    SettingError::value(key, expected, found).at(place)
 }

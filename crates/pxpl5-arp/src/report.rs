@@ -1,9 +1,9 @@
 //! The results of a viewer's walk, which a report contains as object `arp` with schema `pxpl5-arp/1`. Results that were
 //! not evaluated are null.
 
-use crate::cube_faces::Drawing;
-use crate::settings::{PolicyKind, Settings};
-use crate::tears::Percentiles;
+use crate::cube_faces::DrawCounts;
+use crate::settings::{PolicyKind, WalkSettings};
+use crate::tears::TearWidths;
 use crate::walk::{MemoryTally, WalkTally};
 use crate::world::World;
 use address_recalculation::{ArpConfig, Latch, LookStats};
@@ -17,7 +17,7 @@ pub const SCHEMA: &str = "pxpl5-arp/1";
 
 /// Results of a viewer's walk through a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub struct ArpReport {
     pub schema: &'static str,
     /// Number of texels along the edge of a cube face.
     pub face_texels: u64,
@@ -33,7 +33,7 @@ pub struct Report {
     pub footprints_split: Option<u64>,
     /// Number of pixels whose footprint (its four texels) has two texels in one memory bank. Null if no view was drawn.
     pub bank_conflicts: Option<u64>,
-    pub memories: Vec<MemoryReport>,
+    pub memories: Vec<WalkMemoryReport>,
     /// Results of the policy that decides when each memory is drawn.
     pub priority: PriorityReport,
     /// Widths of the tears (gaps where different memories meet), in texels (90 degrees divided by the texels of a
@@ -41,11 +41,11 @@ pub struct Report {
     pub tears_px: TearsReport,
     /// Time from reading a known orientation to displaying the pixel, in ms, averaged over all pixels. The time does
     /// not include tracker and host.
-    pub rotation_latency_ms: Latency,
+    pub rotation_latency_ms: WalkLatency,
     /// Latency of translation through memory 0, in ms. Null without an update.
     ///
     /// The latency lasts from the start of the frame whose eye position was drawn to the display of the pixel.
-    pub translation_latency_ms: Latency,
+    pub translation_latency_ms: WalkLatency,
     /// Mean difference between the displayed view and a direct rendering of the same pose, in pixels. Null if no view
     /// was drawn.
     pub sampling_error_px: Option<f64>,
@@ -53,7 +53,7 @@ pub struct Report {
 
 /// Results of one display memory.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct MemoryReport {
+pub struct WalkMemoryReport {
     /// Number of times per second that the memory shows a new update.
     pub updates_hz: f64,
     /// Mean number of frames between two updates of the memory. Null without updates.
@@ -71,7 +71,7 @@ pub struct MemoryReport {
     /// Latency of translation in ms, averaged over frames.
     ///
     /// The latency lasts from the start of the frame whose eye position was drawn to the display of the pixel.
-    pub translation_latency_ms: Latency,
+    pub translation_latency_ms: WalkLatency,
     /// Size of both buffers of the memory, in bytes.
     pub bytes: u64,
 }
@@ -102,16 +102,16 @@ pub struct PriorityReport {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TearsReport {
     /// Widths that the tears would have without warping.
-    pub before: Option<Percentiles>,
+    pub before: Option<TearWidths>,
     /// Widths of the tears in the displayed picture.
-    pub after: Option<Percentiles>,
+    pub after: Option<TearWidths>,
     /// Largest angle by which warping moves any vertex in a frame, as percentiles over the frames.
-    pub stretch: Option<Percentiles>,
+    pub stretch: Option<TearWidths>,
 }
 
 /// A latency and its parts, in ms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Latency {
+pub struct WalkLatency {
     /// Sum of all parts in ms.
     pub total: Option<f64>,
     /// Parts of the latency by name, in ms. Null for parts that were not simulated.
@@ -124,15 +124,15 @@ pub struct ViewStatistics {
     /// Counts of the texels that each pixel of the view reads.
     pub stats: LookStats,
     /// Counts of the triangles drawn into the cube faces for the view.
-    pub drawing: Drawing,
+    pub drawing: DrawCounts,
 }
 
-impl Report {
+impl ArpReport {
     /// Creates the report of a viewer's walk, optionally with the counts of a view at its end.
     #[must_use]
-    pub fn of(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> Self {
+    pub fn of(world: &World, settings: &WalkSettings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> Self {
         let timing = &settings.display.timing;
-        let percentiles = |angles: &[f64]| Percentiles::of(angles, settings.texel_deg());
+        let percentiles = |angles: &[f64]| TearWidths::of(angles, settings.texel_deg());
         Self {
             schema: SCHEMA,
             face_texels: timing.face_texels,
@@ -162,19 +162,19 @@ fn latch(display: &ArpConfig) -> &'static str {
 }
 
 /// Returns the latency of rotation: all pipeline stages, then the scan from reading the orientation to the pixel.
-fn rotation(display: &ArpConfig) -> Latency {
-    Latency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
+fn rotation(display: &ArpConfig) -> WalkLatency {
+    WalkLatency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
 }
 
 /// Returns the latency of translation in three parts: drawing the update, the wait after it is first shown, and the
 /// scan.
-fn translation(memory: Option<&MemoryTally>, settings: &Settings) -> Latency {
+fn translation(memory: Option<&MemoryTally>, settings: &WalkSettings) -> WalkLatency {
     let memory = memory.filter(|memory| memory.shown_frames > 0);
     let mean_ms = |frames: fn(&MemoryTally) -> u64| {
         let mean = memory.map(|memory| frames(memory) as f64 / memory.shown_frames as f64);
         mean.map(|frames| frames * 1e3 / settings.numbers.frame_hz)
     };
-    Latency::of(vec![
+    WalkLatency::of(vec![
         ("draw", mean_ms(|memory| memory.drawing_frames)),
         ("wait", mean_ms(|memory| memory.age_frames - memory.drawing_frames)),
         ("scan", scan_ms(&settings.display, Latch::Field)),
@@ -201,21 +201,21 @@ fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
     Some(sum / 2.0 / f64::from(scan.height()))
 }
 
-impl Latency {
+impl WalkLatency {
     /// Creates a latency as the sum of its parts. The sum is `None` if a part is `None`.
     fn of(parts: Vec<(&'static str, Option<f64>)>) -> Self {
         Self { total: parts.iter().map(|(_, part)| *part).sum(), parts: parts.into_iter().collect() }
     }
 }
 
-fn memories(settings: &Settings, tally: &WalkTally) -> Vec<MemoryReport> {
+fn memories(settings: &WalkSettings, tally: &WalkTally) -> Vec<WalkMemoryReport> {
     let timing = &settings.display.timing;
     let bytes = 2 * 6 * timing.face_texels.pow(2) * (timing.colour_bits + timing.depth_bits) / 8;
-    tally.memories.iter().map(|memory| MemoryReport::of(memory, tally.frames as f64, settings, bytes)).collect()
+    tally.memories.iter().map(|memory| WalkMemoryReport::of(memory, tally.frames as f64, settings, bytes)).collect()
 }
 
-impl MemoryReport {
-    fn of(memory: &MemoryTally, frames: f64, settings: &Settings, bytes: u64) -> Self {
+impl WalkMemoryReport {
+    fn of(memory: &MemoryTally, frames: f64, settings: &WalkSettings, bytes: u64) -> Self {
         let updates = memory.updates as f64;
         Self {
             updates_hz: updates * settings.numbers.frame_hz / frames,
@@ -231,7 +231,12 @@ impl MemoryReport {
     }
 }
 
-fn priority(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> PriorityReport {
+fn priority(
+    world: &World,
+    settings: &WalkSettings,
+    tally: &WalkTally,
+    looked: Option<&ViewStatistics>,
+) -> PriorityReport {
     let hz = settings.numbers.frame_hz;
     let is_cells = settings.policy == PolicyKind::Cells;
     let draws_per_s = tally.draws_per_s(hz);

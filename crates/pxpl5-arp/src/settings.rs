@@ -1,9 +1,9 @@
 //! Settings of an experiment.
 
 use crate::cube_faces::{CubeView, DepthRange};
-use crate::error::WalkError;
 use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{ArpConfig, ArpTiming};
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 /// The policy that decides which segments (parts of objects) are drawn in which frames.
@@ -58,7 +58,7 @@ const FAR_M: f64 = 100.0;
 
 /// Settings of an experiment, without the scene and the viewer's walk.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct WalkSettings {
     pub policy: PolicyKind,
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
@@ -73,7 +73,7 @@ pub struct Settings {
     pub source: SourceKind,
 }
 
-impl Settings {
+impl WalkSettings {
     /// Settings with objects cut but not warped, cells of the size fitted to table 1, and an ideal renderer.
     pub const CELLS: Self = Self {
         policy: PolicyKind::Cells,
@@ -119,14 +119,14 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// [`WalkError`] describes the expected and the found value.
-    pub fn check(&self) -> Result<(), WalkError> {
+    /// [`SettingError`] describes the expected and the found value.
+    pub fn check(&self) -> Result<(), SettingError> {
         self.numbers.check()?;
         self.display.check()?;
         if let SourceKind::Timed { triangles_per_s } = self.source
             && (triangles_per_s.is_nan() || triangles_per_s <= 0.0)
         {
-            return Err(WalkError::Rate(triangles_per_s));
+            return Err(SettingError::value("source.triangles_per_s", "more than 0", triangles_per_s));
         }
         Ok(())
     }
@@ -145,7 +145,7 @@ impl Settings {
     /// # Errors
     ///
     /// Fails in the same cases as [`DepthRange::new`].
-    pub fn view(&self) -> Result<CubeView, WalkError> {
+    pub fn view(&self) -> Result<CubeView, SettingError> {
         Ok(CubeView { geometry: self.display.geometry(), depth: DepthRange::new(NEAR_M, FAR_M)? })
     }
 

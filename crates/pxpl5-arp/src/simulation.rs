@@ -2,12 +2,12 @@
 //! display.
 
 use crate::content::{Content, warp};
-use crate::error::WalkError;
-use crate::settings::{PolicyKind, Settings, SourceKind};
+use crate::settings::{PolicyKind, SourceKind, WalkSettings};
 use crate::source::{Job, Queue};
 use crate::world::World;
 use address_recalculation::priority::{CellAssignment, Cells, Falloff, ObjectView, Objects, Threshold, Update};
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 
 /// The smallest part of a scene that a policy assigns to a memory: an object, or a segment of an object.
 #[derive(Clone, Debug)]
@@ -58,7 +58,7 @@ pub struct FrameOutcome {
 #[derive(Clone, Debug)]
 pub struct Simulation<'a> {
     world: &'a World,
-    settings: Settings,
+    settings: WalkSettings,
     units: Vec<Unit>,
     policy: Policy,
     queue: Queue,
@@ -72,8 +72,8 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Settings::check`].
-    pub fn new(world: &'a World, settings: &Settings) -> Result<Self, WalkError> {
+    /// Fails in the same cases as [`WalkSettings::check`].
+    pub fn new(world: &'a World, settings: &WalkSettings) -> Result<Self, SettingError> {
         settings.check()?;
         // With segmentation the policy assigns segments, without it whole objects.
         let units = units(world, settings.is_segmented);
@@ -101,7 +101,7 @@ impl<'a> Simulation<'a> {
     }
 
     #[must_use]
-    pub const fn settings(&self) -> &Settings {
+    pub const fn settings(&self) -> &WalkSettings {
         &self.settings
     }
 
@@ -134,8 +134,8 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError::Priority`] if the distance over which warping decreases is zero.
-    pub fn frame(&mut self, eye: DVec3) -> Result<FrameOutcome, WalkError> {
+    /// Returns a [`SettingError`] if the distance over which warping decreases is zero.
+    pub fn frame(&mut self, eye: DVec3) -> Result<FrameOutcome, SettingError> {
         // Ask the policy which memories are due, and collect their contents.
         let update = self.update(eye);
         let contents = self.contents(&update, eye)?;
@@ -204,7 +204,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Returns the new contents of the memories that are due for an update.
-    fn contents(&self, update: &Update, eye: DVec3) -> Result<Vec<(usize, Content)>, WalkError> {
+    fn contents(&self, update: &Update, eye: DVec3) -> Result<Vec<(usize, Content)>, SettingError> {
         let mut segments = vec![Vec::new(); update.due.len()];
         for (number, unit) in self.units.iter().enumerate() {
             segments[self.memory(number)].extend(unit.segments.clone());
@@ -220,7 +220,7 @@ impl<'a> Simulation<'a> {
         &self,
         memory: usize,
         eye: DVec3,
-    ) -> Result<Option<(address_recalculation::priority::RegionWarp, CellAssignment, usize)>, WalkError> {
+    ) -> Result<Option<(address_recalculation::priority::RegionWarp, CellAssignment, usize)>, SettingError> {
         let Policy::Cells(cells) = &self.policy else { return Ok(None) };
         let is_warped = self.settings.falloff != Falloff::None && self.settings.is_segmented;
         match cells.drawn_from(memory + 1) {

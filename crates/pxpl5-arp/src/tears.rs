@@ -65,7 +65,7 @@ impl Tears {
 
 /// Percentiles of angles, in texels (90 degrees divided by the texels of a face's edge).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Percentiles {
+pub struct TearWidths {
     /// Median.
     pub p50: f64,
     /// 95th percentile.
@@ -73,7 +73,7 @@ pub struct Percentiles {
     pub max: f64,
 }
 
-impl Percentiles {
+impl TearWidths {
     /// Computes the percentiles of angles in radians. A texel has `texel_deg` degrees. Returns `None` without angles.
     #[must_use]
     pub fn of(angles: &[f64], texel_deg: f64) -> Option<Self> {

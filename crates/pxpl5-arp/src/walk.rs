@@ -1,11 +1,11 @@
 //! A complete walk of the viewer through a scene, with counters of updates and draws.
 
-use crate::error::WalkError;
-use crate::settings::{Settings, SourceKind};
+use crate::settings::{SourceKind, WalkSettings};
 use crate::simulation::{FrameOutcome, Simulation};
 use crate::tears::Tears;
 use crate::world::World;
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// Counters of one memory.
@@ -106,20 +106,20 @@ impl WalkTally {
 /// Fails in the same cases as [`Simulation::new`].
 pub fn walk(
     world: &World,
-    settings: &Settings,
+    settings: &WalkSettings,
     frames: u64,
     eye: impl Fn(u64) -> DVec3,
-) -> Result<WalkTally, WalkError> {
+) -> Result<WalkTally, SettingError> {
     Ok(walked(world, settings, frames, eye)?.1)
 }
 
 /// Walks through a world, and returns the final state of the simulation together with the counters.
 pub(crate) fn walked<'a>(
     world: &'a World,
-    settings: &Settings,
+    settings: &WalkSettings,
     frames: u64,
     eye: impl Fn(u64) -> DVec3,
-) -> Result<(Simulation<'a>, WalkTally), WalkError> {
+) -> Result<(Simulation<'a>, WalkTally), SettingError> {
     let mut simulation = Simulation::new(world, settings)?;
     let mut tally = WalkTally {
         frames: 0,

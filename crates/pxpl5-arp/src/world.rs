@@ -1,10 +1,10 @@
 //! A scene whose objects are cut at the borders of cells.
 
 use crate::cube_faces::Corner;
-use crate::error::WalkError;
 use address_recalculation::priority::{Cell, Segmentation};
 use glam::DVec3;
 use pxpl5_scene::{Frame, Lighting, Scene, Structure, Vertex};
+use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -72,9 +72,9 @@ impl World {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError`] if the scene has spheres, moving objects or objects fixed to the head, or if it
+    /// Returns a [`SettingError`] if the scene has spheres, moving objects or objects fixed to the head, or if it
     /// cannot be cut.
-    pub fn new(scene: &Scene, side_m: f64) -> Result<Self, WalkError> {
+    pub fn new(scene: &Scene, side_m: f64) -> Result<Self, SettingError> {
         check_is_static(scene)?;
         let mut world = Self {
             vertices: Vec::new(),
@@ -92,7 +92,7 @@ impl World {
         Ok(world)
     }
 
-    fn add(&mut self, scene: &Scene, structure: &Structure, side_m: f64) -> Result<(), WalkError> {
+    fn add(&mut self, scene: &Scene, structure: &Structure, side_m: f64) -> Result<(), SettingError> {
         let first = self.vertices.len() as u32;
         let own = &scene.vertices()[structure.vertices.clone()];
         // Cut the structure, and interpolate the colours of the vertices that cuts created.
@@ -170,9 +170,9 @@ fn distinct(number: u64) -> u32 {
     packed([0.0, 2.0, 4.0].map(|shift| 70.0 + 160.0 * (((hue + shift) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0)))
 }
 
-fn check_is_static(scene: &Scene) -> Result<(), WalkError> {
+fn check_is_static(scene: &Scene) -> Result<(), SettingError> {
     let refused = |expected: &'static str, found: String| {
-        Err(WalkError::Scene { scene: scene.name().to_owned(), expected, found })
+        Err(SettingError::scene(&format!("scene {}", scene.name()), expected, found))
     };
     if !scene.spheres().is_empty() {
         return refused("triangles alone: faces have no spheres", format!("{} spheres", scene.spheres().len()));

@@ -3,7 +3,7 @@
 use address_recalculation::{CubeFace, FaceGeometry, FaceSet, TexelAddress, TexelFormat};
 use glam::DVec3;
 use proptest::prelude::*;
-use pxpl5_arp::cube_faces::{Corner, CubeView, DepthRange, Drawing};
+use pxpl5_arp::cube_faces::{Corner, CubeView, DepthRange, DrawCounts};
 
 const FORMAT: TexelFormat = TexelFormat { colour_bits: 24, depth_bits: 24 };
 const NEAR: f64 = 0.1;
@@ -13,7 +13,7 @@ fn view(texels: u32, guard: u32) -> CubeView {
     CubeView { geometry: FaceGeometry { texels, guard }, depth: DepthRange::new(NEAR, FAR).expect("a range") }
 }
 
-fn drawn(view: &CubeView, eye: DVec3, triangles: &[[Corner; 3]]) -> (FaceSet, Drawing) {
+fn drawn(view: &CubeView, eye: DVec3, triangles: &[[Corner; 3]]) -> (FaceSet, DrawCounts) {
     let mut faces = FaceSet::new(view.geometry.texels, FORMAT);
     let drawing = view.draw(eye, triangles.iter().copied(), &mut faces);
     (faces, drawing)

@@ -1,21 +1,20 @@
 //! Tests of the papers' figures: fitted numbers, checked numbers, and the generated document.
 
-use pxpl5_arp::figures::{
-    Experiments, Provenance, RATE_FITTED, RATES_HZ, Row, Rules, Situation, all, definitions, markdown,
-};
-use pxpl5_arp::pictures::{OF_FIGURES, Picture, all as all_pictures};
+use pxpl5_arp::figures::{Experiments, RATE_FITTED, RATES_HZ, Rules, Situation, all, definitions, markdown, verdict};
+use pxpl5_arp::pictures::{ArpPicture, OF_FIGURES, all as all_pictures};
+use pxpl5_sim::figures::{Basis, FigureRow};
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
-static FIGURES: LazyLock<(Experiments, Vec<Row>)> = LazyLock::new(|| all().expect("experiments"));
+static FIGURES: LazyLock<(Experiments, Vec<FigureRow>)> = LazyLock::new(|| all().expect("experiments"));
 
-fn rows(id: &str) -> Vec<&'static Row> {
+fn rows(id: &str) -> Vec<&'static FigureRow> {
     FIGURES.1.iter().filter(|row| row.id == id).collect()
 }
 
 #[test]
 fn the_side_of_a_cell_is_fitted_to_memory_1_and_the_threshold_to_the_width_of_tears() {
-    let fitted: Vec<&Row> = FIGURES.1.iter().filter(|row| row.provenance == Provenance::Fitted).collect();
+    let fitted: Vec<&FigureRow> = FIGURES.1.iter().filter(|row| matches!(row.basis, Basis::Fitted(_))).collect();
     assert_eq!(fitted.iter().map(|row| row.id).collect::<Vec<_>>(), ["A12", "A15"]);
     assert_eq!(fitted[0].published, RATES_HZ[RATE_FITTED]);
     assert!(fitted.iter().all(|row| row.is_met), "{fitted:?}");
@@ -111,12 +110,13 @@ fn a8_lies_between_limits_that_depend_on_what_is_measured() {
         assert!((limit.of_nearest / nearest - 1.0).abs() < 0.03, "{limit:?} {nearest}");
     }
     let row = rows("A8")[0];
-    assert!(row.is_met && row.verdict() == "within" && (4.6..5.0).contains(&row.ours), "{row:?}");
+    assert!(row.is_met && verdict(row) == "within" && (4.6..5.0).contains(&row.simulated), "{row:?}");
 }
 
 #[test]
 fn table_2_cutting_moves_segments_outwards_and_saves() {
-    let [cut, uncut] = [rows("A13"), rows("A14")].map(|rows| rows.iter().map(|row| row.ours).collect::<Vec<f64>>());
+    let [cut, uncut] =
+        [rows("A13"), rows("A14")].map(|rows| rows.iter().map(|row| row.simulated).collect::<Vec<f64>>());
     assert!(cut[0] < uncut[0] && cut[3] > uncut[3], "{cut:?} {uncut:?}");
     assert!((cut.iter().sum::<f64>() - uncut.iter().sum::<f64>()).abs() < 1e-6, "nothing is lost");
 }
@@ -180,7 +180,7 @@ fn there_is_a_row_of_every_experiment_and_every_picture_of_the_papers_figures() 
     let names: BTreeSet<&str> = pictures
         .iter()
         .map(|picture| match picture {
-            Picture::Pixels(name, _) | Picture::Drawing(name, _) => name.as_str(),
+            ArpPicture::Pixels(name, _) | ArpPicture::Drawing(name, _) => name.as_str(),
         })
         .collect();
     for (experiment, _, expected) in OF_FIGURES {

@@ -3,9 +3,9 @@
 use address_recalculation::priority::Falloff;
 use address_recalculation::{CubeFace, FaceSet, Latch, Lens, TexelAddress};
 use glam::{DQuat, DVec3};
-use pxpl5_arp::pictures::{Picture, of_walk};
+use pxpl5_arp::pictures::{ArpPicture, of_walk};
 use pxpl5_arp::{
-    Faces, PolicyKind, Report, Settings, Simulation, SourceKind, Tears, WalkError, World, at_frames, walk,
+    ArpReport, PolicyKind, Simulation, SourceKind, Tears, WalkFaces, WalkSettings, World, at_frames, walk,
 };
 use pxpl5_scene::{Scene, builtin};
 use std::collections::BTreeMap;
@@ -13,11 +13,11 @@ use std::sync::LazyLock;
 use tracking::motion::Walk;
 
 /// Settings with the cell size of the scene, a threshold of 90/512 degrees, and the default rings of cells.
-const CELLS: Settings = five_metres(Settings::CELLS);
-const WARPED: Settings = five_metres(Settings::WARPED);
-const OBJECTS: Settings = five_metres(Settings::OBJECTS);
+const CELLS: WalkSettings = five_metres(WalkSettings::CELLS);
+const WARPED: WalkSettings = five_metres(WalkSettings::WARPED);
+const OBJECTS: WalkSettings = five_metres(WalkSettings::OBJECTS);
 
-const fn five_metres(settings: Settings) -> Settings {
+const fn five_metres(settings: WalkSettings) -> WalkSettings {
     let mut settings = settings.with_cells(5.0);
     settings.numbers.theta_deg = 90.0 / 512.0;
     settings
@@ -31,13 +31,13 @@ static PATH: LazyLock<Walk> = LazyLock::new(|| {
     Walk::new(&corners, 1.0).expect("a path")
 });
 
-fn small(settings: Settings) -> Settings {
+fn small(settings: WalkSettings) -> WalkSettings {
     let mut settings = settings;
     settings.display.timing.face_texels = 128;
     settings
 }
 
-fn simulated(settings: &Settings) -> Simulation<'static> {
+fn simulated(settings: &WalkSettings) -> Simulation<'static> {
     Simulation::new(&WORLD, settings).expect("settings")
 }
 
@@ -59,7 +59,7 @@ fn memories_drawn_from_one_place_are_the_drawing_of_one_memory_bit_for_bit() {
     let eye = PATH.place(12.3);
     let mut cells = simulated(&small(CELLS));
     cells.frame(eye).expect("drawn");
-    let faces = Faces::of(&cells).expect("drawn");
+    let faces = WalkFaces::of(&cells).expect("drawn");
     let view = cells.settings().view().expect("a range");
     let mut one = FaceSet::new(128, cells.settings().display.format());
     let in_order: Vec<usize> = cells.shown().iter().flatten().flat_map(|content| content.segments.clone()).collect();
@@ -109,14 +109,14 @@ fn the_picture_after_a_turn_is_a_redraw_for_that_orientation_whatever_the_render
     // After a much too slow renderer has drawn all memories once, the eye stays in place and the head rotates.
     let eye = PATH.place(30.0);
     let ideal = small(CELLS);
-    let slow = Settings { source: SourceKind::Timed { triangles_per_s: 700.0 }, ..ideal.clone() };
+    let slow = WalkSettings { source: SourceKind::Timed { triangles_per_s: 700.0 }, ..ideal.clone() };
     let mut simulations = [simulated(&ideal), simulated(&slow)];
     for simulation in &mut simulations {
         for _ in 0..200 {
             simulation.frame(eye).expect("drawn");
         }
     }
-    let faces = simulations.each_ref().map(|simulation| Faces::of(simulation).expect("drawn"));
+    let faces = simulations.each_ref().map(|simulation| WalkFaces::of(simulation).expect("drawn"));
     for degrees in [0.0_f64, 12.0, 90.0, 180.0] {
         let turned = DQuat::from_rotation_y(degrees.to_radians());
         let [redrawn, stalled] = faces.each_ref().map(|faces| faces.seen(turned).expect("a rotation").0);
@@ -149,7 +149,7 @@ fn no_vertex_of_any_memory_is_ever_off_by_more_than_theta() {
 
 #[test]
 fn each_segment_is_in_one_memory_in_every_frame_also_when_cells_are_dealt_anew() {
-    for settings in [CELLS, WARPED, Settings { is_segmented: false, ..CELLS }, OBJECTS] {
+    for settings in [CELLS, WARPED, WalkSettings { is_segmented: false, ..CELLS }, OBJECTS] {
         let mut simulation = simulated(&settings);
         let eye = at_frames(&PATH, 3.0, 60.0);
         for frame in 0..700 {
@@ -166,13 +166,13 @@ fn each_segment_is_in_one_memory_in_every_frame_also_when_cells_are_dealt_anew()
 fn warped_with_cascade_no_cut_gapes_and_without_it_some_do() {
     let eye = at_frames(&PATH, 1.0, 60.0);
     for falloff in [Falloff::Linear, Falloff::Smoothstep, Falloff::Step] {
-        let warped = Settings { falloff, ..WARPED };
+        let warped = WalkSettings { falloff, ..WARPED };
         let tally = walk(&WORLD, &warped, 1_800, &eye).expect("walked");
         let widest = tally.tears.after.iter().copied().fold(0.0, f64::max);
         assert!(widest < 1e-12, "{falloff:?}: {widest}");
     }
     let texel = WARPED.texel_deg().to_radians();
-    let no_cascade = Settings { has_cascade: false, ..WARPED };
+    let no_cascade = WalkSettings { has_cascade: false, ..WARPED };
     let [torn, stale] = [CELLS, no_cascade].map(|settings| {
         let tally = walk(&WORLD, &settings, 1_800, &eye).expect("walked");
         tally.tears.after.into_iter().fold(0.0, f64::max) / texel
@@ -185,7 +185,7 @@ fn warped_with_cascade_no_cut_gapes_and_without_it_some_do() {
 #[test]
 fn uncut_nothing_tears_and_the_fastest_memory_draws_more() {
     let eye = at_frames(&PATH, 1.0, 60.0);
-    let uncut = walk(&WORLD, &Settings { is_segmented: false, ..CELLS }, 600, &eye).expect("walked");
+    let uncut = walk(&WORLD, &WalkSettings { is_segmented: false, ..CELLS }, 600, &eye).expect("walked");
     let cut = walk(&WORLD, &CELLS, 600, &eye).expect("walked");
     assert!(uncut.tears.after.is_empty());
     assert!(uncut.memories[0].segment_frames > 2 * cut.memories[0].segment_frames);
@@ -222,7 +222,7 @@ fn odd_places_of_the_eye_are_places_like_others() {
     ];
     for place in places {
         simulation.frame(place).expect("drawn");
-        let seen = Faces::of(&simulation).and_then(|faces| faces.seen(DQuat::IDENTITY));
+        let seen = WalkFaces::of(&simulation).and_then(|faces| faces.seen(DQuat::IDENTITY));
         assert!(seen.is_ok(), "{place}");
     }
 }
@@ -260,7 +260,7 @@ fn one_memory_draws_all_and_eight_draw_less_than_four() {
 #[test]
 fn a_renderer_that_is_slowed_down_misses_slow_memories_first_and_shows_nothing_half_drawn() {
     let missed = |triangles_per_s: f64| {
-        let settings = Settings { source: SourceKind::Timed { triangles_per_s }, ..CELLS };
+        let settings = WalkSettings { source: SourceKind::Timed { triangles_per_s }, ..CELLS };
         let tally = walk(&WORLD, &settings, 900, at_frames(&PATH, 1.0, 60.0)).expect("walked");
         tally.memories.iter().map(|memory| memory.missed).collect::<Vec<u64>>()
     };
@@ -269,7 +269,7 @@ fn a_renderer_that_is_slowed_down_misses_slow_memories_first_and_shows_nothing_h
     assert!(few[3] > few[0] && few.windows(2).all(|pair| pair[0] <= pair[1]), "{few:?}");
     assert!(missed(3_000.0)[0] > few[0]);
     // A memory shows nothing before its first complete update.
-    let slow = Settings { source: SourceKind::Timed { triangles_per_s: 3_000.0 }, ..CELLS };
+    let slow = WalkSettings { source: SourceKind::Timed { triangles_per_s: 3_000.0 }, ..CELLS };
     let mut simulation = simulated(&slow);
     let outcome = simulation.frame(PATH.place(0.0)).expect("drawn");
     assert!(outcome.missed[3] && simulation.shown()[3].is_none());
@@ -281,8 +281,9 @@ fn what_faces_cannot_show_is_refused_by_name() {
     assert!(refused("molecules").contains("triangles alone"));
     assert!(refused("mig").contains("structures that do not move"));
     assert!(refused("full-screen:3").contains("fixed to the head"));
-    let rate = Settings { source: SourceKind::Timed { triangles_per_s: f64::NAN }, ..CELLS };
-    assert!(matches!(Simulation::new(&WORLD, &rate), Err(WalkError::Rate(_))));
+    let rate = WalkSettings { source: SourceKind::Timed { triangles_per_s: f64::NAN }, ..CELLS };
+    let error = Simulation::new(&WORLD, &rate).expect_err("no rate");
+    assert_eq!(&*error.name, "source.triangles_per_s");
     let mut cells = CELLS;
     cells.numbers.falloff_m = 6.0;
     let error = Simulation::new(&WORLD, &cells).expect_err("refused").to_string();
@@ -291,9 +292,9 @@ fn what_faces_cannot_show_is_refused_by_name() {
 
 #[test]
 fn the_report_has_every_key_of_the_schema_and_null_for_missing_results() {
-    let settings = Settings { policy: PolicyKind::Cells, ..WARPED };
+    let settings = WalkSettings { policy: PolicyKind::Cells, ..WARPED };
     let tally = walk(&WORLD, &settings, 300, at_frames(&PATH, 1.0, 60.0)).expect("walked");
-    let report = serde_json::to_value(Report::of(&WORLD, &settings, &tally, None)).expect("JSON");
+    let report = serde_json::to_value(ArpReport::of(&WORLD, &settings, &tally, None)).expect("JSON");
     assert_eq!(report["schema"], "pxpl5-arp/1");
     for key in [
         "face_texels",
@@ -350,7 +351,7 @@ fn a_walk_has_the_latencies_of_its_display() {
         let mut settings = CELLS;
         settings.display.latch = latch;
         let tally = walk(&WORLD, &settings, 300, at_frames(&PATH, 1.0, 60.0)).expect("walked");
-        let report = Report::of(&WORLD, &settings, &tally, None);
+        let report = ArpReport::of(&WORLD, &settings, &tally, None);
         let turn = &report.rotation_latency_ms;
         assert!((turn.total.expect("simulated") - 0.00065 - scan).abs() < 1e-6, "{name}: {turn:?}");
         // Memory 0 is drawn in every frame in no time. Translation therefore waits only for the scan, regardless of the
@@ -367,10 +368,10 @@ fn a_walk_has_the_latencies_of_its_display() {
 #[test]
 fn the_age_of_what_is_shown_is_a_part_of_the_latency_of_a_step() {
     let eye = at_frames(&PATH, 1.0, 60.0);
-    let fast = Settings { source: SourceKind::Timed { triangles_per_s: 1e9 }, ..CELLS };
+    let fast = WalkSettings { source: SourceKind::Timed { triangles_per_s: 1e9 }, ..CELLS };
     let reports = [CELLS, fast].map(|settings| {
         let tally = walk(&WORLD, &settings, 1_200, &eye).expect("walked");
-        Report::of(&WORLD, &settings, &tally, None)
+        ArpReport::of(&WORLD, &settings, &tally, None)
     });
     for memory in 0..4 {
         let [ideal, timed] = [0, 1].map(|i| &reports[i].memories[memory].translation_latency_ms.parts);
@@ -386,15 +387,15 @@ fn the_age_of_what_is_shown_is_a_part_of_the_latency_of_a_step() {
 /// Checks that the faces do not depend on the lens, and that views wider than 170 degrees have no flat picture.
 #[test]
 fn pictures_are_seen_through_the_lens_that_was_chosen() {
-    let names_of = |display: &dyn Fn(&mut Settings)| {
+    let names_of = |display: &dyn Fn(&mut WalkSettings)| {
         let mut settings = small(CELLS);
         settings.display.scan.visible_pixels = 64;
         settings.display.scan.visible_lines = 24;
         display(&mut settings);
         let pictures = of_walk(WORLD.clone(), &PATH, &settings, 1.0, 30).expect("drawn");
         let pixels = pictures.into_iter().map(|picture| match picture {
-            Picture::Pixels(name, pixels) => (name, Some(pixels)),
-            Picture::Drawing(name, _) => (name, None),
+            ArpPicture::Pixels(name, pixels) => (name, Some(pixels)),
+            ArpPicture::Drawing(name, _) => (name, None),
         });
         pixels.collect::<BTreeMap<_, _>>()
     };

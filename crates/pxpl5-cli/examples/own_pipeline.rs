@@ -11,8 +11,8 @@ use pxpl5_cli::pxpl5::firmware::{
     region_messages, swap_request,
 };
 use pxpl5_cli::pxpl5::{
-    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureResult, PictureRules, PictureTimes,
-    Pipeline, PipelineEntry, PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
+    Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureResult, PictureRules, PictureTimes, Pipeline,
+    PipelineEntry, PipelineSettings, Ports, Record, Registry, SettingError, Setup, Span, TestScene, Time,
 };
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -111,7 +111,7 @@ impl Pipeline for OneAtATime {
         self.picture().layout
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let ports = machine.ports().clone();
         let views = Arc::clone(&setup.views);
         let node = ports.gps[0];

@@ -9,7 +9,6 @@ mod texel;
 
 use crate::error::CliError;
 use clap::{Args, Subcommand};
-use pxpl5::arp::WalkError;
 
 /// Walk through a scene with a display that follows the head's rotation (address recalculation, priority rendering,
 /// region warping).
@@ -51,11 +50,5 @@ pub(crate) fn run(args: ArpArgs) -> Result<(), CliError> {
         ArpCommand::Figures(args) => figures::run(args),
         ArpCommand::Interpretations(args) => interpretations::run(args),
         ArpCommand::Texel(args) => texel::run(args),
-    }
-}
-
-impl From<WalkError> for CliError {
-    fn from(error: WalkError) -> Self {
-        if error.is_of_scene() { Self::failure(error) } else { Self::usage(error) }
     }
 }

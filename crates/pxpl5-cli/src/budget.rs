@@ -2,7 +2,7 @@
 //! is stopped early if its first fields show that the whole run would exceed a limit.
 
 use crate::error::CliError;
-use crate::estimate::{Estimate, Study, Work};
+use crate::estimate::{Estimate, RunWork, Study};
 use crate::numbers::{count_of, whole};
 use clap::Args;
 use std::cell::OnceCell;
@@ -31,8 +31,8 @@ const MOST_MEGABYTES: u64 = 16_000;
 /// Default time limit in seconds. Assumed: one day.
 const MOST_SECONDS: u64 = 86_400;
 
-/// Numbers of simulated fields after which an early run is compared with its limits. After the last of these fields,
-/// each report of progress is compared.
+/// Numbers of simulated fields after which the cost of a run is compared with its limits. After the last of these
+/// fields, the cost is compared at each report of progress.
 pub(crate) const EARLY_CHECK_FIELDS: [u64; 6] = [1, 2, 4, 8, 16, 32];
 
 /// Seconds that a run must have taken before its total time is extrapolated. The first seconds are not typical, because
@@ -65,23 +65,24 @@ impl BudgetArgs {
     /// # Errors
     ///
     /// Returns the estimate and advice on how to reduce the work.
-    pub(crate) fn admit(&self, work: &Work) -> Result<(), CliError> {
+    pub(crate) fn admit(&self, work: &RunWork) -> Result<(), CliError> {
         self.admit_estimate(work.estimate(), "simulate fewer fields")
     }
 
     /// Returns an error if the estimate of a set of runs exceeds the budget, before the first run starts. The estimated
-    /// time is the sum divided by `threads`. The estimated memory is the memory of the largest run times `threads`.
+    /// time is the sum of the times of all runs divided by `threads`. The estimated memory is the memory of the largest
+    /// run times `threads`.
     ///
     /// # Errors
     ///
     /// Fails in the same cases as [`BudgetArgs::admit`].
-    pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = Work>, threads: usize) -> Result<(), CliError> {
+    pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = RunWork>, threads: usize) -> Result<(), CliError> {
         let whole = Estimate::of_all(runs.into_iter().map(|work| work.estimate()), threads);
         self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    /// Returns an error if a fixed set of experiments exceeds the budget, before it starts. `advice` is a text for the
-    /// user: how to reduce the work.
+    /// Returns an error if a fixed set of experiments would exceed the budget. The check takes place before the first
+    /// experiment. `advice` is a text for the user: how to reduce the work.
     ///
     /// # Errors
     ///
@@ -154,7 +155,8 @@ impl Taken {
 
 impl BudgetArgs {
     /// Returns the reason to stop a run, if any. `before` is the cost before the extrapolated part of the run. `taken`
-    /// is the cost of the fraction `part` of this part. The remaining fields are assumed to cost the same.
+    /// is the cost of the finished fraction of this part, and `part` is this fraction (0 to 1). Each remaining field is
+    /// assumed to cost as much as a finished field.
     fn refusal(&self, before: Taken, taken: Taken, part: f64) -> Option<String> {
         // The costs of short and small runs are too inaccurate to extrapolate.
         let megabytes = if taken.bytes > MIN_EXTRAPOLATED_BYTES { taken.bytes / part / 1e6 } else { 0.0 };

@@ -90,7 +90,7 @@ mod tests {
         assert_eq!(names(&[("A.", "B"), ("C.", "D"), ("E.", "F")]), "A. B, C. D and E. F");
     }
 
-    /// docs/sources.md lists the papers by their short names, written by hand.
+    /// Checks that docs/sources.md, which is written by hand, lists each cited paper by its short name.
     #[test]
     fn the_list_of_sources_has_each_cited_paper() {
         let sources = include_str!("../../../docs/sources.md").to_lowercase();

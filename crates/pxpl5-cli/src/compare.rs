@@ -7,7 +7,7 @@ mod table;
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::{confidence, count_of, whole};
 use crate::output::OutputFolder;
 use crate::scenes;
@@ -30,6 +30,7 @@ use std::path::PathBuf;
   pxpl5 compare --machine design-maximum --gps 34 --set gp.triangle_ns=20000 --seeds 10 --json
   pxpl5 compare --fields 60 --seeds 1
   pxpl5 compare --all --limits --confidence 0.99
+  pxpl5 compare --causes --predictors                               the causes of the error, and the best predictor
   pxpl5 compare --only slats,vdrt,jitp-scanline-racing --head pan:200
   pxpl5 compare --out out/compare --resume                          after an interruption
   pxpl5 compare --until-precision 10% --max-seeds 40
@@ -64,6 +65,12 @@ pub(crate) struct CompareArgs {
     /// Do not search for the largest number of triangles, which is the default.
     #[arg(long, alias = "no-triangles", hide = true)]
     no_limits: bool,
+    /// Also split the error of each row by its causes. Every run is then evaluated again without each cause.
+    #[arg(long)]
+    causes: bool,
+    /// Also run each row with every other predictor, to find the predictor with the least error.
+    #[arg(long)]
+    predictors: bool,
     /// Confidence of all intervals, between 0 and 1.
     #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
     confidence: f64,
@@ -114,7 +121,8 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let only = if args.all || !args.only.is_empty() { args.only } else { usual_rows(shared.registry()) };
     let (limits, pictures) = (args.limits, folder.is_some());
     let until = args.until_precision.map(|width| UntilPrecise { width, max_seeds: args.max_seeds as usize });
-    let mut query = CompareQuery { shared, only, seeds, limits, pictures, confidence: args.confidence, until };
+    let CompareArgs { causes, predictors, confidence, .. } = args;
+    let mut query = CompareQuery { shared, only, seeds, limits, causes, predictors, pictures, confidence, until };
     set_length(&mut query, args.quiet)?;
     admit(args.budget, &query, args.quiet)?;
     // The store keeps finished rows, so that an interruption loses only the rows in progress.
@@ -150,7 +158,7 @@ fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), Cl
     for (row, plan) in query.plans()?.into_iter().enumerate() {
         // All rows have the same scene, so its warnings are printed once.
         let scene = scenes::load(&plan, quiet || row > 0)?;
-        let work = Work::of(&plan, &scene, true);
+        let work = RunWork::of(&plan, &scene, true);
         runs.extend(std::iter::repeat_n(work, seeds));
     }
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))

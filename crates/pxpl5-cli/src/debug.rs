@@ -11,7 +11,7 @@ mod words;
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::scenes;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
@@ -53,7 +53,7 @@ pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.warnings(), args.quiet);
     let scene = scenes::load(&plan, args.quiet)?;
-    args.budget.admit(&Work::of(&plan, &scene, true))?;
+    args.budget.admit(&RunWork::of(&plan, &scene, true))?;
     warn(too_heavy(&plan, &scene, plan.fields).as_slice(), args.quiet);
     let experiment = plan.experiment(scene).host(Workstation::new()).record_traffic(true);
     let session = Session::new(experiment.stepper()?);

@@ -66,7 +66,7 @@ pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
     print(&text(&found, &pictures))
 }
 
-/// Reads the report of a result: a file, or the report that the manifest of a folder lists.
+/// Reads the report of a result. A result is either a report file, or a folder whose manifest lists the report.
 fn report(path: &Path) -> Result<Value, CliError> {
     let file = if path.is_dir() { path.join(REPORT_FILE) } else { path.to_owned() };
     let name = file.display();
@@ -88,7 +88,7 @@ fn report(path: &Path) -> Result<Value, CliError> {
     }
 }
 
-/// Compares the pictures that the manifests of both folders list. A file has no pictures.
+/// Compares the pictures that the manifests of both folders list. A result that is a single file has no pictures.
 fn pictures(a: &Path, b: &Path) -> Result<Vec<PictureDifference>, CliError> {
     if !(a.is_dir() && b.is_dir()) {
         return Ok(Vec::new());

@@ -1,8 +1,6 @@
 //! Errors that end a command, with their exit codes.
 
-use pxpl5::lab::manifest::ManifestError;
-use pxpl5::sweep::SweepError;
-use pxpl5::{ExperimentError, FileError, SnapshotError, StudyError};
+use pxpl5::{ExperimentError, FileError, FileErrorKind, SettingError, SettingErrorKind, StudyError};
 use std::fmt::{self, Display};
 
 /// Exit code for a wrong command line or experiment file.
@@ -65,49 +63,38 @@ impl From<CliError> for CommandError {
     }
 }
 
+impl From<SettingError> for CliError {
+    fn from(error: SettingError) -> Self {
+        let code = match error.kind {
+            SettingErrorKind::File(kind) => code_of(kind),
+            SettingErrorKind::Scene => FAILURE,
+            _ => USAGE,
+        };
+        Self { code, message: error.to_string() }
+    }
+}
+
 impl From<FileError> for CliError {
     fn from(error: FileError) -> Self {
-        match error {
-            FileError::Io { .. } | FileError::Load(_) => Self::failure(error),
-            _ => Self::usage(error),
-        }
+        Self { code: code_of(error.kind), message: error.to_string() }
     }
 }
 
-impl From<SnapshotError> for CliError {
-    fn from(error: SnapshotError) -> Self {
-        Self::failure(error)
-    }
-}
-
-impl From<SweepError> for CliError {
-    fn from(error: SweepError) -> Self {
-        match error {
-            SweepError::File(error) => error.into(),
-            SweepError::Locked { .. } => Self { code: BUSY, message: error.to_string() },
-            SweepError::NotEmpty { .. }
-            | SweepError::Foreign { .. }
-            | SweepError::Occupied { .. }
-            | SweepError::Manifest(ManifestError::NoManifest { .. }) => Self::usage(error),
-            _ => Self::failure(error),
-        }
-    }
-}
-
-impl From<ManifestError> for CliError {
-    fn from(error: ManifestError) -> Self {
-        match error {
-            ManifestError::NoManifest { .. } => Self::usage(error),
-            _ => Self::failure(error),
-        }
+/// Returns the exit code for a file that cannot be used.
+const fn code_of(kind: FileErrorKind) -> u8 {
+    match kind {
+        FileErrorKind::Locked => BUSY,
+        // The user can choose another folder.
+        FileErrorKind::Occupied => USAGE,
+        _ => FAILURE,
     }
 }
 
 impl From<StudyError> for CliError {
     fn from(error: StudyError) -> Self {
         match error {
+            StudyError::Setting(error) => error.into(),
             StudyError::File(error) => error.into(),
-            StudyError::Files(error) => error.into(),
             _ => Self::usage(error),
         }
     }

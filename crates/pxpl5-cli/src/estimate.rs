@@ -16,10 +16,10 @@
 //! A walk needs `BASE + TEXEL 6 face_texels^2 + FRAME frames + WALKED primitives` bytes and `FACE_S 6 face_texels^2 +
 //! FRAME_S frames primitives` seconds.
 //!
-//! The constants are measured: peak memory and processor time of the runs in the tests below, rounded up.
+//! The constants come from measured runs, which the tests below repeat: peak memory and processor time, rounded up.
 
-use pxpl5::arp::Plan as WalkPlan;
-pub(crate) use pxpl5::lab::estimate::{Estimate, Study, Work};
+use pxpl5::arp::WalkPlan;
+pub(crate) use pxpl5::lab::estimate::{Estimate, RunWork, Study};
 use pxpl5::scene::Scene;
 use pxpl5::volume::{RendererKind, VolumeSettings};
 
@@ -50,11 +50,12 @@ pub(crate) struct WalkWork {
 const BASE: f64 = 15e6;
 /// Memory in bytes of a primitive, including its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
-/// Memory in bytes of a pixel in the buffer of one slice: three colour channels and one stencil bit.
+/// Memory in bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one
+/// stencil bit.
 const TARGET: f64 = 3.125;
 /// Memory in bytes of a pixel that a surface covers, including spare capacity of its list.
 const SAMPLE: f64 = 12.0;
-/// Estimated number of pixels in each column of a slice that surfaces touch.
+/// Estimated number of pixels that surfaces touch in each column of a slice.
 const ROWS: f64 = 2.0;
 /// Estimated number of further pixels that surfaces touch, over all slices together, in units of one whole picture.
 const AREAS: f64 = 2.0;
@@ -62,7 +63,7 @@ const AREAS: f64 = 2.0;
 const SLICE_S: f64 = 30e-9;
 /// Seconds to process one covered pixel.
 const DRAWN_S: f64 = 100e-9;
-/// Seconds to pack eight pixels of a slice into a byte, and to read it.
+/// Seconds to pack eight pixels of a slice into a byte, and to read this byte.
 const WORD_S: f64 = 1e-9;
 
 /// Factor on the time if simulated renderers of Pixel-Planes 5 draw the volume.
@@ -208,9 +209,9 @@ mod tests {
 
     /// Compares the estimates with volumes that were not used to fit the constants.
     ///
-    /// The bits of dark slices are reserved and not written. An estimate may therefore exceed the measured memory by the
-    /// bits of all slices. The bounds of time are wider than above, because the profile `dist` is faster than the builds of
-    /// [`VOLUMES`].
+    /// The bits of dark slices are reserved and not written. An estimate may therefore exceed the measured memory by
+    /// the bits of all slices. The bounds of time are wider than above, because the profile `dist` is faster than the
+    /// builds of [`VOLUMES`].
     #[test]
     fn estimates_hold_for_volumes_to_which_nothing_was_fitted() {
         for (work, megabytes, seconds) in HELD_OUT {

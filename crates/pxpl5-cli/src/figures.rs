@@ -7,9 +7,10 @@ use crate::output::OutputFile;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::Level;
-use pxpl5::arp::figures::Row;
-use pxpl5::figures::{Bench, FIGURES, FigureFamily, FigureRow, Figures, markdown, mean_error_percent, run_all_with};
+use pxpl5::figures::{Basis, Bench, FIGURES, FigureRow, Figures, markdown, mean_error_percent, run_all_with};
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
+use pxpl5_sim::figures::column::range;
+use pxpl5_sim::figures::significant;
 use serde_json::json;
 use std::fmt::Write;
 use std::fs;
@@ -83,7 +84,7 @@ fn chosen(numbers: &[String]) -> Result<(), CliError> {
     print(HEADER)?;
     for figure in figures {
         let measured = bench.measure(figure.id).map_err(CliError::failure)?;
-        print(&row_text(&FigureRow::new(figure, measured)))?;
+        print(&row_text(&figure.row(measured)))?;
     }
     Ok(())
 }
@@ -104,7 +105,7 @@ pub(crate) fn fresh(path: &Path, document: &str, subcommand: &str) -> Result<(),
 
 fn json_text(figures: &Figures) -> String {
     let object = json!({
-        "schema": "pxpl5-figures/1",
+        "schema": "pxpl5-figures/2",
         "mean_error_percent_of_free_checks": mean_error_percent(&figures.rows),
         "figures": figures.rows,
         "figures_with_times_of_code": figures.of_code,
@@ -116,65 +117,70 @@ fn json_text(figures: &Figures) -> String {
 }
 
 fn text(figures: &Figures) -> String {
-    let mut text = own(&figures.rows);
-    let _ = writeln!(text, "\nmean absolute error of the free checks: {:.1} %", mean_error_percent(&figures.rows));
+    let mut text = rows_text(&figures.rows);
+    let _ = writeln!(text, "mean absolute error of the free checks: {:.1} %", mean_error_percent(&figures.rows));
     for group in &figures.groups {
-        let _ = write!(text, "\n{}\n{}", group.title, own(&group.rows));
+        let _ = write!(text, "\n{}\n{}", group.title, rows_text(&group.rows));
     }
-    figures.families.iter().for_each(|family| text.push_str(&of_family(family)));
+    for family in &figures.families {
+        let _ = write!(text, "\n{} ({})\n{}", family.title, family.document, rows_text(&family.rows));
+    }
     text
 }
 
-/// Formats the rows of a family of figures (papers about another system) below its title.
-fn of_family(family: &FigureFamily) -> String {
-    format!("\n{} ({})\n{}", family.title, family.document, family_rows(&family.rows))
-}
+/// Column headings of a table of figures.
+const HEADER: &str =
+    "#           published    simulated  unit             error  interval               provenance what\n";
 
-/// Formats the rows of a family of figures (papers about another system), with the number of misses.
-pub(crate) fn family_rows(rows: &[Row]) -> String {
-    let mut text = format!(
-        "{:<3} {:<7} {:>10} {:>10}  {:<7} {:>8}  {:<34} {}\n",
-        "", "#", "published", "simulated", "unit", "error", "provenance", "what"
-    );
-    // Shapes without a published number show "-".
-    for row in rows {
-        let error = row.error_percent().map_or_else(String::new, |error| format!("{error:+.1}%"));
-        let published = if row.published.is_nan() { "-".to_owned() } else { format!("{:.2}", row.published) };
-        let miss = if row.is_met { "" } else { "miss: " };
-        let _ = writeln!(
-            text,
-            "{:<3} {:<7} {published:>10} {:>10.2}  {:<7} {error:>8}  {:<34} {miss}{}",
-            row.experiment,
-            row.id,
-            row.ours,
-            row.unit,
-            row.provenance.text(),
-            row.statement
-        );
-    }
+/// Formats rows as a table, and counts those that are missed.
+pub(crate) fn rows_text(rows: &[FigureRow]) -> String {
     let missed = rows.iter().filter(|row| !row.is_met).count();
-    let _ = writeln!(text, "{} rows, {missed} missed", rows.len());
-    text
+    let lines: String = rows.iter().map(row_text).collect();
+    format!("{HEADER}{lines}{} rows, {missed} missed\n", rows.len())
 }
 
-/// Column headings of the main table.
-const HEADER: &str = "#     published  simulated  unit             error  interval               provenance what\n";
-
-/// Formats the rows of the figures about Pixel-Planes 5.
-fn own(rows: &[FigureRow]) -> String {
-    rows.iter().fold(HEADER.to_owned(), |text, row| text + &row_text(row))
+/// Formats a row of a table of figures. Rows without a published number show "-".
+fn row_text(row: &FigureRow) -> String {
+    let published = if row.published.is_nan() { "-".to_owned() } else { significant(row.published, DIGITS) };
+    let error = row.error_percent.map_or_else(String::new, |error| format!("{error:+.1}%"));
+    let interval = row.interval.map_or_else(String::new, range);
+    let scene = row.scene.as_ref().map_or_else(String::new, |scene| format!(" ({scene})"));
+    // An experiment is either described in words or has a name such as E1.
+    let name = if row.experiment.contains(' ') { "" } else { row.experiment };
+    format!(
+        "{:<10} {published:>10} {:>12}  {:<13} {error:>8}  {interval:<22} {:<10} {}{}{scene}\n",
+        format!("{name} {}", row.id).trim_start(),
+        significant(row.simulated, DIGITS),
+        row.unit,
+        provenance(row.basis),
+        if row.is_met { "" } else { "miss: " },
+        row.statement
+    )
 }
 
-/// Width of the chart in millimetres: the text of a page.
+/// Returns the name of a row's provenance in one word.
+const fn provenance(basis: Basis) -> &'static str {
+    match basis {
+        Basis::Interpretation => "interval",
+        Basis::Shape => "shape",
+        _ => basis.name(),
+    }
+}
+
+/// Number of significant digits of values in a table of figures.
+const DIGITS: i32 = 6;
+
+/// Width of the chart in millimetres, which is the width of the text on a page.
 const CHART_MM: f64 = 165.0;
 
-/// Returns a chart of the errors of all rows, in percent of the published values. The intervals are relative too.
+/// Returns a chart of the errors of all rows, in percent of the published values. The intervals are also in percent of
+/// the published values.
 fn chart(rows: &[FigureRow]) -> Chart {
     let series = |name: &str, is_free: bool| {
         // Each row keeps the position of its number, so that the two series share the axis.
-        let chosen = rows.iter().enumerate().filter(|(_, row)| (row.provenance == "free") == is_free);
+        let chosen = rows.iter().enumerate().filter(|(_, row)| (row.basis == Basis::Free) == is_free);
         let points = chosen.map(|(place, row)| ChartPoint {
-            at: (place as f64, row.error_percent),
+            at: (place as f64, row.error_percent.unwrap_or(f64::NAN)),
             interval: row.interval.map_or((f64::NAN, f64::NAN), |ends| relative(ends, row.published)),
             is_hollow: !is_free,
         });
@@ -199,44 +205,17 @@ fn relative([low, high]: [f64; 2], published: f64) -> (f64, f64) {
     (percent(low), percent(high))
 }
 
-/// Formats a row of the main table.
-fn row_text(row: &FigureRow) -> String {
-    let interval = row.interval.map_or(String::new(), |[low, high]| format!("{low:.2} to {high:.2}"));
-    let miss = if row.misses() { "miss: " } else { "" };
-    format!(
-        "{:<4} {:>10.2} {:>10.2}  {:<13} {:>+7.1}%  {interval:<22} {:<10} {miss}{}\n",
-        row.id, row.published, row.simulated, row.unit, row.error_percent, row.provenance, row.statement
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn row(id: &'static str, provenance: &'static str, interval: Option<[f64; 2]>) -> FigureRow {
-        FigureRow {
-            id,
-            published: 50.0,
-            simulated: 51.0,
-            unit: "ms",
-            error_percent: 2.0,
-            analytic: None,
-            interval,
-            provenance,
-            spread: None,
-            fitted: "",
-            source: String::new(),
-            statement: "",
-            experiment: "",
-            cause: "",
-            details: Vec::new(),
-            unprinted: None,
-        }
+    fn row(id: &'static str, basis: Basis, interval: Option<[f64; 2]>) -> FigureRow {
+        FigureRow { basis, interval, ..FigureRow::new(id, "", "ms", [50.0, 51.0], [49.0, 51.0]) }
     }
 
     #[test]
     fn the_chart_has_each_row_once_with_its_interval_in_percent() {
-        let chart = chart(&[row("1", "free", Some([45.0, 60.0])), row("2b", "rule", None)]);
+        let chart = chart(&[row("1", Basis::Free, Some([45.0, 60.0])), row("2b", Basis::Rule("chosen"), None)]);
         assert_eq!(chart.across, AxisScale::Names(vec!["1".to_owned(), "2b".to_owned()]));
         let [free, chosen] = [0, 1].map(|series| &chart.series[series].points);
         assert_eq!((free.len(), free[0].at, free[0].interval), (1, (0.0, 2.0), (-10.0, 20.0)));

@@ -2,7 +2,7 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::{count_of, whole};
 use crate::output::OutputFile;
 use crate::scenes;
@@ -64,7 +64,7 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
     let file = OutputFile::open(&args.out, "--out")?;
     // The run ends one field after the film, because the last picture is final only then.
     let (scene, fields) = (scenes::load(&plan, args.quiet)?, args.from + args.length + 1);
-    args.budget.admit(&Work { fields, ..Work::of(&plan, &scene, true) })?;
+    args.budget.admit(&RunWork { fields, ..RunWork::of(&plan, &scene, true) })?;
     warn(too_heavy(&plan, &scene, fields).as_slice(), args.quiet);
     let experiment = plan.experiment(scene).pixels(Pixels::Lazy).fields(fields);
     // The settings are stored in the PNG, so that the film can be reproduced.

@@ -114,7 +114,7 @@ impl Warnings {
 ///
 /// # Errors
 ///
-/// Returns the message to print before a non-zero exit.
+/// Returns the message that the command prints before it ends with an exit code above 0.
 pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
         Command::Asm { file, base, output, warnings } => asm(&file, base, output.as_deref(), &warnings),
@@ -153,7 +153,8 @@ fn text_of(file: &Path, bytes: Vec<u8>) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// Assembles a file. Returns the program and its source text. Comments in the source may have any text encoding.
+/// Assembles a file. Returns the assembled program and the source text. Comments in the source text may have any text
+/// encoding.
 fn assembled(file: &Path, base: u32) -> Result<(Program, String), String> {
     let source = String::from_utf8_lossy(&read(file)?).into_owned();
     let program = assemble(&file.display().to_string(), base, &source).map_err(|e| e.to_string())?;
@@ -330,7 +331,7 @@ mod tests {
         RunOptions { entry: None, stop: None, budget: 100, memory: 0x2000, show: Vec::new(), json: false, quiet: false }
     }
 
-    /// A program that stores the number 7 in the second word of a table behind its code.
+    /// A program that stores the number 7 in the second word of a table, which follows the program's code.
     const STORE: &str = "start: mov 7, r5\nmov table, r6\nst.l r5, 4(r6)\nend: nop\ntable: .long 1, 2, 3";
 
     #[test]

@@ -109,7 +109,7 @@ fn date_of(days: u64) -> String {
     format!("{:04}-{month:02}-{day:02}", year + u64::from(month <= 2))
 }
 
-/// Returns one chart point for each choice of pixels whose speed was measured.
+/// Returns one chart point for each value of the setting `pixels` with which a speed was measured.
 fn points(report: &LevelReport) -> Vec<SpeedAndError> {
     let Some(mean_error_percent) = report.published_error_percent else { return Vec::new() };
     let speeds = report.speeds.iter().filter_map(|speed| {

@@ -26,7 +26,6 @@ mod estimate;
 mod figures;
 mod film;
 mod i860;
-mod leaves;
 mod levels;
 mod limit;
 mod machines;
@@ -224,7 +223,7 @@ mod tests {
         lines.map(words).collect()
     }
 
-    /// Returns the words of a command line, without the explanation behind it.
+    /// Returns the words of a command line, without the explanation that follows the command.
     fn words(line: &str) -> Vec<String> {
         let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
         // Help texts separate an explanation by three spaces.

@@ -2,7 +2,7 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::{count_of, were, whole};
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::scenes;
@@ -107,7 +107,8 @@ fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     print(&if args.json { over_json(&query, &plan, &limit)? } else { over_text(&query, &plan, &limit) })
 }
 
-/// Estimated number of values that such a search tries: five values, and two bisections of 64 steps.
+/// Estimated number of values that a search over a setting tries: five values, and the values of two bisections. The
+/// range of a real setting has 64 steps.
 const VALUES: u64 = 12;
 
 /// Estimated maximum number of scene sizes that a search simulates: twice the bisection steps of the whole range.
@@ -136,7 +137,7 @@ impl LimitArgs {
         };
         // Closed forms cost almost nothing, so only levels with events are checked against the budget.
         if query.level != Level::Analytic {
-            let size = Work { fields, ..Work::of(&plan, &*scenes::load(&plan, false)?, false) };
+            let size = RunWork { fields, ..RunWork::of(&plan, &*scenes::load(&plan, false)?, false) };
             self.budget.admit_all([size; SIZES], 1)?;
         }
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
@@ -180,7 +181,7 @@ impl LimitArgs {
         last.set_text(&format!("{key}={}", values.text(values.last())), "--over")?;
         let plan = last.resolve()?;
         warn(&first.warnings(), self.quiet);
-        let size = Work { fields, ..Work::of(&plan, &*scenes::load(&plan, false)?, false) };
+        let size = RunWork { fields, ..RunWork::of(&plan, &*scenes::load(&plan, false)?, false) };
         self.budget.admit_all([size; VALUES as usize], 1)?;
         let goal = self.goal()?.unwrap_or(first.limit.goal);
         Ok((OverQuery { file, key: key.to_owned(), values, goal }, plan))
@@ -191,8 +192,8 @@ impl LimitArgs {
         TestScene::ALL.into_iter().find(|scene| self.scene.as_deref() == Some(scene.name()))
     }
 
-    /// Returns the settings shared by all scene sizes. Their scene is a placeholder with one triangle, unless `--scene`
-    /// names a model.
+    /// Returns the settings shared by all scene sizes. The scene in these settings is a placeholder with one triangle,
+    /// unless `--scene` names a model.
     fn file(&self) -> Result<ExperimentFile, CliError> {
         let mut file = ExperimentFile::with(registry());
         file.set("pipeline", "slats", "--pipeline")?;

@@ -5,7 +5,7 @@ use crate::numbers::count_of;
 use crate::options::registry;
 use crate::terminal::{print, progress};
 use clap::Args;
-use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter, Preset, Suitability, suitability, tracking_parameters};
+use pxpl5::{MachineConfig, PRESETS, Parameter, Preset, SettingError, Suitability, suitability, tracking_parameters};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -48,7 +48,7 @@ struct Listed {
 }
 
 impl Listed {
-    fn new(preset: &'static Preset) -> Result<Self, ConfigError> {
+    fn new(preset: &'static Preset) -> Result<Self, SettingError> {
         let machine = MachineConfig::preset(preset.name)?;
         let pipelines = suitability(&registry(), &machine);
         Ok(Self { preset, machine, pipelines })

@@ -35,3 +35,8 @@ pub(crate) fn confidence(text: &str) -> Result<f64, String> {
     let found = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share < 1.0);
     found.ok_or_else(|| format!("expected a number between 0 and 1, such as 0.95, found {text}"))
 }
+
+/// Formats a TOML value in the syntax of `--set`.
+pub(crate) fn plain(value: &toml::Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}

@@ -48,8 +48,8 @@ impl OutputFolder {
     ///
     /// # Errors
     ///
-    /// Fails when the path is not a folder, or cannot be created or written. Fails when the folder holds a sweep, whose
-    /// rows may be the work of hours.
+    /// Fails when the path is not a folder, or cannot be created or written. Fails when the folder holds a sweep,
+    /// because a new run would delete rows that may have taken hours to compute.
     pub(crate) fn of_run(path: &Path, command: &str) -> Result<Self, CliError> {
         before(path)?;
         Self::begin(path, Place::folder("--out"), Listing::Own(Manifest::new(command)))
@@ -73,8 +73,8 @@ impl OutputFolder {
         Self::begin(path, Place::folder(option), added_to(path, results))
     }
 
-    /// Checks that the folder is writable, before hours of simulation. Folders created for this check are then removed,
-    /// so that an interrupted run leaves no empty folder.
+    /// Checks that the folder is writable before the simulation begins, because a simulation may take hours. Folders
+    /// created for this check are then removed, so that an interrupted run leaves no empty folder.
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
         let batch = Batch::new(place.clone());
         let mut folder = Self { path: path.to_path_buf(), place, made: Vec::new(), batch, listing };
@@ -239,7 +239,7 @@ pub(crate) struct OutputFile {
 }
 
 impl OutputFile {
-    /// Resolves the path given by an option. Checks that the path is writable, if this check leaves no trace.
+    /// Resolves the path given by an option. Checks that the path is writable, unless the path is a device or a pipe.
     ///
     /// # Errors
     ///
@@ -328,7 +328,7 @@ fn is_forbidden(c: char) -> bool {
 pub(crate) fn png(picture: &RgbImage, report: &Report) -> Result<Vec<u8>, CliError> {
     let mut chunks = origin(report);
     chunks.push(("complete", report.ends_complete.to_string()));
-    png_bytes(picture, &chunks).map_err(|error| CliError::failure(format!("a picture cannot be encoded: {error}")))
+    png_bytes(picture, &chunks).map_err(CliError::failure)
 }
 
 #[cfg(test)]

@@ -3,13 +3,14 @@
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::whole;
 use crate::settings::SettingArgs;
 use crate::terminal::print;
 use clap::Args;
+use pxpl5::Statistics;
 use pxpl5::rig::{PASSES, Rig};
-use pxpl5::tracking::rig::{Latency, Measurement, Side};
+use pxpl5::tracking::rig::{Measurement, Side};
 use pxpl5::{ExperimentFile, Plan};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -65,7 +66,7 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
     let fields = args.passes * FIELDS_OF_PASS;
-    args.budget.admit(&Work { fields, ..Work::of(&plan, &*plan.load_scene()?, true) })?;
+    args.budget.admit(&RunWork { fields, ..RunWork::of(&plan, &*plan.load_scene()?, true) })?;
     let measured = rig.measure(&plan.machine, plan.pipeline.clone()).map_err(CliError::failure)?;
     // The result is printed even if both sides disagree.
     print(&if args.json { json_text(&plan, &rig, &measured) } else { text(&plan, &rig, &measured) })?;
@@ -86,7 +87,7 @@ fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
 }
 
 /// Name of a latency, with the function that reads it from the outside or inside measurement.
-type Column = (&'static str, fn(&Side) -> &Latency);
+type Column = (&'static str, fn(&Side) -> &Statistics);
 
 fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
     let Measurement { outside, inside, .. } = measured;
@@ -123,9 +124,9 @@ Inside, tracking: from the time stamp of the report that shows the low point to 
 Inside, rendering: from the start of the frame to the time at which the pipeline counts the frame as shown.
 ";
 
-fn cell(latency: &Latency) -> String {
-    let Latency { mean_s, deviation_s, least_s, greatest_s, .. } = latency;
-    format!("{:.2}, {:.2} ({:.2} to {:.2})", mean_s * 1e3, deviation_s * 1e3, least_s * 1e3, greatest_s * 1e3)
+fn cell(latency: &Statistics) -> String {
+    let Statistics { mean, sd, min, max, .. } = latency;
+    format!("{:.2}, {:.2} ({:.2} to {:.2})", mean * 1e3, sd * 1e3, min * 1e3, max * 1e3)
 }
 
 fn verdict(measured: &Measurement) -> String {
@@ -166,7 +167,7 @@ fn side(side: &Side) -> Value {
     json!({"tracking": latency(&side.tracking), "rendering": latency(&side.rendering), "total": latency(&side.total)})
 }
 
-fn latency(latency: &Latency) -> Value {
-    let Latency { n, mean_s, deviation_s, least_s, greatest_s } = latency;
-    json!({"n": n, "mean": mean_s * 1e3, "sd": deviation_s * 1e3, "min": least_s * 1e3, "max": greatest_s * 1e3})
+fn latency(latency: &Statistics) -> Value {
+    let Statistics { n, mean, sd, min, max } = latency;
+    json!({"n": n, "mean": mean * 1e3, "sd": sd * 1e3, "min": min * 1e3, "max": max * 1e3})
 }

@@ -143,8 +143,8 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
     Ok(ResultRows { kind: RowsKind::Comparison, rows: rows.collect(), about })
 }
 
-/// Adds every value that is no object or list to a row, under its path. An object in a list is named by its `cause` or
-/// `kind`.
+/// Adds all numbers, texts and other plain values within `value` to a row. The name of each value is its JSON path. In
+/// this path, an object of a list has the name of its `cause` or `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
         // A row without a bootstrap keeps the column of rows.csv.
@@ -164,8 +164,8 @@ fn flatten(path: &str, value: Value, row: &mut Row) {
     }
 }
 
-/// Returns the name of an object in a list. If its `cause` is null, the object stands for the interaction of all
-/// causes.
+/// Returns the name of an object in a list, which is its `cause` or `kind`. If the `cause` is null, the name is
+/// `interaction`, because the object stands for the interaction of all causes.
 fn name_of(value: &Value) -> Option<String> {
     let object = value.as_object()?;
     match object.get("cause").or_else(|| object.get("kind"))? {
@@ -175,7 +175,7 @@ fn name_of(value: &Value) -> Option<String> {
     }
 }
 
-/// Returns the current name of a comparison column that has been renamed, or `None`.
+/// Returns the current name of a comparison column that has been renamed. Returns `None` for all other names.
 pub(crate) fn renamed(old: &str) -> Option<String> {
     let new = match old {
         "updates_hz" => "updates_hz.mean",

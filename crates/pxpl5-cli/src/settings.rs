@@ -52,7 +52,7 @@ pub(crate) struct SettingArgs {
     columns: Option<String>,
     /// Distance from the eye, in metres, at which pixel errors are evaluated; default: the distance of the scene's
     /// content.
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, alias = "judge-at", value_name = "METRES")]
     evaluate_at: Option<f64>,
     /// Tracker of the head: optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal;
     /// default optical.

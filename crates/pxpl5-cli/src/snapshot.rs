@@ -2,7 +2,7 @@
 
 use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::whole;
 use crate::options::registry;
 use crate::output::OutputFile;
@@ -45,7 +45,7 @@ pub(crate) struct How<'a> {
     pub(crate) quiet: bool,
 }
 
-/// The outcome of a run. If the run was too short for statistics, the error is stored too.
+/// The outcome of a run. If the run was too short for statistics, the outcome has the error as well.
 #[derive(Debug)]
 pub(crate) struct Simulated {
     pub(crate) outcome: Outcome,
@@ -112,7 +112,8 @@ impl SnapshotArgs {
         Ok(Snapshot::read(text, &name)?)
     }
 
-    /// Simulates the plan. Saves or restores a checkpoint at its field, if an option requests this.
+    /// Simulates the plan. If an option requests a checkpoint, the checkpoint is saved or restored at the field that
+    /// the option or the checkpoint states.
     ///
     /// # Errors
     ///
@@ -122,7 +123,7 @@ impl SnapshotArgs {
         // The text is written after the run, so that an interrupted run leaves no file.
         let mut saved = None;
         let scene = scenes::load(plan, how.quiet)?;
-        how.budget.admit(&Work::of(plan, &scene, how.keep == Keep::Everything))?;
+        how.budget.admit(&RunWork::of(plan, &scene, how.keep == Keep::Everything))?;
         warn(too_heavy(plan, &scene, plan.fields).as_slice(), how.quiet);
         let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
         let experiment = plan.experiment(scene.clone()).host(host).keep(how.keep);
@@ -171,8 +172,8 @@ impl SnapshotArgs {
         OutputFile::open(path, "--save").map(Some)
     }
 
-    /// Returns the checkpoint that `--restore` names, with its file name. Checks that its field lies within
-    /// the run.
+    /// Returns the checkpoint that `--restore` names, with its file name. Checks that the field of the checkpoint lies
+    /// within the run.
     fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
         let Some(path) = &self.restore else { return Ok(None) };
         let snapshot = self.read(path)?;

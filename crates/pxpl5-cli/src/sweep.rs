@@ -9,7 +9,7 @@ use crate::slurm::{self, Jobs, quoted};
 use crate::terminal::{print, print_error, progress, warn};
 use clap::Args;
 use pxpl5::ExperimentFile;
-use pxpl5::sweep::{ROWS_FILE, RunOptions, Shard, Store, Sweep};
+use pxpl5::sweep::{Header, ROWS_FILE, RunOptions, Shard, Store, Sweep, Swept};
 use std::path::{Path, PathBuf};
 
 /// Run an experiment at every point of a parameter space.
@@ -23,18 +23,8 @@ use std::path::{Path, PathBuf};
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats-1 --shard 1/8   one of eight shares; see `pxpl5 merge`
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats --slurm jobs    writes jobs for Slurm; start them with bash jobs/submit.sh")]
 pub(crate) struct SweepArgs {
-    /// Experiment file with a table `sweep`.
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
-    /// Folder for rows.jsonl, times.jsonl and results.csv.
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-    /// Keep the finished points and run only the others.
-    #[arg(long)]
-    resume: bool,
-    /// Run only share I of N disjoint shares of the points.
-    #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
-    shard: Shard,
+    #[command(flatten)]
+    folder: SweepFolderArgs,
     /// Run nothing, but write scripts into DIR that submit the sweep to Slurm. They submit an array of tasks with
     /// estimated time and memory, and a job that joins their rows in --out.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["resume", "shard"])]
@@ -45,9 +35,6 @@ pub(crate) struct SweepArgs {
     /// Number of points simulated in parallel; default: one for each core, but only one in a Slurm task.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
-    /// Set any key of the experiment file for all points; may be repeated.
-    #[arg(long = "set", value_name = "PATH=VALUE")]
-    sets: Vec<String>,
     /// Refuse a sweep that would take more memory than this, in MB of 10^6 bytes.
     #[arg(long, value_name = "MB", value_parser = whole::<u64>(1, 1_000_000_000))]
     max_memory: Option<u64>,
@@ -55,24 +42,44 @@ pub(crate) struct SweepArgs {
     /// interrupted and resumed.
     #[arg(long, value_name = "S", value_parser = whole::<u64>(1, 1_000_000_000))]
     max_seconds: Option<u64>,
-    /// Print nothing but errors.
-    #[arg(long, short)]
-    quiet: bool,
 }
 
-pub(crate) fn shard(text: &str) -> Result<Shard, String> {
+/// The file of a sweep, and the folder that stores its rows.
+#[derive(Args, Debug)]
+pub(crate) struct SweepFolderArgs {
+    /// File of settings with a table `sweep`.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// Folder for rows.jsonl, times.jsonl and results.csv.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Keep the finished points and run only the others.
+    #[arg(long)]
+    resume: bool,
+    /// Run only share I of N disjoint shares of the points.
+    #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
+    pub(crate) shard: Shard,
+    /// Set any key of the file for all points; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) sets: Vec<String>,
+    /// Print nothing but errors.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
     let parts = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
     let shard = parts.and_then(|(number, of)| Shard::new(number, of));
     shard.ok_or_else(|| format!("expected a share such as 2/8, from 1/8 to 8/8, found `{text}`"))
 }
 
 pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
-    let mut file = ExperimentFile::with(registry()).and_load(&args.file)?;
-    for assignment in &args.sets {
+    let mut file = ExperimentFile::with(registry()).and_load(&args.folder.file)?;
+    for assignment in &args.folder.sets {
         file.set_text(assignment, "--set")?;
     }
     let sweep = Sweep::new(file)?;
-    warn(&supposed(&sweep), args.quiet);
+    warn(&supposed(&sweep), args.folder.quiet);
     // With --slurm nothing is simulated.
     if let Some(folder) = &args.slurm {
         return write_jobs(&args, &sweep, folder);
@@ -81,32 +88,78 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = args.threads.map_or(cores, |threads| threads as usize);
     args.admit(&sweep, threads)?;
-    // The store keeps finished rows, so that Ctrl-C loses only the points in progress.
-    let mut store = Store::open(&args.out, header, args.resume)?;
-    install_interrupt_handler(&args)?;
-    let total = args.shard.share_of(sweep.space().points());
-    let bar = progress(total, "points", args.quiet);
-    bar.set_position(store.finished(args.shard));
-    bar.reset_eta();
-    let options = RunOptions { shard: args.shard, threads };
-    pxpl5::sweep::run(&sweep, &mut store, options, |_| bar.inc(1))?;
-    bar.finish_and_clear();
-    // A sweep succeeds if at least one point could be simulated.
-    let failed = report_failures(&store, args.shard, total, "simulated")?;
-    report_rows_path(&args.out, total, args.quiet)?;
-    store.finish()?;
-    if failed >= total { Err(CliError::failure("no point could be simulated")) } else { Ok(()) }
+    args.folder.run(
+        &sweep,
+        header,
+        &SweepCommand { name: "sweep", verb: "simulated", parallel: threads, threads: args.threads },
+    )
+}
+
+/// Words and numbers in which the commands that sweep differ.
+#[derive(Debug)]
+pub(crate) struct SweepCommand {
+    /// Name of the command after `pxpl5`.
+    pub(crate) name: &'static str,
+    /// Participle for the work at a point, such as "simulated".
+    pub(crate) verb: &'static str,
+    /// Number of points in parallel.
+    pub(crate) parallel: usize,
+    /// Value of the option --threads.
+    pub(crate) threads: Option<u64>,
+}
+
+impl SweepFolderArgs {
+    /// Runs the missing points of a sweep and stores their rows. Ctrl-C ends the sweep, and prints the command that
+    /// continues it.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the folder cannot be used, and if no point can be simulated.
+    pub(crate) fn run(&self, sweep: &impl Swept, header: Header, command: &SweepCommand) -> Result<(), CliError> {
+        // The store keeps finished rows, so that Ctrl-C loses only the points in progress.
+        let mut store = Store::open(&self.out, header, self.resume)?;
+        install_interrupt_handler(self.again(command))?;
+        let total = self.shard.share_of(sweep.space().points());
+        let bar = progress(total, "points", self.quiet);
+        bar.set_position(store.finished(self.shard));
+        bar.reset_eta();
+        let options = RunOptions { shard: self.shard, threads: command.parallel };
+        pxpl5::sweep::run(sweep, &mut store, options, |_| bar.inc(1))?;
+        bar.finish_and_clear();
+        // A sweep succeeds if at least one point could be simulated.
+        let failed = report_failures(&store, self.shard, total, command.verb)?;
+        if !self.quiet {
+            print(&format!("{} in {}.\n", are(total, "point"), self.out.join(ROWS_FILE).display()))?;
+        }
+        store.finish()?;
+        if failed >= total { Err(CliError::failure(format!("no point could be {}", command.verb))) } else { Ok(()) }
+    }
+
+    /// Returns the command line that resumes this sweep.
+    fn again(&self, command: &SweepCommand) -> String {
+        let mut words = vec![format!("pxpl5 {}", command.name), quoted(&self.file.display().to_string())];
+        words.extend(["--out".to_owned(), quoted(&self.out.display().to_string())]);
+        // Only options that differ from their defaults are repeated.
+        if self.shard != Shard::ALL {
+            words.extend(["--shard".to_owned(), format!("{}/{}", self.shard.number(), self.shard.of())]);
+        }
+        words.extend(command.threads.map(|threads| format!("--threads {threads}")));
+        words.extend(self.sets.iter().map(|set| format!("--set {}", quoted(set))));
+        words.push("--resume".to_owned());
+        words.join(" ")
+    }
 }
 
 impl SweepArgs {
-    /// Returns an error if the estimate of a sweep, before its start, exceeds a given limit.
+    /// Returns an error if the estimated time or memory of a sweep exceeds a given limit. The check takes place before
+    /// the sweep starts.
     fn admit(&self, sweep: &Sweep, threads: usize) -> Result<(), CliError> {
         // The estimate of hundreds of points takes seconds, so a sweep without limits skips the estimate.
         if self.max_memory.is_none() && self.max_seconds.is_none() {
             return Ok(());
         }
         let all = slurm::estimate(sweep, threads);
-        let share = self.shard.share_of(sweep.space().points()) as f64 / sweep.space().points().max(1) as f64;
+        let share = self.folder.shard.share_of(sweep.space().points()) as f64 / sweep.space().points().max(1) as f64;
         let ours = Estimate { seconds: all.seconds * share, ..all };
         BudgetArgs::of(self.max_memory, self.max_seconds).admit_estimate(ours, "sweep fewer points")
     }
@@ -116,9 +169,10 @@ impl SweepArgs {
 fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliError> {
     sweep.header()?;
     let threads = args.threads.unwrap_or(1);
-    let jobs = Jobs { file: &args.file, sets: &args.sets, out: &args.out, tasks: args.tasks, threads };
+    let jobs =
+        Jobs { file: &args.folder.file, sets: &args.folder.sets, out: &args.folder.out, tasks: args.tasks, threads };
     let written = slurm::write(sweep, &jobs, folder)?;
-    if args.quiet { Ok(()) } else { print(&written.text()) }
+    if args.folder.quiet { Ok(()) } else { print(&written.text()) }
 }
 
 /// Returns the warnings about the experiments at the first and the last point of the sweep.
@@ -134,8 +188,7 @@ const INTERRUPTED: i32 = 130;
 
 /// Installs a handler that ends the sweep on Ctrl-C and prints the command to resume it. Rows of finished points are
 /// already in the file.
-fn install_interrupt_handler(args: &SweepArgs) -> Result<(), CliError> {
-    let again = again(args);
+fn install_interrupt_handler(again: String) -> Result<(), CliError> {
     let listening = ctrlc::set_handler(move || end_interrupted(&again));
     listening.map_err(|error| CliError::failure(format!("Ctrl-C cannot be handled: {error}")))
 }
@@ -145,23 +198,9 @@ fn end_interrupted(again: &str) {
     std::process::exit(INTERRUPTED);
 }
 
-/// Returns the command line that resumes this sweep.
-fn again(args: &SweepArgs) -> String {
-    let mut words = vec!["pxpl5 sweep".to_owned(), quoted(&args.file.display().to_string())];
-    words.extend(["--out".to_owned(), quoted(&args.out.display().to_string())]);
-    // Only options that differ from their defaults are repeated.
-    if args.shard != Shard::ALL {
-        words.extend(["--shard".to_owned(), format!("{}/{}", args.shard.number(), args.shard.of())]);
-    }
-    words.extend(args.threads.map(|threads| format!("--threads {threads}")));
-    words.extend(args.sets.iter().map(|set| format!("--set {}", quoted(set))));
-    words.push("--resume".to_owned());
-    words.join(" ")
-}
-
 /// Prints the number of failed points of a shard, and the error of the first failed point. Returns the number of failed
 /// points.
-pub(crate) fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
+fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
     if let Some(point) = store.failed(shard).next() {
         let error = store.row(point)?.and_then(|row| row.error).unwrap_or_default();
@@ -169,9 +208,4 @@ pub(crate) fn report_failures(store: &Store, shard: Shard, total: u64, done: &st
         print_error(&format!("pxpl5: {failed} of {all} could not be {done}; point {point}: {error}\n"));
     }
     Ok(failed)
-}
-
-/// Prints the number of points and the path of the file of result rows.
-pub(crate) fn report_rows_path(out: &Path, total: u64, quiet: bool) -> Result<(), CliError> {
-    if quiet { Ok(()) } else { print(&format!("{} in {}.\n", are(total, "point"), out.join(ROWS_FILE).display())) }
 }

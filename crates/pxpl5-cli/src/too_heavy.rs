@@ -1,6 +1,6 @@
 //! Warning before a run whose scene is too heavy: no picture will be shown in time.
 
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::count_of;
 use pxpl5::Plan;
 use pxpl5::scene::Scene;
@@ -11,10 +11,10 @@ use std::sync::Arc;
 const SHORT_RUN: u64 = 60;
 
 /// Returns a warning if a run of `fields` display fields is expected to show no picture after the warm-up. The
-/// pipeline's closed-form formula gives the prediction. Without such a formula, a run is too short if the processors
-/// cannot transform all primitives once.
+/// prediction comes from the closed form of the pipeline. Without a closed form, the function warns if the processors
+/// cannot transform all primitives once within the run.
 pub(crate) fn too_heavy(plan: &Plan, scene: &Arc<Scene>, fields: u64) -> Option<String> {
-    let work = Work::of(plan, scene, false);
+    let work = RunWork::of(plan, scene, false);
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     // A closed form predicts the first picture; it does not cover tracked heads.
     let expected = match entry.closed_form.filter(|_| plan.head.is_none()) {

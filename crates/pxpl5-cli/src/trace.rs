@@ -2,7 +2,7 @@
 
 use crate::budget::{BudgetArgs, EARLY_CHECK_FIELDS};
 use crate::error::CliError;
-use crate::estimate::Work;
+use crate::estimate::RunWork;
 use crate::numbers::count_of;
 use crate::output::OutputFile;
 use crate::scenes;
@@ -74,7 +74,7 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     let file = OutputFile::open(&args.out, "--out")?;
     let bar = progress(plan.fields, "fields", args.quiet);
     let scene = scenes::load(&plan, args.quiet)?;
-    args.budget.admit(&Work::of(&plan, &scene, true))?;
+    args.budget.admit(&RunWork::of(&plan, &scene, true))?;
     warn(too_heavy(&plan, &scene, plan.fields).as_slice(), args.quiet);
     // A trace needs every message, which a run does not record by default.
     let experiment = plan.experiment(scene).record_traffic(true);

@@ -7,12 +7,10 @@ mod look;
 mod run;
 mod settings;
 mod slices;
-mod space;
 mod sweep;
 
 use crate::error::CliError;
 use clap::{Args, Subcommand};
-use pxpl5::volume::VolumeError;
 
 /// Draw a scene as the 396 slices of a spinning volumetric display (SpatialGL on Perspecta, 2005).
 #[derive(Args, Debug)]
@@ -59,11 +57,5 @@ pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
         VolumeCommand::Compare(args) => compare::run(args),
         VolumeCommand::Sweep(args) => sweep::run(args),
         VolumeCommand::Figures(args) => figures::run(args),
-    }
-}
-
-impl From<VolumeError> for CliError {
-    fn from(error: VolumeError) -> Self {
-        if error.is_of_scene() { Self::failure(error) } else { Self::usage(error) }
     }
 }

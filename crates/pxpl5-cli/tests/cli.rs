@@ -242,9 +242,13 @@ fn a_flag_of_the_other_pipeline_is_refused() {
 fn unknown_names_are_refused_with_the_nearest() {
     refused(&with(&SLATS, &["--machine", "slat"]), 2, &["--machine", "`slat`", "`slats`"]);
     refused(&with(&SLATS, &["--set", "gp.triangel_ns=1"]), 2, &["--set", "`gp.triangle_ns`"]);
-    refused(&with(&SLATS, &["--copy", "splitt"]), 2, &["--copy", "whole, split", "nearest is split"]);
-    refused(&["run", "--pipeline", "slat", "--scene", "mig"], 2, &["rendering-control, slats", "nearest is slats"]);
-    refused(&["run", "--pipeline", "slats", "--scene", "mgi"], 2, &["\"mgi\"", "nearest is \"mig\""]);
+    refused(&with(&SLATS, &["--copy", "splitt"]), 2, &["--copy", "whole, split", "did you mean `split`?"]);
+    refused(
+        &["run", "--pipeline", "slat", "--scene", "mig"],
+        2,
+        &["rendering-control, slats", "did you mean `slats`?"],
+    );
+    refused(&["run", "--pipeline", "slats", "--scene", "mgi"], 2, &["`mgi`", "did you mean `mig`?"]);
     refused(&["run", "--pipeline", "slats"], 2, &["scene is missing", "pxpl5 scenes"]);
     refused(&["run", "--scene", "mig"], 2, &["pipeline is missing"]);
     refused(&["rum"], 2, &["rum", "run"]);

@@ -36,7 +36,7 @@ fn folder(name: &str) -> PathBuf {
 #[test]
 fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up() {
     let arguments = ["--head", "pan:200", "--scene", "full-screen:2", "--fields", "30", "--seeds", "2", "--no-limits"];
-    let json = json(&compare(&[arguments.as_slice(), &["--json"]].concat()));
+    let json = json(&compare(&[arguments.as_slice(), &["--causes", "--predictors", "--json"]].concat()));
     assert_eq!(json["seeds"].as_array().map(Vec::len), Some(2));
     let names: Vec<_> = rows(&json).iter().filter_map(|row| row["pipeline"].as_str()).collect();
     for name in ["rendering-control", "slats", "vdrt", "frameless", "ideal", "jitp-field", "jitp-scanline-racing"] {
@@ -56,6 +56,37 @@ fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up
         assert!(row["updates_hz"]["mean"].as_f64() > Some(0.0), "{row}");
         assert_eq!(row["predictors"].as_array().map(Vec::len), Some(4), "{row}");
     }
+}
+
+/// Causes and predictors cost time, so a comparison leaves them out unless it is asked. They change no other number.
+#[test]
+fn causes_and_predictors_are_added_on_demand_and_change_nothing_else() {
+    let shared =
+        ["--scene", "full-screen:2", "--fields", "30", "--seeds", "2", "--only", "slats,vdrt,jitp-field,ideal"];
+    let given = |more: &[&str]| {
+        let mut all = json(&compare(&[shared.as_slice(), more, &["--json"]].concat()));
+        let rows = all["pipelines"].as_array_mut().expect("a list");
+        let lists = rows.iter_mut().map(|row| {
+            row["host_seconds"] = Value::Null;
+            ["causes", "predictors"].map(|key| row[key].take().as_array().map_or(0, Vec::len))
+        });
+        let lists: Vec<[usize; 2]> = lists.collect();
+        (lists, all)
+    };
+    let (none, plain) = given(&[]);
+    assert_eq!(none, [[0, 0]; 4]);
+    // Five causes and their interaction; four predictors, except for the reference.
+    for (more, expected) in
+        [(&["--causes"][..], [[6, 0]; 4]), (&["--causes", "--predictors"], [[6, 4], [6, 4], [6, 4], [6, 0]])]
+    {
+        let (lists, other) = given(more);
+        assert_eq!(lists, expected, "{more:?}");
+        assert_eq!(other, plain, "{more:?}");
+    }
+    let table = |more: &[&str]| String::from_utf8(compare(&[shared.as_slice(), more].concat()).stdout).expect("text");
+    let [plain, whole] = [table(&[]), table(&["--causes", "--predictors"])];
+    assert!(!plain.contains("error by cause") && whole.contains("error by cause"), "{plain}");
+    assert!(!plain.contains("best with  triangles") && whole.contains("best with  triangles"), "{plain}");
 }
 
 #[test]

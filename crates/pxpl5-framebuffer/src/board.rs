@@ -4,9 +4,9 @@ use crate::buffer::{Buffer, Regions};
 use crate::region::RegionWrite;
 use crate::seen::{BufferContents, ScannedField};
 use crate::{
-    Faults, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferFault, FrameBufferOutput,
-    FrameBufferStats, Video,
+    Faults, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, FrameBufferStats, Video,
 };
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Context, Span, Time};
 use pxpl5_wire::{NodeId, PeriodNumber, RegionPixels};
 use std::collections::VecDeque;
@@ -24,7 +24,8 @@ pub struct FrameBuffer {
     displayed: u8,
     /// Field that is being scanned, or `None` before the first retrace.
     scanning: Option<PeriodNumber>,
-    /// Swap requests that have not taken effect. Each entry has the arrival time and the requested buffer.
+    /// Swap requests that have not taken effect. Each entry has the arrival time of a request and the number of the
+    /// requested buffer.
     swaps: Vec<(Time, u8)>,
     seen: VecDeque<ScannedField>,
     stats: FrameBufferStats,
@@ -36,12 +37,12 @@ impl FrameBuffer {
     ///
     /// # Errors
     ///
-    /// Returns a [`FrameBufferConfigError`] with the name of the parameter that is out of range.
-    pub fn new(config: FrameBufferConfig, node: NodeId) -> Result<Self, FrameBufferConfigError> {
+    /// Returns a [`SettingError`] with the name of the parameter that is out of range.
+    pub fn new(config: FrameBufferConfig, node: NodeId) -> Result<Self, SettingError> {
         config.check()?;
         Ok(Self {
             node,
-            video: Video::new(config.video)?,
+            video: config.video.video()?,
             word: Span::from_ns(config.port.word_ns),
             fields_kept: config.fields_kept as usize,
             buffers: [Buffer::new(), Buffer::new()],
@@ -214,7 +215,7 @@ impl FrameBuffer {
 
     fn swap(&mut self, field: PeriodNumber, context: &mut Out) {
         let now = context.now();
-        // Of the requests that arrived before this instant, the last one takes effect.
+        // Of the swap requests that arrived before this instant, the last request takes effect.
         let due = self.swaps.iter().filter(|swap| swap.0 < now).max().copied();
         let Some((_, buffer)) = due else { return };
         self.swaps.retain(|swap| swap.0 >= now);
@@ -224,7 +225,8 @@ impl FrameBuffer {
     }
 }
 
-/// Returns the index of the region to which a message belongs. The first message of a region adds the region.
+/// Returns the index, within `buffer`, of the region to which a message belongs. The first message of a region adds the
+/// region to `buffer`.
 fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result<usize, FrameBufferFault> {
     let Some(place) = buffer.arriving(&pixels.target) else {
         let region = RegionWrite::new(pixels, video)?;
@@ -239,8 +241,7 @@ fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result
     Err(unexpected_part(pixels))
 }
 
-/// Returns the fault of an unexpected message. The message has a number that does not exist in the region, or has
-/// already arrived.
+/// Returns the fault for a message whose number does not exist in the region, or whose number has already arrived.
 const fn unexpected_part(pixels: &RegionPixels) -> FrameBufferFault {
     FrameBufferFault::Part { target: pixels.target, found: pixels.part, parts: pixels.parts }
 }

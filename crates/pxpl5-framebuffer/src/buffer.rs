@@ -3,30 +3,31 @@
 
 use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};
-use crate::video::Video;
 use pxpl5_sim::Span;
+use pxpl5_wire::Video;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The regions in a buffer as they are passed to readers of pictures, oldest region first.
+/// List of the regions in a buffer, oldest region first. [`ScannedField`](crate::ScannedField) and
+/// [`BufferContents`](crate::BufferContents) share such a list.
 pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
 
-/// Number of kept regions above which the buffer searches for regions to discard. The search finds, pixel by pixel, the
-/// regions that newer regions cover completely.
+/// Smallest number of kept regions above which the buffer searches for regions that newer regions cover completely. The
+/// search compares single pixels, so it would be too slow for every retrace.
 const FEW: usize = 128;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Buffer {
     held: Vec<StoredRegion>,
-    /// Copy of `held` that readers share, or `None` after `held` has changed.
+    /// List of the regions in `held` for readers of pictures, or `None` after `held` has changed.
     shared: Option<Regions>,
     search_above: usize,
     /// Indices in `held` of the regions that are still arriving. The list is short, because a port receives one region
     /// at a time.
     arriving: Vec<usize>,
-    /// Index of the newest complete region for each cut, the key returned by [`cut`]. Regions with the same cut fill
-    /// the same pixels, so the newest region hides the older regions.
+    /// For each set of pixels, the index of the newest complete region that fills exactly these pixels. The key comes
+    /// from the function [`cut`]. The newest region hides all older regions with the same key.
     newest: BTreeMap<[u32; 6], usize>,
     scans: Scans,
 }
@@ -49,7 +50,8 @@ impl Buffer {
         }
     }
 
-    /// Returns the index of the region that is still arriving for this target, if any.
+    /// Returns the index of the incomplete region for `target`. Returns `None` if no region for this target is still
+    /// arriving.
     pub(crate) fn arriving(&mut self, target: &CopyTarget) -> Option<usize> {
         self.arriving.iter().rev().copied().find(|place| self.held[*place].region.target == *target)
     }
@@ -64,7 +66,8 @@ impl Buffer {
         &self.held[place].region
     }
 
-    /// Returns a region for modification. Readers of pictures keep an unmodified copy.
+    /// Returns the region with index `place` for modification. Pictures that were taken from the buffer earlier keep an
+    /// unmodified copy.
     pub(crate) fn region_mut(&mut self, place: usize) -> &mut RegionWrite {
         self.shared = None;
         Arc::make_mut(&mut self.held[place].region)
@@ -75,8 +78,8 @@ impl Buffer {
         self.scans.begin(field);
     }
 
-    /// Handles the completion of a region, which hides an older region with the same pixels. If there is such an older
-    /// region, the function returns its index.
+    /// Records that the region with index `place` is complete. Of two complete regions with the same pixels, the newer
+    /// region hides the older region. Returns the index of the older region if region `place` hides such a region.
     pub(crate) fn hide_below(&mut self, place: usize) -> Option<usize> {
         self.arriving.retain(|other| *other != place);
         let newest = self.newest.entry(cut(&self.held[place].region.target)).or_insert(place);
@@ -90,8 +93,9 @@ impl Buffer {
         (older != place).then_some(older)
     }
 
-    /// Returns the number of lines of region `older` that were never shown completely. Region `newer` has the same
-    /// pixels, and overwrote these lines before the beam had shown all their pixels.
+    /// Returns the number of lines of the region with index `older` that were never shown completely. The region with
+    /// index `newer` fills the same pixels. Region `newer` overwrote these lines before the beam had shown all of their
+    /// pixels.
     pub(crate) fn lines_never_shown(&self, older: usize, newer: usize, video: &Video, word: Span) -> u64 {
         let [older, newer] = [older, newer].map(|place| self.region(place));
         self.scans.lines_never_shown(&Overwritten { older, newer, video, word })
@@ -110,7 +114,7 @@ impl Buffer {
         }
     }
 
-    /// Returns all regions, oldest first.
+    /// Returns all regions, oldest first. The list is reused until the buffer changes.
     pub(crate) fn share(&mut self) -> Regions {
         let held = &self.held;
         Arc::clone(self.shared.get_or_insert_with(|| regions_of(held)))
@@ -120,7 +124,7 @@ impl Buffer {
         self.shared.clone().unwrap_or_else(|| regions_of(&self.held))
     }
 
-    /// Removes regions without visible pixels, whose pixels no later scan can show.
+    /// Removes regions whose pixels no later scan can show. `width` and `height` are the size of the frame in pixels.
     pub(crate) fn prune(&mut self, width: u32, height: u32) {
         if self.held.iter().any(|held| held.hidden) {
             self.held.retain(|held| !held.hidden);
@@ -162,8 +166,8 @@ fn regions_of(held: &[StoredRegion]) -> Regions {
     held.iter().map(|held| Arc::clone(&held.region)).collect()
 }
 
-/// Returns a key, the *cut*, made of the lines, number and grid of a region. Regions with the same cut fill the same
-/// pixels.
+/// Returns a key that is equal for two regions if they fill exactly the same pixels of the frame. The key consists of
+/// the lines, the number and the grid of the region.
 fn cut(target: &CopyTarget) -> [u32; 6] {
     let lines = match target.lines {
         Lines::Frame => 2,
@@ -190,7 +194,8 @@ mod tests {
         }
     }
 
-    /// Returns one of four kinds of region. Regions of different kinds fill different pixels and share no borders.
+    /// Returns the target of a region. `random` selects one of four kinds. Regions of different kinds fill different
+    /// pixels.
     fn target(picture: u64, random: u64) -> CopyTarget {
         let cut = |region_width, region_height| RegionGrid { width: 640, height: 240, region_width, region_height };
         let (lines, grid) = [
@@ -223,11 +228,11 @@ mod tests {
         frame
     }
 
-    /// A search removes exactly the regions without a visible pixel. The number of kept regions stays below the number
-    /// of visible regions plus twice the number of regions that the last search kept.
+    /// A search removes exactly the regions without a visible pixel. Between two searches, the number of kept regions
+    /// stays limited.
     #[test]
     fn discarded_regions_are_exactly_those_that_later_regions_cover() {
-        let video = Video::new(crate::FrameBufferConfig::NTSC.video).expect("valid");
+        let video = crate::FrameBufferConfig::NTSC.video.video().expect("valid");
         let mut buffer = Buffer::new();
         let mut frame = vec![0; (SIZE[0] * SIZE[1]) as usize];
         let mut random = 0x9E37_79B9_7F4A_7C15_u64;

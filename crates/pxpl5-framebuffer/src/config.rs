@@ -1,8 +1,7 @@
 //! Configuration of one frame buffer board.
 
-use crate::error::FrameBufferConfigError;
 use crate::timing::{PortTiming, VideoTiming};
-use pxpl5_sim::parameters::{ParameterTable, check};
+use pxpl5_sim::parameters::{ParameterTable, SettingError, check};
 
 /// Parameters of one frame buffer board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -24,12 +23,11 @@ impl FrameBufferConfig {
     ///
     /// # Errors
     ///
-    /// Returns [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found
+    /// Returns [`SettingError`] with the name of the parameter, the expected range and the found
     /// value.
-    pub fn check(&self) -> Result<(), FrameBufferConfigError> {
+    pub fn check(&self) -> Result<(), SettingError> {
         self.video.check()?;
-        self.port.check()?;
-        check("fields_kept", self.fields_kept, (1, 1_000))?;
-        Ok(())
+        let others = self.port.check().and_then(|()| check("fields_kept", self.fields_kept, (1, 1_000)));
+        others.map_err(|error| error.at("frame buffer"))
     }
 }

@@ -13,8 +13,9 @@
 //! 1. A region arrives as messages of 1,024 pixels (the last may be shorter), row by row. The port accepts every word
 //!    immediately. The words of a message arrive one word time apart. The last word arrives at the time of the event
 //!    [`FrameBufferEvent::Pixels`]. The last message of a region causes [`FrameBufferOutput::RegionArrived`].
-//! 2. A target states the buffer, the region and the lines. The rows of a [`Lines::Frame`](pxpl5_wire::Lines) picture
-//!    are lines of the frame. Row `r` of a field picture is line `2 r` (even) or `2 r + 1` (odd).
+//! 2. The target of a message ([`CopyTarget`](pxpl5_wire::CopyTarget)) states the buffer, the region and the lines. The
+//!    rows of a [`Lines::Frame`](pxpl5_wire::Lines) picture are lines of the frame. Row `r` of a field picture is line
+//!    `2 r` (even) or `2 r + 1` (odd).
 //! 3. At every retrace, and at no other time, the buffer requested last is displayed ([`FrameBufferOutput::Swapped`]).
 //!    A request that arrives at the instant of a retrace waits for the next retrace.
 //! 4. Field `n` scans the even lines of the displayed buffer if `n` is even, else the odd lines. A pixel shows the
@@ -27,8 +28,9 @@
 //! 7. An impossible event (pixels for another board, a region outside the frame, a repeated message) is a counted fault
 //!    without effect: [`FrameBuffer::faults`].
 //!
-//! Pixels are computed only when a picture is read. A [`ScannedField`] holds all data for its pixels, so they can be
-//! computed later or in another thread. At each retrace the board discards regions that can no longer be seen.
+//! Pixels are computed only when a picture is read. A [`ScannedField`] holds all data for its pixels, so a program can
+//! compute the pixels later or in another thread. At each retrace the board discards regions that no later scan can
+//! show.
 //!
 //! # Timing
 //!
@@ -43,8 +45,9 @@
 //! | first visible line of an odd field | 22.5 lines after its retrace |
 //! | pixel `x` of a line | (140 + `x`) pixel periods of 11/135 us after its start |
 //!
-//! The half line interlaces the fields on a screen. The first line of an odd field is scanned half a line time later in
-//! its field. This line therefore appears half a line pitch lower.
+//! Odd fields begin in the middle of a line, which interlaces the two fields on a screen. The first line of an odd
+//! field is scanned half a line time later in its field than the first line of an even field. This line therefore
+//! appears half a line pitch lower.
 //!
 //! **Not modelled:**
 //!
@@ -64,7 +67,6 @@
 mod board;
 mod buffer;
 mod config;
-mod error;
 mod ntsc;
 mod panel;
 mod picture;
@@ -74,19 +76,17 @@ mod scans;
 mod seen;
 mod stats;
 mod timing;
-mod video;
 
 pub use board::FrameBuffer;
 pub use config::FrameBufferConfig;
-pub use error::FrameBufferConfigError;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
 pub use panel::{HiResConfig, LcdConfig, OledConfig, Panel, PanelConfig, PanelNumbers};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
+pub use pxpl5_wire::Video;
 pub use seen::{BufferContents, ScannedField, ScannedLateRegion};
 pub use stats::FrameBufferStats;
 pub use timing::{PortTiming, VideoTiming};
-pub use video::Video;
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

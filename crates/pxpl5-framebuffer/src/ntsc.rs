@@ -1,14 +1,10 @@
 //! The NTSC display: one frame buffer for each eye. All frame buffers scan in lock-step.
 
-use crate::{
-    FrameBuffer, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferOutput, ScannedField, Video,
-};
+use crate::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput, ScannedField, Video};
 use image::RgbImage;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_sim::{Context, Time};
-use pxpl5_wire::display::{
-    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
-};
+use pxpl5_wire::display::{Counter, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, Surface};
 use pxpl5_wire::{Body, Eye, FieldParity, NodeId, PeriodNumber, read_swap_request};
 use std::ops::Range;
 
@@ -124,7 +120,7 @@ impl Display for NtscDisplay {
         let board = self.boards.get(surface)?;
         let now = self.video.field_at(time);
         board.seen(now)?;
-        // The lines on a screen belong to up to three fields.
+        // At any instant, the screen shows lines of up to three fields.
         let oldest = now.before(2).unwrap_or(PeriodNumber::FIRST);
         let fields: Vec<ScannedField> = oldest.until(now.next()).filter_map(|field| board.seen(field)).collect();
         Some(seen_at(&self.video, time, &fields))
@@ -164,10 +160,12 @@ impl Display for NtscDisplay {
     }
 }
 
-/// Returns the screen as a viewer sees it at `time`, which must lie in the field that was scanned last. Above the beam
-/// the screen shows the lines of the current field. Below the beam the screen shows the lines of the field that was
-/// scanned two fields earlier. Between these lines are the lines of the previous field. Fields that are missing from
-/// `fields` are black. A screen keeps each line until the beam comes again, because the model's phosphor does not fade.
+/// Returns the screen as a viewer sees it at `time`. `fields` should contain the field that is scanned at `time` and
+/// the two fields before this field. The lines of a missing field are black.
+///
+/// The screen shows the current field above the beam. Below the beam, the screen still shows the lines that were
+/// scanned two fields earlier. Every second line, between these lines, belongs to the previous field. The model's
+/// phosphor does not fade, so each line stays until the beam returns.
 #[must_use]
 pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
     let now = video.field_at(time);
@@ -197,7 +195,8 @@ pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
 }
 
 /// Returns the lowest number below `count` for which `has` is false, or `count` if there is no such number. `has` must
-/// be true for all lower numbers and false for all higher numbers.
+/// be true for all lower numbers and false for all higher numbers. The caller searches for the first pixel that the
+/// beam has not reached.
 fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (0, count);
     while low < high {
@@ -236,16 +235,16 @@ impl DisplayConfig for FrameBufferConfig {
         pictures.clamp(1, Eye::BOTH.len())
     }
 
-    fn check(&self) -> Result<(), DisplayError> {
-        Self::check(self).map_err(refused)
+    fn check(&self) -> Result<(), SettingError> {
+        Self::check(self)
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
-        let video = Video::new(self.video).map_err(refused)?;
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
+        let video = self.video.video()?;
         let boards = nodes.iter().map(|node| FrameBuffer::new(*self, *node)).collect::<Result<Vec<_>, _>>();
         let surfaces = Surface::of_frame_buffers(nodes.len(), video.width(), video.height());
         let context = Context::default();
-        Ok(Box::new(NtscDisplay { video, boards: boards.map_err(refused)?, nodes: nodes.to_vec(), surfaces, context }))
+        Ok(Box::new(NtscDisplay { video, boards: boards?, nodes: nodes.to_vec(), surfaces, context }))
     }
 
     fn boxed(&self) -> Box<dyn DisplayConfig> {
@@ -255,8 +254,4 @@ impl DisplayConfig for FrameBufferConfig {
     fn remember(&mut self, periods: u64) {
         self.fields_kept = periods;
     }
-}
-
-fn refused(error: FrameBufferConfigError) -> DisplayError {
-    DisplayError(error.to_string())
 }

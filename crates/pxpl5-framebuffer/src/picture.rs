@@ -6,7 +6,7 @@ use pxpl5_wire::Word;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Flag in a pixel that was already painted.
+/// Bits that mark a pixel of a canvas as painted: the upper 8 bits of a word 0x00RRGGBB, which no colour uses.
 const PUT: Word = 0xff00_0000;
 
 /// A picture of words 0x00RRGGBB, row by row. A painted pixel is never painted again, because the newest region is
@@ -43,7 +43,8 @@ impl Canvas {
 }
 
 impl CanvasRow<'_> {
-    /// Paints the pixels of a segment. The image is computed only if at least one pixel is not painted yet.
+    /// Paints those pixels of a segment that are not painted yet. The words of `image` are computed only if there are
+    /// such pixels.
     pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment) {
         // If the image is too short, the remaining pixels stay black.
         for (word, pixel) in self.missing(image, segment) {
@@ -51,7 +52,8 @@ impl CanvasRow<'_> {
         }
     }
 
-    /// Paints those pixels of a segment for which `chosen` returns true.
+    /// Paints the unpainted pixels of a segment for which `chosen` returns true. The argument of `chosen` is the index
+    /// of the pixel within the segment.
     pub(crate) fn put_chosen(
         self,
         image: &impl Deref<Target = Arc<[Word]>>,
@@ -65,8 +67,8 @@ impl CanvasRow<'_> {
         }
     }
 
-    /// Returns the pixels of a segment together with the pixels of the image. Returns nothing if all pixels of the
-    /// segment are already painted.
+    /// Returns the pixels of this row, each with the word of `image` for this pixel. Returns nothing if all pixels of
+    /// the row are already painted, so that the words of `image` are not computed.
     fn missing<'a, I: Deref<Target = Arc<[Word]>>>(
         self,
         image: &'a I,

@@ -1,9 +1,9 @@
 //! A region in a buffer, during and after its arrival.
 
 use crate::FrameBufferFault;
-use crate::video::{Video, frame_line, rectangle};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, MAX_MESSAGE_WORDS, PixelSource, REGION_SIZE, RegionPixels};
+use pxpl5_wire::{Video, frame_line};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -39,7 +39,8 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// Returns the arrival time of the word with pixel `i` of the segment.
+    /// Returns the arrival time of the word with pixel `i` of the segment. `word` is the time in which the port
+    /// receives one word.
     pub(crate) fn arrival(&self, i: u32, word: Span) -> Time {
         self.first_at + word * u64::from(i)
     }
@@ -54,7 +55,7 @@ impl RegionWrite {
     pub(crate) fn new(pixels: &RegionPixels, video: &Video) -> Result<Self, FrameBufferFault> {
         let target = pixels.target;
         let outside = FrameBufferFault::Region { target, frame: [video.width(), video.height()] };
-        let Some(rectangle) = rectangle(video, &target) else { return Err(outside) };
+        let Some(rectangle) = video.rectangle(&target) else { return Err(outside) };
         let [_, _, width, height] = rectangle;
         // The number of messages follows from the size of the region.
         let expected = (width * height).div_ceil(MAX_MESSAGE_WORDS);
@@ -98,13 +99,14 @@ impl RegionWrite {
     }
 
     /// Iterates over the pixels that have arrived, line by line. A line that arrives in two messages is split into two
-    /// segments.
+    /// segments. `word` is the time in which the port receives one word.
     pub(crate) fn segments(&self, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, _, height] = self.rectangle;
         (0..height).flat_map(move |row| self.row(row, word)).filter(|segment| segment.message_at != NEVER)
     }
 
-    /// Iterates over the segments of one row of the region. Segments that have not arrived are included.
+    /// Iterates over the segments of one row of the region. Segments that have not arrived are included. `word` is the
+    /// time in which the port receives one word.
     pub(crate) fn row(&self, row: u32, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, width, _] = self.rectangle;
         let begin = row * width;

@@ -1,14 +1,15 @@
-//! A record of the fields that showed a buffer. The record determines the lines that were shown before they were
-//! overwritten.
+//! A record of the fields that showed a buffer. The board uses this record to count lines that were overwritten before
+//! the beam had shown them.
 
 use crate::region::RegionWrite;
-use crate::video::Video;
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::Video;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber};
 use std::collections::VecDeque;
 
-/// Number of recorded fields: the newest two of each parity. One field of each parity is not enough, because the beam
-/// may not have reached a line in the current field yet.
+/// Number of recorded fields. While a buffer is displayed without a swap, these are the newest two fields of each
+/// parity. One field of each parity is not enough, because the beam may not have reached a line in the current field
+/// yet.
 const REMEMBERED: usize = 4;
 
 /// Numbers of the last fields that were scanned from a buffer, the newest field first.
@@ -29,8 +30,8 @@ impl Scans {
         self.0.push_front(field);
     }
 
-    /// Returns the number of lines of the older region that were never shown completely. The newer region has
-    /// overwritten them before the beam had shown all of their pixels.
+    /// Returns the number of lines of the older region that were never shown completely. The newer region overwrote
+    /// these lines before the beam had shown all of their pixels.
     pub(crate) fn lines_never_shown(&self, pair: &Overwritten<'_>) -> u64 {
         if self.shows_all(pair) {
             return 0;
@@ -38,13 +39,15 @@ impl Scans {
         pair.older.rows().filter(|row| !self.shows_row(*row, pair)).count() as u64
     }
 
-    /// Returns true if one field has shown the whole older region. The test compares only the first and the last line.
-    /// The field must show both lines after the older write and before the newer write. All lines between them were
-    /// then shown as well.
+    /// Returns true if a fast test proves that the older region was shown completely. The test handles the even rows
+    /// and the odd rows of the region separately. For each of these two groups, the test needs a field in which the
+    /// beam passes the first and the last pixel of the group between two instants. These instants are the write of the
+    /// older region and the write of the newer region. The beam then passes all other pixels of the group between these
+    /// instants as well.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };
-        // The first word of a message arrives at most this much earlier than its last word.
+        // The first word of a message arrives at most 1,023 word times before its last word.
         let overwritten =
             Time(pair.newer.first_at().0.saturating_sub((pair.word * u64::from(MAX_MESSAGE_WORDS - 1)).0));
         let rows = pair.older.rows();
@@ -79,11 +82,11 @@ fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item 
     first.into_iter().chain(last)
 }
 
-/// Iterates over the end pixels of each message's part of a row, with the arrival times of their words. The region must
-/// be complete.
+/// Iterates over the end pixels of each part of a row that arrived in one message. Each item has the position of a
+/// pixel and the arrival time of its word. The region must be complete.
 ///
-/// Only the end pixels need a check, because both the words of a message and the beam advance at constant rates.
-/// Between two messages there is a pause.
+/// The end pixels suffice to compare the arrival of a part with the beam, because words and beam advance at constant
+/// rates. Between two messages there is a pause.
 fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
     region.row(row, word).flat_map(move |segment| {
         [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))

@@ -3,9 +3,9 @@
 use crate::buffer::Regions;
 use crate::picture::Canvas;
 use crate::region::{RegionWrite, Segment};
-use crate::video::Video;
 use image::RgbImage;
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::Video;
 use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 
@@ -22,8 +22,8 @@ pub struct ScannedField {
 }
 
 /// A region that arrived too late. Some pixels were scanned before they had arrived, so the viewer sees older pixels
-/// instead. The board cannot determine the field for which the region was drawn. The number of the picture in
-/// `target.picture` identifies this field.
+/// instead. The board does not determine the field for which the region was drawn. A reader can find this field by the
+/// number of the picture in `target.picture`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScannedLateRegion {
     /// Frame buffer and region of the pixels, and number of the picture to which the region belongs.
@@ -92,7 +92,8 @@ impl ScannedField {
         begun && region.last_at().is_none_or(|last| last > self.video.retrace(self.field))
     }
 
-    /// Paints the regions into `canvas`, the newest region first. The pixels of hidden regions are thus never computed.
+    /// Paints the regions into `canvas`, the newest region first, so that the pixels of hidden regions are never
+    /// computed. `row_of` returns the row of the canvas for a line of the frame.
     fn paint(&self, canvas: &mut Canvas, row_of: impl Fn(u32) -> u32) {
         for region in self.regions.iter().rev() {
             let pixels = LazyCell::new(|| region.image.pixels());
@@ -116,7 +117,8 @@ impl ScannedField {
         self.lateness(segment, i) == Some(Span::ZERO)
     }
 
-    /// Returns the delay of a pixel's word behind the beam. Returns `None` if the field does not scan the pixel.
+    /// Returns the time from the scan of a segment's pixel `i` to the arrival of the pixel, or zero if the pixel
+    /// arrived in time. Returns `None` if the field does not scan the pixel.
     ///
     /// The board gets an event only at the end of a message. If a message has not ended at the end of the field, all
     /// its words therefore count as missing. On the published ring, which is faster than the beam, none of these words
@@ -158,7 +160,8 @@ impl ScannedLateRegion {
     }
 }
 
-/// The contents of a whole buffer. Its pixels are computed when they are read, and a clone is cheap.
+/// The contents of one of the two pixel buffers of a board, with both fields. The pixels are computed when they are
+/// read, and a clone is cheap.
 #[derive(Clone, Debug)]
 pub struct BufferContents {
     pub(crate) video: Video,

@@ -1,8 +1,7 @@
 //! All timing parameters of the frame buffer.
 
-use crate::error::FrameBufferConfigError;
-use pxpl5_sim::Clock;
-use pxpl5_sim::parameters::{MAX, ParameterTable, check};
+use pxpl5_sim::parameters::{MAX, ParameterTable, SettingError, check};
+use pxpl5_wire::{Video, VideoNumbers};
 
 pxpl5_sim::parameters::parameter_table! {
     /// Timing of NTSC video. All times follow from one pixel clock. A line has exactly 780 pixel periods (4004/63 us),
@@ -45,9 +44,13 @@ impl VideoTiming {
     ///
     /// # Errors
     ///
-    /// Returns [`FrameBufferConfigError::Number`] with the name of the parameter, the expected range and the found
+    /// Returns [`SettingError`] with the name of the parameter, the expected range and the found
     /// value.
-    pub fn check(&self) -> Result<(), FrameBufferConfigError> {
+    pub fn check(&self) -> Result<(), SettingError> {
+        self.check_numbers().map_err(|error| error.at("frame buffer"))
+    }
+
+    fn check_numbers(&self) -> Result<(), SettingError> {
         ParameterTable::check(self)?;
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;
         check("visible_pixels", self.visible_pixels, (1, self.line_pixels))?;
@@ -55,20 +58,31 @@ impl VideoTiming {
         check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels))?;
         let field_lines = self.frame_lines / 2;
         check("visible_lines", self.visible_lines, (1, field_lines))?;
-        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))?;
-        Ok(())
+        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))
     }
 
-    pub(crate) fn pixel_clock(&self) -> Option<Clock> {
-        Clock::new(self.pixel_ps, self.pixel_divisor)
-    }
-
-    pub(crate) fn line_clock(&self) -> Option<Clock> {
-        Clock::new(self.pixel_ps * self.line_pixels, self.pixel_divisor)
-    }
-
-    pub(crate) fn field_clock(&self) -> Option<Clock> {
-        let pixels = self.frame_lines * self.line_pixels;
-        Clock::new(self.pixel_ps.checked_mul(pixels)?, 2 * self.pixel_divisor)
+    /// Returns the video signal that this table describes.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`VideoTiming::check`]. Also an error if the period of a field does not fit into a 64-bit time.
+    pub fn video(&self) -> Result<Video, SettingError> {
+        self.check()?;
+        let numbers = VideoNumbers {
+            pixel_ps: self.pixel_ps,
+            pixel_divisor: self.pixel_divisor,
+            line_pixels: self.line_pixels,
+            frame_lines: self.frame_lines,
+            visible_pixels: self.visible_pixels,
+            visible_lines: self.visible_lines,
+            left_blanking: self.left_blanking,
+            top_blanking: self.top_blanking,
+        };
+        Video::new(numbers).ok_or_else(|| {
+            let expected = "pixel_ps x frame_lines x line_pixels below 2^64";
+            SettingError::combination(format_args!(
+                "frame buffer: the period of a field is out of range; expected {expected}"
+            ))
+        })
     }
 }

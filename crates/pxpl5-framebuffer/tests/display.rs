@@ -21,7 +21,7 @@ const SIZE: [u32; 2] = [640, 480];
 const BEFORE_THE_PICTURE: Span = Span::from_us(200);
 
 fn video() -> Video {
-    Video::new(FrameBufferConfig::NTSC.video).expect("the papers' numbers")
+    FrameBufferConfig::NTSC.video.video().expect("the papers' numbers")
 }
 
 /// Returns the colour of a pixel, which encodes its row, column and picture.

@@ -4,7 +4,7 @@
 use image::{Rgb, RgbImage};
 use pxpl5_framebuffer::{HiResConfig, LcdConfig, OledConfig, PanelConfig, PanelNumbers};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
-use pxpl5_wire::display::{Display, DisplayConfig, DisplayEvent, DisplayOutput, Scan};
+use pxpl5_wire::display::{Display, DisplayConfig, DisplayEvent, DisplayOutput, ScanOrder};
 use pxpl5_wire::{
     Body, CopyTarget, Lines, MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionGrid, RegionId,
     RegionPixels, Word, swap_request,
@@ -313,8 +313,11 @@ fn numbers_that_no_panel_can_have_are_refused_with_what_was_expected() {
 #[test]
 fn presets_are_lit_as_their_sources_say() {
     let light = OledConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();
-    assert_eq!((light.scan, light.centre()), (Scan::Down, Span::from_us(1_100)));
+    assert_eq!((light.scan, light.centre()), (ScanOrder::Down, Span::from_us(1_100)));
     let light = LcdConfig::PAPERS.build(&[1, 2, 3, 4, 5, 6, 7, 8].map(NodeId)).expect("eight ports").light();
-    assert_eq!((light.scan, light.persistence, light.centre()), (Scan::Global, Span::from_us(330), Span::from_us(165)));
+    assert_eq!(
+        (light.scan, light.persistence, light.centre()),
+        (ScanOrder::Global, Span::from_us(330), Span::from_us(165))
+    );
     assert!(Rig::new().display.light().is_instant());
 }

@@ -17,7 +17,7 @@ use crate::regions::RegionMask;
 use crate::view::Viewport;
 use pxpl5_wire::Linear;
 
-/// First and last pixel of an interval along one axis. If `first > last`, the interval is empty.
+/// The first and the last pixel of an interval along x or y. If `first > last`, the interval is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Range {
     pub(crate) first: i32,
@@ -89,7 +89,8 @@ impl Binner {
         self.columns
     }
 
-    /// Returns the rows of the picture whose frame lines are in a given range.
+    /// Returns the rows of the picture whose frame lines are in a given range. A field has only every second line of
+    /// its frame.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
@@ -109,7 +110,7 @@ impl Binner {
         self.cells(x, y, |_, _| true)
     }
 
-    /// Returns the regions that a triangle touches, as defined in the module documentation.
+    /// Returns the regions that a triangle touches, as defined in the documentation of this module.
     #[inline(always)]
     pub(crate) fn triangle(&self, outline: &Outline) -> RegionMask {
         let [low_x, high_x] = extent(&outline.x);
@@ -161,14 +162,14 @@ impl Binner {
         RegionMask::with_bits(mask)
     }
 
-    /// Returns the first and last pixel column of a column of regions.
+    /// Returns the first and the last pixel column of a column of regions.
     #[inline(always)]
     pub(crate) fn column_box(&self, column: i32) -> (i32, i32) {
         let left = column * self.region_width;
         (left, (left + self.region_width).min(self.width) - 1)
     }
 
-    /// Returns the first and last frame line of a row of regions.
+    /// Returns the first and the last frame line of a row of regions.
     #[inline(always)]
     pub(crate) fn row_box(&self, row: i32) -> (i32, i32) {
         let top = row * self.region_height;
@@ -176,7 +177,7 @@ impl Binner {
         (self.line_of_row(top), self.line_of_row(bottom))
     }
 
-    /// Returns the frame line of a pixel row of the picture.
+    /// Returns the frame line on which a pixel row of the picture lies.
     #[inline(always)]
     const fn line_of_row(&self, row: i32) -> i32 {
         (row << self.line_shift) + self.first_line

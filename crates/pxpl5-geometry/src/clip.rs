@@ -4,7 +4,7 @@
 //! plane (z = w), and four planes of a guard band. The guard band extends about 4,000 px beyond the picture. A triangle
 //! outside the picture but inside the guard band is not clipped, because edge expressions can represent the triangle.
 //!
-//! If two triangles share an edge, both cut it at exactly the same point, bit for bit. The two ends of an edge have a
+//! If two triangles share an edge, both are cut at exactly the same point, bit for bit. The two ends of an edge have a
 //! fixed order, which follows from their clip coordinates. The cut is computed from the first end to the second end.
 //! The winding of a triangle thus has no effect, and the cut opens no gap.
 //!
@@ -25,14 +25,16 @@ pub(crate) const MIN_W: f32 = 1e-30;
 /// Largest number of corners of a triangle after clipping against six planes.
 const MAX_CORNERS: usize = 9;
 
-/// A vertex in clip coordinates, with `N` surface values that vary linearly over the triangle.
+/// A triangle's vertex in clip coordinates, with `N` surface values (such as colours) that vary linearly over the
+/// triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ClipVertex<const N: usize> {
     pub(crate) clip: [f32; 4],
     pub(crate) extra: [f32; N],
 }
 
-/// The guard band: the points with |x| at most `self.x * w` and |y| at most `self.y * w`.
+/// The guard band, the volume within which triangles are not clipped. The guard band holds the points with |x| at most
+/// `self.x * w` and |y| at most `self.y * w`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Guard {
     pub(crate) x: f32,
@@ -49,7 +51,7 @@ pub(crate) struct Corner<const N: usize> {
 }
 
 impl<const N: usize> Corner<N> {
-    /// Makes a corner from a vertex of the triangle.
+    /// Makes a corner of a polygon from a vertex of the original triangle.
     fn at_vertex(vertex: &ClipVertex<N>) -> Self {
         Self { clip: vertex.clip.map(f64::from), extra: vertex.extra.map(f64::from), cut: false }
     }
@@ -106,7 +108,7 @@ impl Guard {
         across & depth & (MIN_W..=MAX_CLIP).contains(&w)
     }
 
-    /// Clips a triangle by the six planes.
+    /// Clips a triangle by the near plane, the far plane and the four planes of the guard band.
     pub(crate) fn clip<const N: usize>(self, triangle: &[ClipVertex<N>; 3]) -> Polygon<N> {
         let mut polygon = Polygon::empty();
         triangle.iter().for_each(|v| polygon.push(Corner::at_vertex(v)));
@@ -158,12 +160,13 @@ fn interpolate(from: f64, to: f64, t: f64) -> f64 {
     from + (to - from) * t
 }
 
-/// Compares two points by their clip coordinates, in a total order.
+/// Compares two points by their clip coordinates. Any two different points have a fixed order.
 fn order(a: &[f64; 4], b: &[f64; 4]) -> Ordering {
     a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-/// Returns true if all three corners are outside the same plane of the view volume.
+/// Returns true if all three corners of a triangle are outside the same plane of the view volume. Such a triangle is
+/// not visible.
 pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     let beyond_a_side: [fn(&[f32; 4]) -> bool; 6] = [
         |[x, _, _, w]| x > w,

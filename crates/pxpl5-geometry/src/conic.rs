@@ -1,26 +1,26 @@
-//! Conics on the screen: the images of spheres, in floating point and in the renderer's fixed point.
+//! Conics on the screen: the images of spheres, in floating point and in the renderer's fixed-point format.
 
 use crate::newton::{reciprocal_double, reciprocal_root, root, whole};
 use pxpl5_wire::Quadratic;
 
-/// Number of bits of a silhouette's absolute value within its regions. With the sign, the value has 47 bits. The
-/// renderer evaluates 48 bits.
+/// Number of bits of a silhouette expression's absolute value, at all pixels of the regions that the sphere touches.
+/// With the sign, the value has 47 bits. The renderer evaluates 48 bits.
 const VALUE_BITS: i32 = 46;
 
 /// Largest number of bits of a square root in the renderer.
 pub(crate) const ROOT_BITS: i32 = 12;
 
-/// Largest number of low bits of a silhouette expression that the root can ignore.
+/// Largest number of low bits of a silhouette expression that the square root can ignore.
 const MAX_ROOT_SHIFT: i32 = 24;
 
-/// Largest left shift of a root in bits. The root is shifted before its subtraction from a depth.
+/// Largest left shift of a square root in bits. The root is shifted before its subtraction from a depth.
 const MAX_DEPTH_SHIFT: i32 = 20;
 
 /// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`. The offset (dx, dy) is in pixels from
 /// `origin`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Conic {
-    /// Origin in pixels of the frame. The centre of the top left pixel is (0, 0).
+    /// Origin of the offsets (dx, dy), in pixels of the frame. The centre of the top left pixel is (0, 0).
     pub(crate) origin: [f64; 2],
     pub(crate) constant: f64,
     pub(crate) x: f64,
@@ -30,8 +30,8 @@ pub(crate) struct Conic {
     pub(crate) yy: f64,
 }
 
-/// A conic in fixed point. Its value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`, with `bulge` as in
-/// [`crate::ScreenSphere`].
+/// A conic in fixed point. The value of the conic is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the
+/// depth of the plane through the sphere's silhouette minus the depth of the sphere (see [`crate::ScreenSphere`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FixedConic {
     pub(crate) quadratic: Quadratic,
@@ -56,18 +56,18 @@ pub(crate) struct Ellipse {
     pub(crate) peak: [f64; 2],
     /// The greatest value of the conic.
     pub(crate) value: f64,
-    /// Squares of half the width and half the height, in pixels.
+    /// Squares of half the width and half the height of the ellipse, in pixels.
     half_squares: [f64; 2],
 }
 
 impl Ellipse {
-    /// Returns 1 / (half the width) and 1 / (half the height), per pixel.
+    /// Returns two reciprocals: 1 / (half the width) and 1 / (half the height) of the ellipse, per pixel.
     pub(crate) fn per_half_size(&self) -> [f64; 2] {
         self.half_squares.map(reciprocal_root)
     }
 
-    /// Returns the smallest and largest x and y, in pixels of the frame. Returns `None` if the conic is not an ellipse,
-    /// for example because of NaN, an overflow or a size of 0.
+    /// Returns the smallest and the largest x and y of the ellipse, in pixels of the frame. Returns `None` if the conic
+    /// is not an ellipse, for example because of NaN, an overflow or a size of 0.
     pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let [x, y] = self.peak;
         let [half_x, half_y] = self.half_squares.map(root);
@@ -89,7 +89,7 @@ impl Conic {
         }
     }
 
-    /// Returns the same conic, expressed around another origin.
+    /// Returns the same conic with offsets from another origin.
     pub(crate) fn around(&self, origin: [f64; 2]) -> Self {
         let dx = origin[0] - self.origin[0];
         let dy = origin[1] - self.origin[1];

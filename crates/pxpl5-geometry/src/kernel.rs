@@ -1,10 +1,10 @@
 //! Set-up of triangles as code of the graphics processor: i860 assembly, and its memory layout.
 //!
-//! A [`Kernel`] reads Gouraud or Phong triangles from the display list. It computes the words of their renderer
-//! commands and writes the commands into bins, one bin for each region. Its steps are: transform, guard band test,
+//! A [`Kernel`] reads Gouraud or Phong triangles from the display list. The kernel computes the words of the renderer
+//! commands and writes the commands into bins, one bin for each region. The steps are: transform, guard band test,
 //! light or normals, snapping to subpixels, planes, conversion of a frame's lines to a field's rows, and regions.
 //! Triangles that are not wholly inside the guard band go to the clipper, a separate program. The kernel replaces steep
-//! planes by flat planes only for pieces of clipped triangles.
+//! planes by planes with a constant value only for pieces of clipped triangles.
 //!
 //! ```text
 //!   display list (96 bytes a triangle, --+
@@ -49,12 +49,12 @@ pub enum Schedule {
     Dual,
 }
 
-/// Surface values of a triangle that planes interpolate in addition to depth.
+/// Surface values of a triangle. Planes interpolate these values in addition to depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelSurface {
     /// Colours, computed by lighting each corner.
     Gouraud,
-    /// Colours of the display list, without lighting.
+    /// Colours from the display list, without lighting.
     Precomputed,
     /// Normals in eye coordinates, for Phong shading.
     Phong,
@@ -72,9 +72,9 @@ pub enum KernelList {
 /// Kind of picture that the code is written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelPicture {
-    /// An NTSC frame: 640 x 480 in regions of 128 x 128.
+    /// An NTSC frame: 640 x 480 pixels in regions of 128 x 128.
     Frame,
-    /// An NTSC field: 640 x 240 in regions of 128 x 120.
+    /// An NTSC field: 640 x 240 pixels in regions of 128 x 120.
     Field,
     /// A frame in regions of 128 x 128, for example a face of a cube or another display. The parameter block gives the
     /// size of the frame.
@@ -84,7 +84,7 @@ pub enum KernelPicture {
 /// The choice of kernel code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
-    /// Optimization level: compiled or hand-written.
+    /// Optimization level of the kernel's code: compiled or hand-written.
     pub schedule: Schedule,
     /// Kind of triangle that the kernel sets up.
     pub surface: KernelSurface,
@@ -92,8 +92,8 @@ pub struct Kernel {
     pub list: KernelList,
     /// Kind of picture that the kernel draws.
     pub picture: KernelPicture,
-    /// True if the kernel puts commands into the bins of the touched regions. False if it lists all commands for every
-    /// region.
+    /// True if the kernel puts commands into the bins of the touched regions. False if the kernel makes a single
+    /// list of commands, which every region receives.
     pub binned: bool,
     /// True if the kernel leaves out back faces.
     pub culls: bool,
@@ -109,7 +109,7 @@ pub struct Kernel {
     pub both_eyes: bool,
 }
 
-/// First words of the instructions in a triangle's command, in the order of the kernel's parameter block.
+/// First words of the instructions in a triangle's renderer command, in the order of the kernel's parameter block.
 ///
 /// The order is: enable, edge, depth compare, depth load, three components, colour (Phong only).
 pub type Heads = [Word; 8];
@@ -143,10 +143,11 @@ const BINS: &str = include_str!("../kernels/bins.s");
 const VERTICES: &str = include_str!("../kernels/vertices.s");
 const VERTICES_END: &str = include_str!("../kernels/vertices_end.s");
 
-/// Files of compiled code. The functions for the surface come first.
+/// Source files of the kernel code in the style of a compiler's output. The functions that compute surface values come
+/// first.
 const COMPILED: [&str; 5] = [NEWTON, SCALAR, include_str!("../kernels/compiled.s"), SCALAR_FUNCTIONS, BINS];
 
-/// Files of dual-instruction code.
+/// Source files of the kernel code in dual-instruction mode.
 const DUAL: [&str; 7] = [
     include_str!("../kernels/dual.s"),
     VERTICES,
@@ -157,11 +158,11 @@ const DUAL: [&str; 7] = [
     include_str!("../kernels/dual_end.s"),
 ];
 
-/// Files of the second pass of each batch through the first loop, for kernels that serve both eyes. The colours of the
-/// first pass stay.
+/// Source files for the right eye, for kernels that serve both eyes. With this code, each batch passes the first loop a
+/// second time. The colours of the first pass stay.
 const RIGHT_EYE: [&str; 3] = [VERTICES, VERTICES_END, include_str!("../kernels/right_eye.s")];
 
-/// Returns a source that defines constants, each 1 if its condition is true and 0 otherwise.
+/// Returns an assembly source that defines constants. A constant is 1 if its condition is true, and 0 otherwise.
 pub(crate) fn choices(each: &[(&str, bool)]) -> String {
     each.iter().map(|(name, holds)| format!("{name} = {}\n", u8::from(*holds))).collect()
 }
@@ -236,7 +237,7 @@ impl Kernel {
         ])
     }
 
-    /// Returns the size of a command in bytes.
+    /// Returns the size of one renderer command in bytes.
     #[must_use]
     pub const fn command_bytes(&self) -> u32 {
         match self.surface {
@@ -293,8 +294,9 @@ impl Kernel {
         words.0
     }
 
-    /// Returns two pairs of numbers, for the front and the back of a triangle. The first number is the scale from
-    /// surface values to plane values. The second number is half a unit minus the bias.
+    /// Returns the scale and the offset that convert a surface value to a plane value, for the front and for the back
+    /// of a triangle. The offset adds half a unit for rounding, and removes the constant [`ROUND_SINGLE`] that an
+    /// earlier step has added.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
@@ -354,14 +356,14 @@ pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
 /// the guard band.
 ///
 /// The guard band ends one pixel before [`screen::GUARD_PIXELS`] on the right and at the bottom. The band is symmetric
-/// around the middle of the picture. Its left and top ends are therefore nearer to pixel (0, 0) by the picture's size.
-/// One pixel is reserved for rounding.
+/// around the middle of the picture. The left and top ends of the band are therefore nearer to pixel (0, 0) by the
+/// picture's size. One pixel is reserved for rounding.
 fn safe_distance(viewport: &Viewport) -> Word {
     let size = viewport.grid().width.max(viewport.frame_lines());
     16 * (screen::GUARD_PIXELS as u32 - 2 - size)
 }
 
-/// A parameter block under construction. Positions are in bytes, as in kernels/parameters.s.
+/// A parameter block under construction. Positions in the block are in bytes, as in kernels/parameters.s.
 struct ParameterWords([Word; PARAMETER_WORDS]);
 
 impl ParameterWords {
@@ -378,8 +380,8 @@ impl ParameterWords {
     }
 }
 
-/// Returns a mask for XOR and a mask for AND. After both operations, the high word of the area is negative if the
-/// triangle is culled.
+/// Returns a mask for XOR and a mask for AND, with which the kernel selects triangles to leave out. After both
+/// operations, the high word of the area is negative if the triangle is not drawn.
 const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     const SIGN: Word = 1 << 31;
     match dropped {
@@ -390,8 +392,8 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     }
 }
 
-/// Returns the source of the work before the triangles of a pass. The labels of the source are `edit`, `reset` and
-/// `place` (kernels/place.s).
+/// Returns the source of the code that runs before the triangles of a pass over the display list. The labels of the
+/// source are `edit`, `reset` and `place` (kernels/place.s).
 ///
 /// The code at `place` writes all parameters that depend on a view or a light, for [`Kernel::parameters`] and for
 /// [`crate::sphere_kernel`].
@@ -407,12 +409,12 @@ fn normal_row(row: [f32; 3]) -> [f32; 4] {
     [x, y, z, 0.0]
 }
 
-/// Returns the words of a double in the memory order of the i860: the low half first.
+/// Returns the two words of a double-precision number in the memory order of the i860: the low half first.
 pub(crate) const fn halves(value: f64) -> [Word; 2] {
     [value.to_bits() as Word, (value.to_bits() >> 32) as Word]
 }
 
-/// Returns a triangle in the format of the display list, with normals of unit length.
+/// Returns the words of a triangle in the format of the display list, with normals of unit length.
 #[must_use]
 pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     let mut words = [0; TRIANGLE_WORDS];

@@ -26,7 +26,7 @@ pub struct TriangleLanes<'a> {
     corners: [EachLane<&'a SurfaceVertex>; 3],
 }
 
-/// Placeholder for the corners of an invisible triangle.
+/// Placeholder for the corners of an invisible triangle, which no pixel shows.
 static NOWHERE: SurfaceVertex = SurfaceVertex::NOWHERE;
 
 impl Default for TriangleLanes<'_> {
@@ -84,14 +84,14 @@ impl<'a> TriangleLanes<'a> {
     }
 }
 
-/// Values at the corners of the triangles. First index is the corner, second index is the triangle.
+/// Values at the corners of several triangles. First index is the corner, second index is the triangle.
 struct CornerValues {
-    /// Distance from the picture's left border in 1/16 px.
+    /// Distance of each corner from the picture's left border, in 1/16 px.
     x: [EachLane<i32>; 3],
     y: [EachLane<i32>; 3],
     z: [EachLane<f64>; 3],
     facing: [EachLane<f32>; 3],
-    /// Colour or normal: first index is the component, then corner and triangle.
+    /// Components of the colours or normals at the corners. First index is the component, then corner and triangle.
     surface: [[EachLane<f32>; 3]; 3],
 }
 
@@ -130,17 +130,17 @@ fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> Li
     all
 }
 
-/// Edge and plane expressions of up to [`LANES`] triangles.
+/// Linear expressions of up to [`LANES`] triangles: edges, depth, and colour or normal.
 #[derive(Clone, Debug)]
 struct Expressions {
     edges: [LinearLanes; 3],
-    /// Expressions of depth and of three components of colour or normal, in this order.
+    /// Linear expressions of depth and of three components of colour or normal, in this order.
     planes: [LinearLanes; 4],
-    /// For each triangle, the number of planes that were too steep and were replaced by flat planes.
+    /// For each triangle, the number of planes that were too steep and were replaced by planes with a constant value.
     flattened: EachLane<u8>,
 }
 
-/// Expressions of one triangle: three edges, depth, and three components of colour or normal.
+/// Linear expressions of one triangle: three edges, depth, and three components of colour or normal.
 type OneTriangle = ([Linear; 3], Linear, [Linear; 3]);
 
 impl Expressions {
@@ -231,7 +231,7 @@ const fn last_subpixel(pixels: u32) -> i32 {
 struct PictureRows {
     line_step: i32,
     first_line: i32,
-    /// Last subpixel of the frame along x, and along y.
+    /// Index of the last subpixel of the frame along x, and along y.
     last: [i32; 2],
 }
 
@@ -299,8 +299,8 @@ fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     away
 }
 
-/// Returns one component at the three corners, plus `half` for rounding. The component is negated for triangles that
-/// face away.
+/// Returns one component of the normals at the three corners, plus `half` for rounding. The component is negated for
+/// triangles that face away from the eye.
 #[inline(always)]
 fn component([p, q, r]: &[EachLane<f32>; 3], away: &EachLane<bool>, half: f32) -> [EachLane<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]
@@ -408,8 +408,8 @@ impl LanePlanes {
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 
-    /// Returns the plane through three corner values of each triangle, over the frame's pixels. Counts the planes that
-    /// were replaced by flat planes.
+    /// Returns, for each triangle, the plane through one value at each corner, over the frame's pixels. Planes that are
+    /// too steep are replaced by planes with a constant value, and counted in `flattened`.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();
@@ -449,7 +449,7 @@ fn flatten(v: [&EachLane<f64>; 3], flat: &EachLane<bool>, out: &mut LinearLanes,
     }
 }
 
-/// Returns the distance from one corner to another along one axis, in subpixels.
+/// Returns the distance along one axis from the corner `from` to the corner `to`, in subpixels.
 #[inline(always)]
 fn side(from: &EachLane<i32>, to: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];
@@ -472,7 +472,7 @@ fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     out
 }
 
-/// Returns the distance from a corner to the centre of a pixel along one axis, in pixels.
+/// Returns the distance along one axis from the corner `from` to the centre of `pixel`, in pixels.
 #[inline(always)]
 fn pixels(from: &EachLane<i32>, pixel: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];

@@ -15,7 +15,7 @@ pub(crate) struct Lens {
     /// Eye units per pixel along x and y, at distance 1 under perspective. The step along y is negative, because y
     /// increases downwards for pixels and upwards for the eye.
     pub(crate) step: [f64; 2],
-    /// Pixels per eye unit along x and y, at distance 1 under perspective.
+    /// Pixels per eye unit along x and y. Under perspective, the value holds at distance 1.
     pub(crate) rate: [f64; 2],
     /// Eye x and y of the centre of the frame's pixel (0, 0), at distance 1 for a perspective projection.
     pub(crate) corner: [f64; 2],

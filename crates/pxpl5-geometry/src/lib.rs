@@ -66,7 +66,7 @@
 //! let planes = commands[0].gouraud(transform.viewport(), &mut stats);
 //! assert_eq!(regions, [7, 11, 12, 13]);
 //! assert!(planes.edges.iter().all(|e| e.at(320, 240) >= 0));
-//! # Ok::<(), pxpl5_geometry::ViewError>(())
+//! # Ok::<(), pxpl5_sim::parameters::SettingError>(())
 //! ```
 //!
 //! # Not modelled
@@ -122,7 +122,7 @@ pub use touch::Touch;
 pub use touched::Touched;
 pub use transform::{Culling, Transform, TriangleEnds};
 pub use vertex::{ScreenVertex, SurfaceVertex};
-pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};
+pub use view::{MAX_PICTURE, ViewTransform, Viewport};
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

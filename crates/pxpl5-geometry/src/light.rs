@@ -4,7 +4,7 @@ use crate::view::{self, FromWorld};
 use crate::{Light, Triangle};
 use glam::Vec3;
 
-/// A light whose direction is converted to the coordinates of the display list's normals.
+/// A light whose direction is converted to world coordinates, in which the display list stores normals.
 pub(crate) struct ModelLight<'a> {
     normals: &'a NormalRows,
     direction: [f32; 3],
@@ -32,7 +32,7 @@ impl NormalRows {
         Self { rows: [x, y, z].map(|row| row.map(|v| (v * scale) as f32)), origin: to_eye.origin() }
     }
 
-    /// Converts a direction from eye coordinates to the coordinates of the normals in the world.
+    /// Converts a direction from eye coordinates to world coordinates, in which the display list stores normals.
     pub(crate) fn to_world(self, direction: [f32; 3]) -> [f32; 3] {
         let rows = self.rows.map(|row| row.map(f64::from));
         let [x, y, z] = direction.map(f64::from);
@@ -94,7 +94,7 @@ impl<'a> ModelLight<'a> {
         self.colour(triangle.positions[corner], triangle.normals[corner], triangle.colours[corner])
     }
 
-    /// Returns the fraction of the colour that is visible, 0 to 1. NaN gives 0.
+    /// Returns the fraction of a surface's colour that is visible, 0 to 1. NaN gives 0.
     #[inline(always)]
     fn intensity(&self, cosine: f32) -> f32 {
         let sum = self.light.ambient + self.light.diffuse * cosine.max(0.0);
@@ -108,14 +108,15 @@ pub(crate) fn facing_normals(rows: &NormalRows, positions: &[Vec3; 3], normals: 
     turned([a.0, b.0, c.0], [a.1, b.1, c.1])
 }
 
-/// Returns a normal in eye coordinates, and the degree to which it faces the eye (negative if it faces away).
+/// Returns a normal in eye coordinates, and a number for its direction: positive if the normal faces the eye, negative
+/// if it faces away.
 #[inline(always)]
 pub(crate) fn normal_and_facing(rows: &NormalRows, position: Vec3, normal: Vec3) -> ([f32; 3], f32) {
     let n = unit_normal(normal);
     (rows.apply(n), rows.towards_eye(position, n))
 }
 
-/// Returns the normals of three corners. If they face away from the eye on average, all three are negated.
+/// Returns the normals of three corners. If the normals face away from the eye on average, all three are negated.
 #[inline(always)]
 pub(crate) fn turned([a, b, c]: [[f32; 3]; 3], facing: [f32; 3]) -> [[f32; 3]; 3] {
     let away = (facing[0] + facing[1]) + facing[2] < 0.0;

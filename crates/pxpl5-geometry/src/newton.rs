@@ -1,13 +1,14 @@
 //! Quotients, square roots and rounding, computed as on the i860, which has no instruction for division or square root.
 //!
 //! The instructions `frcp` and `frsqr` give a first approximation (seed) with 8 bits of fraction. Newton steps refine
-//! it. To round a number, the code adds a large constant and subtracts the constant again. The native code performs the
-//! same steps as the i860 kernels, so both give the same words.
+//! the approximation. To round a number, the code adds a large constant and subtracts the constant again. The native
+//! code performs the same steps as the i860 kernels, so both give the same words.
 
-/// Mask of the bits of a double that a seed keeps.
+/// Mask of the bits of a double that a seed (first approximation) keeps: sign, exponent and 8 bits of fraction.
 const SEED: u64 = !((1 << (52 - 8)) - 1);
 
-/// The constant 1.5 * 2^52. Its addition rounds a double below 2^51 in absolute value to an integer, ties to even.
+/// The constant 1.5 * 2^52. If a double below 2^51 in absolute value is added to this constant, the double is rounded
+/// to an integer, ties to even.
 pub(crate) const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 fn seed(exact: f64) -> f64 {

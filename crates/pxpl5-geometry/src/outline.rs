@@ -23,7 +23,8 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Returns twice the area, in 1/256 square px. The result is positive unless the corners are on one line.
+    /// Returns twice the area of the triangle, in 1/256 square px. The result is positive unless the corners are on one
+    /// line.
     #[inline(always)]
     pub(crate) fn twice_area(&self) -> i64 {
         let x = &self.x;
@@ -38,8 +39,8 @@ impl Outline {
         [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]
     }
 
-    /// Returns the edge between two corners. Its value at a pixel is twice the area of the triangle (from, to, pixel
-    /// centre), in 1/16 square px, rounded down.
+    /// Returns the edge between two corners. The value of the edge at a pixel is twice the area of the triangle (from,
+    /// to, pixel centre), in 1/16 square px, rounded down.
     ///
     /// In 1/256 square px, the value at pixel (x, y) is `16 (dx y - dy x) + k`. This value is at least 0 exactly if `dx
     /// y - dy x + floor(k / 16)` is at least 0, so rounding changes no covered pixel. A pixel whose centre is on the

@@ -28,7 +28,8 @@ use pxpl5_wire::Linear;
 /// distance, no intermediate result exceeds 2^50, and the error of all steps together is less than 1/2.
 pub const MAX_SLOPE: f64 = 68_719_476_736.0;
 
-/// The constant 1.5 * 2^52. Its addition rounds a number below 2^51 in absolute value to an integer, ties to even.
+/// The constant 1.5 * 2^52. If a number below 2^51 in absolute value is added to this constant, the number is rounded
+/// to an integer, ties to even.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Returns the integer nearest to a number below 2^51 in absolute value, modulo 2^32.
@@ -37,8 +38,8 @@ pub(crate) fn rounded(value: f64) -> i32 {
     (value + ROUND).to_bits() as i32
 }
 
-/// Returns the flat plane that replaces a plane that is too steep. Its value is the mean of the values `v` at the
-/// corners.
+/// Returns the constant plane that replaces a too steep plane. The value of the constant plane is the mean of the
+/// values `v` at the corners.
 pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
@@ -49,10 +50,10 @@ fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
 }
 
-/// Values that all planes of one triangle have in common.
+/// Values that depth, colour and normal planes of one triangle have in common.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
-    /// Distances from corner 0 to corners 1 and 2, in subpixels.
+    /// Distances from corner 0 to corners 1 and 2 along x, in subpixels.
     x: [f64; 2],
     y: [f64; 2],
     /// Factor from cross products to slopes per pixel: 16 divided by twice the area.

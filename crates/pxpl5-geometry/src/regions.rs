@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 pub struct RegionMask(u128);
 
 impl RegionMask {
-    /// Largest number of regions in a picture. Their indices are 0 to 127.
+    /// Largest number of regions in a picture. The indices of the regions are 0 to 127.
     pub const CAPACITY: u32 = u128::BITS;
 
     pub const EMPTY: Self = Self(0);

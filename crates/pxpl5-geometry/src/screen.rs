@@ -10,8 +10,8 @@ use pxpl5_wire::{Linear, format};
 /// Largest distance of a screen triangle's vertex from pixel (0, 0), in pixels, along x and along y.
 ///
 /// For a triangle inside the square of side 2 x 4096 px, twice the area is at most `(2^17)^2 = 2^34` in units of 1/256
-/// square px. Edge expressions are in units of 1/16 square px. Their values at any pixel inside the square are
-/// therefore at most 2^30, and no sum exceeds 32 bits.
+/// square px. Edge expressions are in units of 1/16 square px. The values of edge expressions at any pixel inside the
+/// square are therefore at most 2^30, and no sum exceeds 32 bits.
 pub const GUARD_PIXELS: i32 = 4096;
 
 /// Depth of the near plane: 8 units of pixel depth, with [`format::Z_FRACTION_BITS`] fraction bits.
@@ -27,7 +27,8 @@ pub const DEPTH_FAR: u32 = u32::MAX - 8 * DEPTH_ONE;
 /// One unit of the pixels' 24-bit depth, in the units of [`DEPTH_NEAR`].
 pub(crate) const DEPTH_ONE: u32 = 1 << format::Z_FRACTION_BITS;
 
-/// The constant 1.5 * 2^23. Its addition rounds a number below 2^22 in absolute value to an integer, ties to even.
+/// The constant 1.5 * 2^23. If a number below 2^22 in absolute value is added to this constant, the number is rounded
+/// to an integer, ties to even.
 const ROUND: f32 = 12_582_912.0;
 
 /// Returns the integer nearest to a number below 2^22 in absolute value.
@@ -73,7 +74,7 @@ pub(crate) fn depth_fixed(beyond_near: f64) -> u32 {
 /// A triangle on the screen, with surface values of type `A` (colours or normals) for its corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScreenTriangle<A> {
-    /// Corners, depths and touched regions.
+    /// Corners and depths of the triangle, and the regions that the triangle touches.
     pub outline: Outline,
     /// Colours or normals of the corners, in the order of the outline's corners.
     pub surface: A,
@@ -148,7 +149,7 @@ impl Outline {
         PhongTriangle { edges: self.picture_edges(viewport), z, normal: [nx, ny, nz], colour }
     }
 
-    /// Returns the edge expressions over the pixels of the picture.
+    /// Returns the edge expressions of the triangle over the pixels of the picture.
     #[inline(always)]
     fn picture_edges(&self, viewport: &Viewport) -> [Linear; 3] {
         let [a, b, c] = self.edges();
@@ -178,7 +179,7 @@ impl Outline {
     }
 }
 
-/// Returns one of three surface values, for each of three corners.
+/// Returns component `number` of the surface values, for each of three corners.
 #[inline(always)]
 fn component([a, b, c]: &[[f32; 3]; 3], number: usize) -> [f64; 3] {
     [f64::from(a[number]), f64::from(b[number]), f64::from(c[number])]
@@ -205,7 +206,7 @@ pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
 }
 
 impl<A> ScreenTriangle<A> {
-    /// Returns the edge expressions over the pixels of the picture.
+    /// Returns the edge expressions of the triangle over the pixels of the picture.
     #[must_use]
     pub fn edges(&self, viewport: &Viewport) -> [Linear; 3] {
         self.outline.picture_edges(viewport)
@@ -213,7 +214,8 @@ impl<A> ScreenTriangle<A> {
 }
 
 impl ScreenTriangle<VertexColours> {
-    /// Computes the expressions for `viewport`, which must be the picture of the transform.
+    /// Computes the linear expressions of the triangle over the pixels of `viewport`. This picture must be the picture
+    /// of the [`Transform`](crate::Transform) that made the triangle.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, stats: &mut SetupStats) -> GouraudTriangle {
         let [a, b, c] = &self.surface.0;
@@ -223,7 +225,8 @@ impl ScreenTriangle<VertexColours> {
 }
 
 impl ScreenTriangle<SurfaceNormals> {
-    /// Computes the expressions for `viewport`, which must be the picture of the transform.
+    /// Computes the linear expressions of the triangle over the pixels of `viewport`. This picture must be the picture
+    /// of the [`Transform`](crate::Transform) that made the triangle.
     #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongTriangle {
         let [a, b, c] = &self.surface.normals;
@@ -257,5 +260,5 @@ pub(crate) fn normal_value(component: i16) -> f32 {
     (i32::from(component) * SCALE) as f32 + NORMAL_HALF
 }
 
-/// Half a unit of a normal's component, in units of the expression.
+/// Half a unit of a normal's component, in units of the expression. The addition of this number makes truncation round.
 pub(crate) const NORMAL_HALF: f32 = (1 << (format::NORMAL_FRACTION_BITS - 1)) as f32;

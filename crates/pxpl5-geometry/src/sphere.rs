@@ -70,7 +70,7 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
     v.map(|c| c * inverse)
 }
 
-/// Returns the component of `v` perpendicular to the unit vector `axis`, scaled to length 1.
+/// Returns the part of `v` that is perpendicular to the unit vector `axis`, scaled to length 1.
 fn across(v: [f64; 3], axis: [f64; 3]) -> [f64; 3] {
     let along = dot(v, axis);
     unit(std::array::from_fn(|i| v[i] - along * axis[i]))
@@ -134,7 +134,8 @@ impl Lens {
         if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
     }
 
-    /// Returns the sphere's image as a conic `Q = bulge^2`, and the plane of depth at the silhouette.
+    /// Returns the sphere's image as a conic `Q = bulge^2`, and the plane of depth at the silhouette. The bulge is the
+    /// depth of this plane minus the depth of the sphere.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
         let [cx, cy, cz] = sphere.centre;
         let r = sphere.radius;
@@ -232,7 +233,7 @@ impl Transform {
 /// rounding of the quadratic expression.
 pub(crate) const SLACK: f64 = 1.0 / 64.0;
 
-/// Returns the pixels whose centres are in an interval. Coordinate 0 is the centre of pixel 0.
+/// Returns the pixels whose centres are in the interval from `low` to `high`. Coordinate 0 is the centre of pixel 0.
 fn pixels([low, high]: [f64; 2]) -> Range {
     Range { first: near_screen((low - SLACK).ceil()) as i32, last: near_screen((high + SLACK).floor()) as i32 }
 }

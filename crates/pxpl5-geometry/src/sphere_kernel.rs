@@ -1,7 +1,7 @@
 //! Set-up of spheres as code of the graphics processor: i860 assembly, and its memory layout. [`crate::kernel`] is the
 //! corresponding code for triangles.
 //!
-//! A [`SphereKernel`] reads the spheres of the display list. It computes the words of their renderer commands and puts
+//! A [`SphereKernel`] reads the spheres of the display list, computes the words of the renderer commands and puts
 //! the commands into bins. The steps are: centre and radius in eye coordinates, tests against the near and far plane,
 //! conic, bounding box, regions, conic in fixed point, and planes of depth and surface. There is only one version of
 //! the sphere code, in the style of the compiled triangle kernels. This version is used with every optimization level
@@ -31,7 +31,7 @@ pub struct SphereKernel {
 /// Number of words that a sphere takes in the display list.
 pub const SPHERE_WORDS: usize = 8;
 
-/// Number of words of the parameter block.
+/// Number of words of a sphere kernel's parameter block.
 pub const SPHERE_PARAMETER_WORDS: usize = SIZE + 3;
 
 /// Position, in words of the parameter block, of the blank command into which the kernel writes operands.
@@ -51,7 +51,7 @@ impl SphereKernel {
         KernelPicture::of(viewport).map(|picture| Self { surface, picture, keeps_boxes: false })
     }
 
-    /// Returns the source in i860 assembly. Execution begins at the label `spheres`.
+    /// Returns the kernel's source in i860 assembly. Execution begins at the label `spheres`.
     #[must_use]
     pub fn source(&self) -> String {
         let choices = kernel::choices(&[
@@ -65,7 +65,7 @@ impl SphereKernel {
         [&choices, parameters, kernel::PICTURE, kernel::NEWTON, include_str!("../kernels/sphere.s")].join("\n")
     }
 
-    /// Returns the number of words of a sphere's command.
+    /// Returns the number of words of a sphere's renderer command.
     #[must_use]
     pub const fn command_words(&self) -> usize {
         match self.surface {
@@ -107,7 +107,7 @@ impl SphereKernel {
         Some(words)
     }
 
-    /// Returns the constants that depend on the picture, and other constants that the code uses.
+    /// Returns the constants for the kernel's parameter block. Some of these constants depend on the picture.
     fn constants(&self, viewport: &Viewport) -> [f64; 27] {
         let [width, lines] = [viewport.grid().width, viewport.frame_lines()];
         let half = lens::half_frame(width, lines);
@@ -157,7 +157,7 @@ fn doubles(words: &mut [Word], values: &[f64]) {
     }
 }
 
-/// Returns a sphere in the format of the display list.
+/// Returns the words of a sphere in the format of the display list.
 #[must_use]
 pub fn sphere_words(sphere: &WorldSphere) -> [Word; SPHERE_WORDS] {
     let [x, y, z] = sphere.centre.to_array().map(f32::to_bits);

@@ -21,12 +21,12 @@ pub struct SphereSetup {
     /// The unit of the expression differs from the unit of [`format::QUADRATIC_FRACTION_BITS`]. The unit is chosen so
     /// that the root needs no factor.
     pub silhouette: Quadratic,
-    /// Number of low bits of the silhouette that the root ignores, 0 to 24.
+    /// Number of low bits of the silhouette expression that the square root ignores, 0 to 24.
     pub root_shift: u8,
     /// Depth of the plane through the silhouette, with [`format::Z_FRACTION_BITS`] fraction bits. The plane includes a
     /// correction for the rounding of the root.
     pub depth: Linear,
-    /// Left shift of the root, in bits, before its subtraction from the depth: 0 to 20.
+    /// Left shift of the square root, in bits, before the subtraction of the root from the depth: 0 to 20.
     pub depth_shift: u8,
 }
 
@@ -35,9 +35,11 @@ pub struct SphereSetup {
 pub struct GouraudSphere {
     /// Silhouette and depth of the sphere.
     pub setup: SphereSetup,
-    /// Linear part of red, green and blue, with [`format::COLOUR_FRACTION_BITS`] fraction bits.
+    /// Linear part of red, green and blue, with [`format::COLOUR_FRACTION_BITS`] fraction bits. A multiple of the
+    /// square root is added to this part.
     pub rgb: [Linear; 3],
-    /// Factors of the root, 0 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
+    /// Factors of the square root, 0 to 511, one for each colour component: component = limit(linear + ((root >> 4) *
+    /// factor >> 8)).
     pub root_factor: [u16; 3],
 }
 
@@ -67,7 +69,8 @@ impl Slope {
     /// Converts the plane to fixed point, modulo 2^32, like every linear expression. The result is most exact at the
     /// pixel `pixel`.
     ///
-    /// If the absolute value of a slope exceeds 2^31, the plane is replaced by a flat plane and counts as flattened.
+    /// If the absolute value of a slope exceeds 2^31, the plane is replaced by a constant plane and counted in
+    /// [`SetupStats::flattened_planes`].
     fn fixed(&self, pixel: [i32; 2], stats: &mut SetupStats) -> Linear {
         if !self.slope.iter().all(|s| s.abs() < MAX_SLOPE) {
             stats.flattened_planes += 1;
@@ -86,7 +89,7 @@ fn modulo_2_32(value: f64) -> i32 {
     whole(value) as i32
 }
 
-/// Limits a factor of the root to the command's range, 0 to 511. NaN becomes 0.
+/// Limits a factor of the square root to the range of the sphere command, 0 to 511. NaN becomes 0.
 #[allow(clippy::manual_clamp, reason = "`clamp` would leave a NaN")]
 fn limited(factor: f64) -> i64 {
     whole(factor.max(0.0).min(511.0))
@@ -117,7 +120,7 @@ impl ScreenSphere {
         ]
     }
 
-    /// Returns the pixel at which planes are most exact: the middle of the sphere's visible part.
+    /// Returns the pixel at which the sphere's planes are most exact: the middle of the sphere's visible part.
     fn middle(&self, rectangle: [[i32; 2]; 2]) -> [i32; 2] {
         std::array::from_fn(|i| {
             let [first, last] = rectangle[i].map(f64::from);
@@ -155,9 +158,9 @@ impl ScreenSphere {
 
     /// Computes the operands for interpolated colour.
     ///
-    /// The root gives the component of the normal towards the eye. The other components are approximated by linear
-    /// expressions on the screen. Because of this approximation, a pixel that faces away from the light is darker than
-    /// ambient light. Light from behind the sphere adds nothing.
+    /// The square root gives the component of the normal towards the eye. The other components are approximated by
+    /// linear expressions on the screen. Because of this approximation, a pixel that faces away from the light is
+    /// darker than ambient light. Light from behind the sphere adds nothing.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, light: &Light, stats: &mut SetupStats) -> GouraudSphere {
         let (setup, conic) = self.common(viewport, stats);
@@ -183,7 +186,7 @@ impl ScreenSphere {
         GouraudSphere { setup, rgb, root_factor }
     }
 
-    /// Computes the operands for shading at the end of the frame.
+    /// Computes the operands of a command whose pixels are shaded at the end of the frame.
     #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongSphere {
         let (setup, conic) = self.common(viewport, stats);

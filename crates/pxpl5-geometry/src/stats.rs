@@ -26,7 +26,7 @@ pub struct SetupStats {
     /// pixel centres.
     pub untouched: u64,
     /// Number of planes of depth, colour or normal that were steeper than [`crate::MAX_SLOPE`] and were replaced by
-    /// flat planes.
+    /// planes with a constant value.
     pub flattened_planes: u64,
     /// Number of spheres passed to the set-up, visible or not.
     pub spheres: u64,

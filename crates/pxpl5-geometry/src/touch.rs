@@ -4,7 +4,7 @@ use crate::regions::RegionMask;
 use crate::stats::SetupStats;
 use pxpl5_wire::RegionId;
 
-/// The result of binning one triangle.
+/// The regions that one triangle touches, or the reason why the triangle is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
     /// The triangle needs clipping. [`crate::Transform::bin`] clips the triangle and finds its regions.
@@ -13,7 +13,7 @@ pub enum Touch {
     Degenerate,
     /// The triangle is a back face, and the culling mode excludes back faces.
     BackFacing,
-    /// The triangle touches no region. The triangle is off the screen or between pixel centres.
+    /// The triangle touches no region, because it is off the screen or between pixel centres.
     Untouched,
     /// The triangle touches only this region.
     Region(RegionId),

@@ -10,11 +10,11 @@ use crate::{RegionMask, ScreenVertex, Transform};
 use multiversion::multiversion;
 use pxpl5_wire::RegionId;
 
-/// Binning results of the triangles of a mesh, four bytes for each triangle.
+/// The regions of all triangles of a mesh, four bytes for each triangle.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
-    /// For each triangle: the index of its region, a code without a region, or [`SEVERAL`] plus an index into
-    /// `several`.
+    /// A code for each triangle. The code is the index of the triangle's only region, or [`SEVERAL`] plus an index into
+    /// `several`. Other codes state why the triangle has no known region.
     codes: Vec<u32>,
     several: Vec<RegionMask>,
 }
@@ -26,7 +26,7 @@ const BACK_FACING: u32 = NEEDS_CLIPPING + 2;
 const UNTOUCHED: u32 = NEEDS_CLIPPING + 3;
 
 impl Touched {
-    /// Returns the binning result of triangle `i`.
+    /// Returns the regions that triangle `i` touches, or the reason why the triangle is not drawn.
     ///
     /// # Panics
     /// Panics if there is no triangle `i`.
@@ -70,7 +70,7 @@ impl Touched {
 }
 
 impl Transform {
-    /// Bins triangles. The results equal the results of [`Self::bin`].
+    /// Finds the regions that each triangle of a list touches. The results equal the results of [`Self::bin`].
     ///
     /// Triangles are given by the indices of their corners. `vertices` begins with the vertex of index `first`. The
     /// vertices must come from this view.
@@ -105,7 +105,7 @@ impl Transform {
         all.codes.extend_from_slice(&found.codes[..len]);
     }
 
-    /// Returns the binning result of a triangle whose bounding box meets more than one region.
+    /// Returns the regions that a triangle touches. The bounding box of the triangle must meet more than one region.
     fn touch_several(&self, corners: &CornerLanes, found: &LaneTouches, lane: usize) -> Touch {
         let [x, y] = corners.clockwise(lane);
         Touch::from_mask(self.binner.test_edges(x, y, range_in(lane, &found.x), range_in(lane, &found.y)))
@@ -134,7 +134,7 @@ impl CornerLanes {
         Self(all)
     }
 
-    /// Returns x (axis 0) or y (axis 1) of the corners.
+    /// Returns the corners' x coordinates (axis 0) or y coordinates (axis 1).
     #[inline(always)]
     fn coordinate(&self, axis: usize) -> [EachLane<i32>; 3] {
         let mut all = [[0; LANES]; 3];
@@ -154,7 +154,7 @@ impl CornerLanes {
     }
 }
 
-/// Results of binning several triangles by their bounding boxes.
+/// Results of a first search for the regions of several triangles, by the bounding boxes of the triangles.
 struct LaneTouches {
     /// Codes as in [`Touched`]. The code is [`SEVERAL`] without an index if the edges must decide between several
     /// regions.
@@ -215,7 +215,7 @@ fn areas([[a, b, c], [d, e, f]]: &[[EachLane<i32>; 3]; 2]) -> EachLane<f64> {
     out
 }
 
-/// Returns the smallest and largest of the corners' coordinates.
+/// Returns the smallest and the largest coordinate of the three corners, for each triangle.
 #[inline(always)]
 fn extent([p, q, r]: &[EachLane<i32>; 3]) -> [EachLane<i32>; 2] {
     let mut low = [0; LANES];
@@ -241,8 +241,8 @@ fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> 
     [first, last]
 }
 
-/// Returns the column or row of regions whose pixel-centre box contains all corners, for each triangle. Returns -1 if
-/// no box contains all corners.
+/// Returns, for each triangle, the column or row of regions that contains all corners. Returns -1 if no column or row
+/// contains all corners. The corners must lie between the centres of the first and the last pixel of the column or row.
 ///
 /// The argument of `of` is a pixel. `of` returns the pixel's column or row of regions, and the first and last pixel or
 /// line of this column or row.

@@ -8,16 +8,17 @@ use crate::newton;
 use crate::outline::{Outline, SUBPIXELS};
 use crate::screen::{self, ScreenTriangle, SurfaceNormals, VertexColours};
 use crate::touch::Touch;
-use crate::view::{Columns, FromWorld, ViewError};
+use crate::view::{Columns, FromWorld};
 use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 /// Culling mode, which selects triangles by their winding. Selected triangles are not drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Culling {
-    /// All triangles are drawn.
+    /// Both windings: all triangles are drawn.
     #[default]
     None,
     /// Back faces are not drawn. A back face is a triangle whose corners run clockwise in model coordinates, seen from
@@ -26,7 +27,7 @@ pub enum Culling {
 }
 
 impl Culling {
-    /// Both choices with their names.
+    /// Both culling modes with their names.
     pub const ALL: [(&str, Self); 2] = [("none", Self::None), ("back", Self::Back)];
 }
 
@@ -38,7 +39,7 @@ pub struct Transform {
     pub(crate) viewport: Viewport,
     pub(crate) to_eye: FromWorld,
     pub(crate) normals: NormalRows,
-    /// Projection of spheres. `None` if the view's projection is unsuitable for spheres.
+    /// Projection of spheres. `None` if the view's projection cannot show spheres.
     pub(crate) lens: Option<Lens>,
     pub(crate) to_clip: FromWorld,
     pub(crate) to_screen: ToScreen,
@@ -78,8 +79,8 @@ pub struct TriangleEnds {
 }
 
 impl TriangleEnds {
-    /// Returns the corners interpolated between the two views, in whole subpixels. `s` is 0 in the first view and 1 in
-    /// the second.
+    /// Returns the corners of the triangle, interpolated between the two views, in whole subpixels. `s` is 0 in the
+    /// first view and 1 in the second.
     fn at(&self, s: f64) -> [Snapped; 3] {
         std::array::from_fn(|i| Snapped {
             x: whole_between(self.from[i].x.into(), self.to[i].x.into(), s) as i32,
@@ -101,7 +102,7 @@ fn whole_between(from: f64, to: f64, s: f64) -> f64 {
     (from + (to - from) * s + 0.5).floor()
 }
 
-/// Returns half of `pixels`, converted to subpixels.
+/// Returns half of `pixels`, in subpixels.
 fn half_in_subpixels(pixels: u32) -> f32 {
     (pixels * SUBPIXELS as u32) as f32 * 0.5
 }
@@ -113,8 +114,8 @@ impl ToScreen {
         Self { scale: [x, -y], centre: [x, y] }
     }
 
-    /// Returns the guard band. Its limits are one pixel inside [`screen::GUARD_PIXELS`], so that rounded positions stay
-    /// within [`screen::GUARD_PIXELS`].
+    /// Returns the guard band. The limits of the guard band are one pixel inside [`screen::GUARD_PIXELS`], so that
+    /// rounded positions stay within [`screen::GUARD_PIXELS`].
     fn guard(&self) -> Guard {
         let limit = ((screen::GUARD_PIXELS - 1) * SUBPIXELS) as f32;
         Guard { x: (limit - self.centre[0]) / self.centre[0], y: (limit - self.centre[1]) / self.centre[1] }
@@ -155,7 +156,7 @@ impl ToScreen {
     }
 }
 
-/// Outline of a screen triangle, and the relation of its corner order to the input order.
+/// Outline of a screen triangle, and the relation between the outline's order of corners and the order of the input.
 pub(crate) struct Assembled {
     pub(crate) outline: Outline,
     /// True if corners 1 and 2 were exchanged, so that the corners run clockwise.
@@ -179,7 +180,7 @@ impl Assembled {
         (twice_area != 0).then_some(Self { outline, swapped })
     }
 
-    /// Rearranges one value for each corner from the input order to the outline's order.
+    /// Rearranges three values, one for each corner, from the input order of the corners to the outline's order.
     #[inline(always)]
     pub(crate) fn order<T>(&self, [p, q, r]: [T; 3]) -> [T; 3] {
         if self.swapped { [p, r, q] } else { [p, q, r] }
@@ -203,14 +204,15 @@ impl Transform {
     /// Prepares a view of the world for one picture.
     ///
     /// # Errors
-    /// Returns [`ViewError::NotFinite`] if a matrix contains NaN or an infinity.
-    pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, ViewError> {
+    /// Returns a [`SettingError`] if a matrix contains NaN or an infinity.
+    pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, SettingError> {
         let model_view = Columns::from_matrix(&view.model_view);
         let projection = Columns::from_matrix(&view.projection);
         // Reject NaN and infinities here, so that later steps need no test for them.
         for (matrix, columns) in [("model-view", &model_view), ("projection", &projection)] {
             if !columns.is_finite() {
-                return Err(ViewError::NotFinite { matrix });
+                let name = format!("{matrix} matrix");
+                return Err(SettingError::value(&name, "finite numbers", "NaN or infinity"));
             }
         }
         let to_screen = ToScreen::new(&viewport);
@@ -233,7 +235,7 @@ impl Transform {
         })
     }
 
-    /// Returns the picture of this view.
+    /// Returns the picture for which this view was prepared.
     #[must_use]
     pub const fn viewport(&self) -> &Viewport {
         &self.viewport
@@ -344,8 +346,8 @@ impl Transform {
         clip.iter().all(|c| self.guard.contains(*c)).then(|| clip.map(|c| self.to_screen.snap(c)))
     }
 
-    /// Sets up a triangle at a position between two views, with the light of this view. `s` is 0 in the first view and
-    /// 1 in the second.
+    /// Sets up a triangle whose corners are interpolated between two views, with the light of this view. `s` is 0 in
+    /// the first view and 1 in the second.
     pub fn gouraud_between(
         &self,
         ends: &TriangleEnds,
@@ -363,8 +365,8 @@ impl Transform {
         }
     }
 
-    /// Calls `sink` with the outline of a triangle at a position between two views, like [`Self::gouraud_between`], but
-    /// without colours.
+    /// Calls `sink` with the outline of a triangle whose corners are interpolated between two views. The outline equals
+    /// the outline of [`Self::gouraud_between`]; no colours are computed.
     pub fn outline_between(&self, ends: &TriangleEnds, s: f64, stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
@@ -383,8 +385,8 @@ impl Transform {
         Some(whole)
     }
 
-    /// Returns the binning result of a triangle whose corners are inside the guard band. `whole` is `None` for a
-    /// triangle without area.
+    /// Returns the regions that a triangle touches, or the reason why the triangle is not drawn. The corners must be
+    /// inside the guard band. `whole` is `None` for a triangle without area.
     #[inline(always)]
     fn touch(&self, whole: Option<&Assembled>) -> Touch {
         let Some(whole) = whole else { return Touch::Degenerate };

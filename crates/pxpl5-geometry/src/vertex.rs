@@ -15,7 +15,7 @@ use glam::Vec3;
 use multiversion::multiversion;
 use pxpl5_wire::LANES;
 
-/// A vertex on the screen in one view. All triangles at this vertex share this vertex.
+/// A vertex on the screen in one view. All triangles that meet at this point use the same vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex(pub(crate) Snapped);
 
@@ -32,8 +32,8 @@ const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
 #[repr(align(32))]
 pub struct SurfaceVertex {
     pub(crate) screen: ScreenVertex,
-    /// Degree to which the normal faces the eye. The value is negative if the normal faces away, and 0 for vertices
-    /// with colours.
+    /// Degree to which the normal faces the eye. The value is negative if the normal faces away from the eye. The value
+    /// is 0 for vertices with colours.
     pub(crate) facing: f32,
     /// Colour or normal, in the units of the plane expressions. Colours include half a unit for rounding, and normals
     /// do not.

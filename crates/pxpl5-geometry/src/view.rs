@@ -3,6 +3,7 @@
 use crate::newton;
 use crate::regions::RegionMask;
 use glam::{Mat4, Vec3};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid};
 use serde::{Deserialize, Serialize};
 
@@ -39,42 +40,6 @@ struct PictureFields {
     lines: Lines,
 }
 
-/// Reason why a picture or a view is invalid.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ViewError {
-    /// The picture is empty or larger than [`MAX_PICTURE`].
-    #[error(
-        "picture: expected 1 to {MAX_PICTURE} pixels by 1 to {MAX_PICTURE} frame lines, found {width} x {frame_lines}"
-    )]
-    PictureSize {
-        /// Width found, in pixels.
-        width: u32,
-        /// Height found, in frame lines.
-        frame_lines: u32,
-    },
-    /// A region is empty or larger than the renderer's array.
-    #[error("region: expected 1 to {REGION_SIZE} pixels by 1 to {REGION_SIZE} lines, found {width} x {height}")]
-    RegionSize {
-        /// Width found, in pixels.
-        width: u32,
-        /// Height found, in lines.
-        height: u32,
-    },
-    /// The picture has more regions than a [`RegionMask`] can hold.
-    #[error("picture: expected at most {} regions, found {found}", RegionMask::CAPACITY)]
-    Regions {
-        /// Number of regions found.
-        found: u32,
-    },
-    /// A matrix contains NaN or an infinity.
-    #[error("{matrix} matrix: expected finite numbers, found NaN or infinity")]
-    NotFinite {
-        /// Name of the matrix: `"model-view"` or `"projection"`.
-        matrix: &'static str,
-    },
-}
-
 impl Viewport {
     /// A whole NTSC frame: 640 x 480 in 20 regions (TR94).
     pub const FRAME: Self = Self { grid: RegionGrid::FRAME, lines: Lines::Frame };
@@ -89,21 +54,24 @@ impl Viewport {
     /// Creates a picture with any size and any division into regions.
     ///
     /// # Errors
-    /// Returns [`ViewError`] if a size is zero or too large, or if there are more regions than a [`RegionMask`] can
+    /// Returns a [`SettingError`] if a size is zero or too large, or if there are more regions than a [`RegionMask`] can
     /// hold.
-    pub fn new(grid: RegionGrid, lines: Lines) -> Result<Self, ViewError> {
+    pub fn new(grid: RegionGrid, lines: Lines) -> Result<Self, SettingError> {
         let step = Self { grid, lines }.line_step();
         let frame_lines = grid.height.saturating_mul(step);
         if !is_one_to(MAX_PICTURE, grid.width) || !is_one_to(MAX_PICTURE, frame_lines) {
-            return Err(ViewError::PictureSize { width: grid.width, frame_lines });
+            let expected = format_args!("1 to {MAX_PICTURE} pixels by 1 to {MAX_PICTURE} frame lines");
+            return Err(SettingError::value("picture", expected, format_args!("{} x {frame_lines}", grid.width)));
         }
         let width = grid.region_width;
         let height = grid.region_height;
         if !is_one_to(REGION_SIZE, width) || !is_one_to(REGION_SIZE, height) {
-            return Err(ViewError::RegionSize { width, height });
+            let expected = format_args!("1 to {REGION_SIZE} pixels by 1 to {REGION_SIZE} lines");
+            return Err(SettingError::value("region", expected, format_args!("{width} x {height}")));
         }
         if grid.regions() > RegionMask::CAPACITY {
-            return Err(ViewError::Regions { found: grid.regions() });
+            let expected = format_args!("at most {} regions", RegionMask::CAPACITY);
+            return Err(SettingError::value("picture", expected, grid.regions()));
         }
         Ok(Self { grid, lines })
     }
@@ -150,9 +118,9 @@ fn is_one_to(most: u32, size: u32) -> bool {
 }
 
 impl TryFrom<PictureFields> for Viewport {
-    type Error = ViewError;
+    type Error = SettingError;
 
-    fn try_from(fields: PictureFields) -> Result<Self, ViewError> {
+    fn try_from(fields: PictureFields) -> Result<Self, SettingError> {
         Self::new(fields.grid, fields.lines)
     }
 }
@@ -174,7 +142,7 @@ impl Columns {
         Self(matrix.to_cols_array_2d())
     }
 
-    /// Returns the element in a row and a column.
+    /// Returns the matrix element in the given row and column.
     pub(crate) fn cell(&self, row: usize, column: usize) -> f64 {
         f64::from(self.0[column][row])
     }

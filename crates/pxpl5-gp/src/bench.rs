@@ -4,8 +4,8 @@ use crate::board::{GpBoard, GpEvent, GpOutput};
 use pxpl5_sim::{Phase, TestBench, Time};
 use pxpl5_wire::Message;
 
-/// A board in a [`TestBench`], which holds its event queue. The test supplies the messages and acceptances that other
-/// boards would send.
+/// A board together with a [`TestBench`], which holds the board's event queue. The test supplies the messages and
+/// acceptances that other boards would send.
 #[derive(Debug)]
 pub struct BoardBench {
     /// The board under test with its programs.
@@ -15,7 +15,7 @@ pub struct BoardBench {
 }
 
 impl BoardBench {
-    /// Makes a bench and schedules the first poll of the programs at time zero.
+    /// Makes a bench for a board and schedules the first poll of the board's programs at time zero.
     #[must_use]
     pub fn new(board: GpBoard) -> Self {
         let mut bench = TestBench::new();
@@ -28,8 +28,8 @@ impl BoardBench {
         self.bench.feed(at, Phase::Arrive, event);
     }
 
-    /// Schedules the acceptance of all messages that the board has sent and the receivers have not yet accepted. The
-    /// acceptance happens at time `at`.
+    /// Schedules, at time `at`, the acceptance of all messages that the board has sent and the receivers have not yet
+    /// accepted.
     pub fn accept_all(&mut self, at: Time) {
         while let Some((_, GpOutput::Send { ticket, .. })) = self.bench.outputs.get(self.accepted) {
             let accepted = GpEvent::Accepted(*ticket);

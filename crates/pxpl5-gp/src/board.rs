@@ -1,4 +1,5 @@
-//! The graphics processor board. After each event that can end a wait, the board polls its programs.
+//! The graphics processor board. After each event that can end the wait of a program, the board polls its programs:
+//! each program continues until it must wait again.
 
 use crate::cpu::{Cpu, Priority};
 use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Shared, Wait};
@@ -20,21 +21,23 @@ use std::task::{Context as TaskContext, Poll, Waker};
 pub enum GpEvent {
     /// The last word of a message has arrived. The event belongs to phase `Arrive` of the event queue.
     Delivered(Message),
-    /// A receiver has accepted a message of a batch. The number is the `ticket` of the message in [`GpOutput::Send`].
-    /// The event belongs to phase `Arrive` of the event queue.
+    /// A receiver has accepted a message of a batch (messages that were sent together). The number is the `ticket` of
+    /// the message in [`GpOutput::Send`]. The event belongs to phase `Arrive` of the event queue.
     Accepted(u64),
     /// A retrace begins a field. The event belongs to phase `Arrive` of the event queue.
     Retrace(PeriodNumber),
-    /// A status line of another board has changed. The event belongs to phase `Arrive` of the event queue.
+    /// The status signal of another board has changed. This signal carries one number. The event belongs to phase
+    /// `Arrive` of the event queue.
     Status {
-        /// Port of the board whose status line has changed.
+        /// Port of the board whose status signal has changed.
         from: NodeId,
-        /// New value of the status line.
+        /// New value of the status signal.
         value: u64,
     },
     /// The board runs its programs, which read the inputs that have arrived at this instant.
     Poll,
-    /// The running work of the CPU may end at this instant. An interrupt may have delayed the end to a later time.
+    /// The running work of the CPU can end at this instant. If an interrupt has delayed the end of the work, the event
+    /// has no effect.
     WorkEnds,
 }
 
@@ -46,8 +49,8 @@ pub enum GpOutput {
     Send {
         /// Message with its destination.
         message: Message,
-        /// Number of the batch, followed by the index of the message in the batch. The index occupies the lower
-        /// [`PLACE_BITS`] bits.
+        /// Number of the batch (messages that are sent together), followed by the index of the message in the batch.
+        /// The index occupies the lower [`PLACE_BITS`] bits.
         ticket: u64,
         /// True if the receiver's port stays reserved for the next message of this board.
         hold: bool,
@@ -65,13 +68,14 @@ pub struct GpUse {
     pub busy: Span,
     /// CPU time of the software that receives and sends messages.
     pub messages: Span,
-    /// CPU time of work that [answers](crate::Gp::answer) messages. Such work sends bins to a renderer when a token
-    /// arrives.
+    /// CPU time of work that [answers](crate::Gp::answer) messages. This work sends a bin to a renderer when the token
+    /// of the region arrives.
     pub tokens: Span,
 }
 
 impl GpUse {
-    /// Returns the CPU time of all work except message software and token work, for example of EDIT and TRANSFORM.
+    /// Returns the CPU time of all work except message software and the answers to tokens. This work includes EDIT and
+    /// TRANSFORM.
     #[must_use]
     pub const fn work(&self) -> Span {
         Span(self.busy.0.saturating_sub(self.messages.0 + self.tokens.0))
@@ -88,8 +92,8 @@ struct Task {
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
-    /// Times at which a [`GpEvent::WorkEnds`] is scheduled. Besides the next end of work, the list has earlier ends
-    /// that an interrupt has delayed.
+    /// Times at which a [`GpEvent::WorkEnds`] is scheduled. The list has the next end of work. The list can also have
+    /// earlier times, at which work would have ended without an interrupt.
     announced: Vec<Time>,
     poll_pending: bool,
     cycle: Span,
@@ -103,8 +107,8 @@ impl fmt::Debug for GpBoard {
 }
 
 impl GpBoard {
-    /// Makes a board without programs at a ring port. Each output leaves the board at a time of one `cycle` after its
-    /// cause.
+    /// Makes a board without programs at a ring port. Each output leaves the board one `cycle` after the event that
+    /// causes the output.
     #[must_use]
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
@@ -115,6 +119,7 @@ impl GpBoard {
             memory: Memory::new(node, timing.memory_bytes, timing.bin_bytes),
             processor: None,
             vertex_transforms: 0,
+            found_store_full: false,
             message_software: Span::ZERO,
             answer_work: Span::ZERO,
             inbox: VecDeque::new(),
@@ -137,7 +142,8 @@ impl GpBoard {
     }
 
     /// Makes the board run i860 code for each [`Work`](crate::Work) instead of using the timing table. `core`
-    /// configures the i860. Boards with the same `shelf` share decoded programs and their memoized clocks.
+    /// configures the i860. Boards with the same `shelf` (store of decoded programs) share decoded programs and their
+    /// memoized clocks.
     pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, shelf: &Rc<RefCell<i860::DecodedPrograms>>) {
         let shared = &mut *self.shared.borrow_mut();
         let mut processor = Processor::new(shared.node, shared.timing.memory_bytes, version, core);
@@ -153,7 +159,7 @@ impl GpBoard {
         }
     }
 
-    /// Returns a handle to the board for a program of this priority.
+    /// Returns a handle to the board for the program of this priority.
     #[must_use]
     pub fn handle_for(&self, priority: Priority) -> Gp {
         Gp { shared: Rc::clone(&self.shared), priority }
@@ -192,7 +198,7 @@ impl GpBoard {
         }
     }
 
-    /// Polls the programs, starts the next batch of messages and schedules the end of work.
+    /// Polls the programs, passes the next batch of messages to the ring, and schedules the end of CPU work.
     fn work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
         self.poll_pending = false;
         {
@@ -215,7 +221,8 @@ impl GpBoard {
         self.announce(end, context);
     }
 
-    /// Polls the programs if the running work ends now. If an interrupt has delayed the end, the event has no effect.
+    /// Polls the programs if the running CPU work ends now. If an interrupt has delayed the end of the work, the event
+    /// has no effect.
     fn end_of_work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
         let now = context.now();
         self.announced.retain(|at| *at > now);
@@ -232,8 +239,8 @@ impl GpBoard {
         }
     }
 
-    /// Polls the programs in turn until all of them wait for an event outside the board. Each poll runs a program until
-    /// it waits. A program is polled again only after progress of the board's other program.
+    /// Polls the programs in turn until all programs wait for an event outside the board. A poll lets a program
+    /// continue until it must wait again. A program is polled again only after progress of the board's other program.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
@@ -270,7 +277,7 @@ impl GpBoard {
         true
     }
 
-    /// Returns the fault that has stopped a program or the board, if any.
+    /// Returns the fault (an input that cannot be processed) that has stopped a program or the board, if any.
     #[must_use]
     pub const fn fault(&self) -> Option<&Fault> {
         self.fault.as_ref()
@@ -304,6 +311,13 @@ impl GpBoard {
         self.shared.borrow().vertex_transforms
     }
 
+    /// Returns true if a program has decided otherwise because the backing store of a renderer was full
+    /// ([`Gp::note_full_store`]).
+    #[must_use]
+    pub fn found_store_full(&self) -> bool {
+        self.shared.borrow().found_store_full
+    }
+
     /// Returns the greatest number of memory bytes that were in use at the same time.
     #[must_use]
     pub fn memory_peak_bytes(&self) -> u64 {
@@ -317,7 +331,7 @@ impl GpBoard {
         GpSnapshot::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
     }
 
-    /// Calls `look` with the i860 and returns the result. A board without i860 code returns `None`.
+    /// Calls `look` with the board's i860 and returns the result. Returns `None` if the board does not run i860 code.
     pub fn with_processor<T>(&self, look: impl FnOnce(&Processor) -> T) -> Option<T> {
         self.shared.borrow().processor.as_deref().map(look)
     }

@@ -5,9 +5,9 @@ use pxpl5_sim::{Span, Time};
 /// CPU priority of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Priority {
-    /// The interrupt program. While it spends CPU time, the foreground program is suspended.
+    /// The interrupt program. While the interrupt program spends CPU time, the foreground program is suspended.
     Interrupt,
-    /// The foreground program. It runs while the interrupt program spends no CPU time.
+    /// The foreground program. The foreground program runs while the interrupt program spends no CPU time.
     Foreground,
 }
 
@@ -74,8 +74,8 @@ impl Cpu {
         self.busy
     }
 
-    /// Returns the CPU time that all programs together have spent up to `now`. `now` must not be earlier than the last
-    /// call of [`Cpu::settle`].
+    /// Returns the CPU time that all programs of the board together have spent up to `now`. `now` must not be earlier
+    /// than the last call of [`Cpu::settle`].
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let Some((priority, since)) = self.running else { return self.busy };
         let left = self.remaining[priority as usize].unwrap_or(Span::ZERO);

@@ -60,7 +60,7 @@ pub(crate) struct Batch {
     pub(crate) links: Vec<ChainLink>,
 }
 
-/// One message of a chain.
+/// One message of a chain of messages that the DMA sends together.
 #[derive(Debug)]
 pub(crate) struct ChainLink {
     pub(crate) message: Message,
@@ -78,28 +78,30 @@ pub(crate) struct Shared {
     pub(crate) memory: Memory,
     /// The i860 that runs code, or `None` if all times come from the timing table.
     pub(crate) processor: Option<Box<Processor>>,
-    /// Number of vertices that the programs have transformed since the start.
+    /// Number of vertices that the programs have transformed since the start of the run.
     pub(crate) vertex_transforms: u64,
-    /// CPU time requested so far for the message software. The next field, `answer_work`, is the CPU time of work that
-    /// answers messages.
+    /// True if a program has decided otherwise because a backing store was full.
+    pub(crate) found_store_full: bool,
+    /// CPU time requested so far for the message software.
     pub(crate) message_software: Span,
+    /// CPU time requested so far for work that answers messages.
     pub(crate) answer_work: Span,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
-    /// Messages of the current batch that are not accepted yet. Each entry has the message's index in the batch and its
-    /// receiver.
+    /// Messages of the current batch (messages that were sent together) that are not accepted yet. Each entry has the
+    /// message's index in the batch and its receiver.
     pub(crate) in_flight: Vec<(u64, NodeId)>,
     /// Receivers that have accepted no message of the current batch so far.
     pub(crate) unaccepting_receivers: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
-    /// Ends of stages that are recorded when a batch is accepted. Each entry has the batch and the record. The batches
-    /// are in order.
+    /// Ends of stages that are recorded when a batch of messages is accepted. Each entry has the number of the batch
+    /// and the record. The batches are in order.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
-    /// Number of the last batch for which every receiver has accepted at least one message. The next field, `accepted`,
-    /// is the number of the last batch whose messages are all accepted.
+    /// Number of the last batch of messages for which every receiver has accepted at least one message.
     pub(crate) draining: u64,
+    /// Number of the last batch of messages that the receivers have accepted completely.
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
     /// Number of waits that have ended so far. The board polls its programs until a round of polls leaves this number
@@ -124,7 +126,7 @@ pub(crate) enum Cause {
     Work,
     /// A receiver has accepted a message.
     Acceptance,
-    /// A message, a retrace or a status line has arrived, or the board's other program has progressed.
+    /// A message, a retrace or a new value of a status signal has arrived, or the board's other program has progressed.
     Arrival,
     /// A retrace. A retrace comes in every field, so a wait for a retrace always ends.
     Retrace,
@@ -143,7 +145,7 @@ impl Wait {
     /// The entry in `Shared::waits` for a priority without a program.
     pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
 
-    /// The entry in `Shared::waits` for a program that has not run yet.
+    /// The entry in `Shared::waits` for a program that has not run for the first time yet.
     pub(crate) const NOT_STARTED: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
@@ -250,8 +252,8 @@ impl Gp {
         self.shared.borrow().field
     }
 
-    /// Returns the value of another board's status line. The status line of a frame buffer carries the number of its
-    /// swaps. The value is zero before the first change.
+    /// Returns the value of another board's status signal. The status signal of a frame buffer carries the number of
+    /// its swaps. The value is zero before the first change.
     #[must_use]
     pub fn status(&self, from: NodeId) -> u64 {
         self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)
@@ -260,8 +262,8 @@ impl Gp {
     /// Waits until `ready` returns a value, and returns this value. `what` is the name of the wait in a deadlock
     /// report.
     ///
-    /// The board calls `ready` again after a message, a retrace or a change of a status line, and after progress of the
-    /// board's other program. To wait for the acceptance of messages, use [`Gp::accepted`].
+    /// The board calls `ready` again after a message, a retrace or a change of a status signal, and after progress of
+    /// the board's other program. To wait for the acceptance of messages, use [`Gp::accepted`].
     pub async fn until<T>(&self, what: &'static str, ready: impl FnMut() -> Option<T>) -> T {
         self.wait(Wait { what, ended_by: Cause::Arrival }, ready).await
     }
@@ -311,8 +313,8 @@ impl Gp {
         self.accepted(Ticket(issued)).await;
     }
 
-    /// Waits until every receiver of a batch has accepted at least one message. From this time on, the DMA empties the
-    /// clump buffer (the memory for outgoing messages).
+    /// Waits until every receiver of a batch of messages has accepted at least one message. From this time on, the DMA
+    /// empties the clump buffer (the memory for outgoing messages).
     pub async fn draining(&self, ticket: Ticket) {
         let wait = Wait { what: "all receivers to begin with a clump", ended_by: Cause::Acceptance };
         self.wait(wait, || (self.shared.borrow().draining >= ticket.0).then_some(())).await;
@@ -333,14 +335,21 @@ impl Gp {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
-    /// Returns true if the bins of a context can occupy `bytes` bytes of memory. The bins of the other context reduce
-    /// the available memory.
+    /// Returns true if the bins of a context (one of two sets of bins) can occupy `bytes` bytes of memory. The bins of
+    /// the other context reduce the available memory.
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)
     }
 
-    /// Records that a stage begins now, for observers of the run.
+    /// Records that the program has decided otherwise because the backing store of a renderer was full. The record takes
+    /// no time.
+    pub fn note_full_store(&self) {
+        self.shared.borrow_mut().found_store_full = true;
+    }
+
+    /// Records, for observers of the run, that a stage begins now. `surface` is the surface (such as the picture of an
+    /// eye) for which the stage draws. `surface` is `None` if the stage does not draw one surface at a time.
     pub fn begin(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, StageEdge::Begin, self.now());
     }
@@ -350,7 +359,8 @@ impl Gp {
         self.mark(stage, picture, surface, StageEdge::End, self.now());
     }
 
-    /// Records the end of a stage at the later time at which a batch is accepted. The program continues at once.
+    /// Records the end of a stage at the later time at which the batch `ticket` is accepted. The program continues
+    /// without waiting for this time.
     pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: PictureNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
@@ -360,14 +370,14 @@ impl Gp {
             .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: StageEdge::End, view: None }));
     }
 
-    /// Records that a stage begins or ends at `time`. The program has read this time from a message.
+    /// Records that a stage begins or ends at `time`, a time that the program has read from a message.
     pub fn mark(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>, edge: StageEdge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;
         shared.marks.push(Mark { time, node, picture, surface, stage, edge, view: None });
     }
 
-    /// Records that a stage begins now for a picture that shows view number `view`.
+    /// Records that a stage begins now for a picture. `view` is the number of the view that the picture shows.
     pub fn begin_view(&self, stage: Stage, picture: PictureNumber, view: ViewNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;

@@ -18,8 +18,8 @@
 //!   program of [`Priority::Foreground`] is suspended.
 //! - [`Gp::send`] costs the CPU a fixed software time. The messages then go to the DMA, which sends them in the
 //!   background. There is one clump buffer, the memory for outgoing messages. A second batch therefore waits until the
-//!   receivers have accepted the first. A group of messages ([`Gp::send_groups`]) reserves its receiver's port from the
-//!   first message to the last.
+//!   receivers have accepted the first batch. A group of messages ([`Gp::send_groups`]) reserves its receiver's port
+//!   from the first message to the last.
 //! - [`Memory`] counts the used bytes of the board's 8 MB. A request that does not fit is a [`Fault`], which names the
 //!   board and the region.
 //! - The time of [`Work`] comes from the timing table, or from i860 code on the board's [`Processor`]

@@ -13,9 +13,11 @@ pub struct GpSnapshot {
     pub programs: Vec<ProgramSnapshot>,
     /// Messages that have arrived but that no program has taken, in order of arrival.
     pub inbox: Vec<WaitingMessageInfo>,
-    /// Receivers that have not accepted their message of the current chain, in the order of the chain's messages.
+    /// Receivers that have not accepted their message of the current chain (messages that the DMA sends together), in
+    /// the order of the chain's messages.
     pub unaccepted: Vec<NodeId>,
-    /// Number of messages in each chain that waits for the DMA, the next chain first.
+    /// Number of messages in each chain that waits for the DMA, the next chain first. The DMA sends the messages of a
+    /// chain together.
     pub chains: Vec<usize>,
     /// Bytes of memory in use for each purpose.
     pub memory: Vec<(Account, u64)>,
@@ -29,10 +31,10 @@ pub struct GpSnapshot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramSnapshot {
     pub priority: Priority,
-    /// Name of the condition that the program waits for. The name is empty before the first run.
+    /// Name of the condition that the program waits for. The name is empty before the program runs for the first time.
     pub waits_for: &'static str,
-    /// Remaining CPU time of the program's work, or `None` without work. The value of the foreground program stays
-    /// constant while the interrupt program works.
+    /// Remaining CPU time of the program's work, or `None` if the program has no work. The time of the foreground
+    /// program stays constant while the interrupt program works.
     pub work_left: Option<Span>,
 }
 

@@ -1,4 +1,4 @@
-//! The memory of a board, as the number of bytes in use for each purpose. Bins have their own limit.
+//! The memory of a board, as the number of bytes in use for each purpose. The bins have a separate limit.
 
 use pxpl5_wire::{NodeId, RegionId};
 use serde::Serialize;
@@ -11,16 +11,16 @@ pub enum Account {
     Program,
     /// The primitives in this graphics processor's share of the scene.
     DisplayList,
-    /// The renderer commands of one bin context, 0 or 1.
+    /// The renderer commands of bin context 0 or 1, one of two sets of bins.
     Commands(u8),
-    /// The pointers in the bins of one bin context, 0 or 1.
+    /// The pointers in the bins of bin context 0 or 1, one of two sets of bins.
     Bins(u8),
 }
 
 impl Account {
     const SLOTS: usize = 6;
 
-    /// All purposes of memory, with commands and bins of both bin contexts.
+    /// All purposes of memory. Commands and bins occur twice, once for each of the two sets of bins.
     pub const ALL: [Self; Self::SLOTS] =
         [Self::Program, Self::DisplayList, Self::Commands(0), Self::Commands(1), Self::Bins(0), Self::Bins(1)];
 
@@ -80,8 +80,8 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Makes an empty memory of `capacity` bytes. The bins of both contexts together can use at most `bins` of these
-    /// bytes.
+    /// Makes an empty memory of `capacity` bytes. The two sets of bins (contexts) together can use at most `bins` of
+    /// these bytes.
     #[must_use]
     pub const fn new(gp: NodeId, capacity: u64, bins: u64) -> Self {
         Self { gp, capacity, bins, used: [0; Account::SLOTS], peak: 0 }
@@ -108,8 +108,8 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the number of bytes that the bins of a context can use while the bins of the other context keep their
-    /// size.
+    /// Returns the number of bytes that the bins of a context (one of two sets of bins) can use while the bins of the
+    /// other context keep their size.
     #[must_use]
     pub const fn room_for_bins(&self, context: u8) -> u64 {
         self.bins.saturating_sub(self.used[Account::Bins(context ^ 1).slot()])

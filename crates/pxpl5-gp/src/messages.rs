@@ -1,5 +1,5 @@
-//! Messages as a program sees them. A program receives messages from the inbox and sends messages in chains. Each
-//! message or chain costs CPU time of the message software.
+//! Messages from the point of view of a program. A program receives messages from the inbox and sends messages in
+//! chains. Each received message and each sent chain costs CPU time of the message software.
 //!
 //! The cost is `message_ns` of the timing table, or the time of the i860 code that handles the message on the board's
 //! processor ([`Processor::receive_message`], [`Processor::send_chain`]).
@@ -10,7 +10,8 @@ use crate::work::Work;
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, Message, NodeId};
 
-/// A chain of messages whose software cost was already paid by [`Gp::prepare`]. [`Gp::start`] sends the chain.
+/// A chain of messages that the DMA sends together. [`Gp::prepare`] has already paid the software cost, and
+/// [`Gp::start`] sends the chain.
 #[derive(Debug)]
 pub struct Chain(Vec<ChainLink>);
 
@@ -40,9 +41,9 @@ impl Gp {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Answers a message. The function spends the CPU time of the message's reception and does `work`. It then sends
-    /// `messages` one by one, and sends `last` in the background. The function waits for a free clump buffer (the
-    /// memory for outgoing messages) before each of `messages`, but not before `last`.
+    /// Answers a message. The function spends the CPU time of the message's reception and does `work`. The function
+    /// then sends the messages of the list `messages` one by one, and sends the message `last` in the background.
+    /// Before each message of the list, the function waits for a free clump buffer (the memory for outgoing messages).
     ///
     /// # Errors
     ///
@@ -117,8 +118,9 @@ impl Gp {
         self.chain(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)))
     }
 
-    /// Makes a chain of messages. Each item has the receiver, the number of words, the content of a message and a
-    /// boolean. The boolean is true if the receiver's port stays reserved for the next message.
+    /// Makes a chain of messages, which the DMA sends together. Each item has the receiver, the number of words, the
+    /// content of a message and a boolean. The boolean is true if the receiver's port stays reserved for the next
+    /// message.
     fn chain(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Chain {
         let source = self.node();
         let links = batch.map(|(destination, words, body, hold)| ChainLink {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
-    /// The tracker sampled the pose of the head that the picture shows.
+    /// The tracker measured the pose of the head that the picture shows.
     Sample,
     /// The host sends edits, attributes and transforms to the graphics processors.
     Send,
@@ -43,14 +43,14 @@ pxpl5_sim::parameters::named!(Stage, "stage", Stage::ALL);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StageEdge {
-    /// The program starts the stage.
+    /// The start of the stage.
     Begin,
-    /// The last work or the last message of the stage is complete.
+    /// The end of the last work, or of the last message, of the stage.
     End,
 }
 
 impl StageEdge {
-    /// Both edges with their names.
+    /// Both edges, begin and end, with their names.
     pub const ALL: [(&str, Self); 2] = [("begin", Self::Begin), ("end", Self::End)];
 }
 
@@ -63,8 +63,8 @@ pub struct Mark {
     pub time: Time,
     /// Ring port of the board that made the record.
     pub node: NodeId,
-    /// Number of the picture that the stage makes. If a host sends views independently of pictures, the field has the
-    /// number of the transmission.
+    /// Number of the picture that the stage makes. For a host that sends views independently of pictures, the number
+    /// counts the host's transmissions.
     pub picture: PictureNumber,
     /// Surface for which the stage draws, if the stage draws one eye at a time.
     pub surface: Option<SurfaceId>,

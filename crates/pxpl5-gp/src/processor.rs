@@ -80,18 +80,17 @@ pub enum ProcessorFault {
         /// Number of words in the requested access.
         words: usize,
     },
-    /// The memory is too small for the outputs of both bin contexts.
+    /// The memory is too small for the outputs of both bin contexts (the two sets of bins).
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
         /// Port of the board.
         gp: NodeId,
-        /// Bin context, 0 or 1, that requested memory.
+        /// Number (0 or 1) of the bin context that requested memory. A bin context is one of two sets of bins.
         context: u8,
-        /// Number of free bytes for this context. The free range lies between the data below it and the other context
-        /// (or the end of memory).
+        /// Number of bytes that the context requested.
         needed_bytes: u32,
-        /// Number of bytes that are free for this context: between the data below it and the other context or the end
-        /// of memory.
+        /// Number of bytes that are free for the context. The free range lies between two neighbours: the program's
+        /// data or the lower context, and the upper context or the end of memory.
         available_bytes: u32,
     },
     /// The program has no label with the name of the requested entry.
@@ -107,12 +106,13 @@ pub enum ProcessorFault {
 /// Return address of every call. Memory has no code at this address, and a run stops when it reaches the address.
 const RETURN: u32 = 0x0800;
 
-/// Returns the range of memory addresses that a program occupies.
+/// Returns the range of memory addresses that an assembled program occupies.
 fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
 
-/// Memory as the i860 sees it. The caches never hold the part that the i860 shares with the ring interface.
+/// The board's memory with the bus interface for the i860. The caches never hold the part that the i860 shares with the
+/// ring interface.
 struct Memory(Ram);
 
 impl Bus for Memory {
@@ -161,12 +161,13 @@ pub struct Processor {
     is_as_loaded: bool,
     /// Decoded programs with their memoized clocks. Several boards share this store.
     shelf: Rc<RefCell<DecodedPrograms>>,
-    /// All programs that were ever loaded, in the order of their first calls.
+    /// All programs that were ever loaded, in the order in which they were called for the first time.
     programs: Vec<Arc<Program>>,
-    /// Address range of the output of each bin context.
+    /// Address range of the output of each bin context (one of two sets of bins). `None` if no range is reserved.
     outputs: [Option<Range<u32>>; 2],
-    /// Addresses of the breakpoints. The next field, `hits`, holds the hits since the last [`Processor::take_hits`].
+    /// Code addresses of the breakpoints.
     breakpoints: BTreeSet<u32>,
+    /// Breakpoint hits recorded since the last [`Processor::take_hits`].
     hits: Vec<BreakpointHit>,
 }
 
@@ -180,7 +181,7 @@ pub struct BreakpointHit {
     pub gp: NodeId,
     /// Address of the instruction at the breakpoint.
     pub address: u32,
-    /// i860 time from the start of the call to the breakpoint.
+    /// Time on the i860's clock from the start of the call to the breakpoint.
     pub into_call: Span,
     /// Registers, control registers and pipes of the i860.
     pub state: Box<State>,
@@ -220,8 +221,8 @@ impl Processor {
         }
     }
 
-    /// Shares decoded programs and their memoized clocks with other boards. All boards must have the same core
-    /// configuration. Simulated times do not depend on this call.
+    /// Shares decoded programs and their memoized clocks with other boards. All boards must have the same configuration
+    /// of the i860. Simulated times do not depend on this call.
     pub fn share(&mut self, shelf: &Rc<RefCell<DecodedPrograms>>) {
         self.shelf = Rc::clone(shelf);
     }
@@ -238,7 +239,7 @@ impl Processor {
         self.version
     }
 
-    /// Returns the port of the board.
+    /// Returns the ring port of the board.
     #[must_use]
     pub const fn node(&self) -> NodeId {
         self.gp
@@ -285,9 +286,9 @@ impl Processor {
         ProcessorFault::Unmapped { gp: self.gp, address, words }
     }
 
-    /// Reserves memory for the output of bin context 0 or 1 and returns the address. An earlier reservation of the same
-    /// context ends. Context 0 begins after the program's data, at address `end_of_data` or above. Context 1 lies at
-    /// the end of memory.
+    /// Reserves memory for the output of bin context 0 or 1 (one of two sets of bins) and returns the address. An
+    /// earlier reservation of the same context ends. Context 0 begins after the program's data, at address
+    /// `end_of_data` or above. Context 1 lies at the end of memory.
     ///
     /// # Errors
     ///
@@ -317,8 +318,8 @@ impl Processor {
         self.cpu.state.r[number]
     }
 
-    /// Calls a program at its label `entry`. Before the call, some registers are set. Returns the time from the call to
-    /// the return.
+    /// Calls a program at its label `entry`. Before the call, the function writes the values of `registers` to integer
+    /// registers. Returns the time from the call to the return.
     ///
     /// If memory holds another program, this program is loaded first. Loading takes no simulated time.
     ///
@@ -352,7 +353,7 @@ impl Processor {
         }
     }
 
-    /// Runs the loaded program until it returns. Its decoded code comes from the shared store `shelf`.
+    /// Runs the loaded program until it returns. The decoded code of the program comes from the shared store `shelf`.
     fn run(&mut self, program: &Arc<Program>, begin: u64, budget: u64) -> RunEnd {
         let shelf = Rc::clone(&self.shelf);
         let shelf = &mut *shelf.borrow_mut();
@@ -403,7 +404,7 @@ impl Processor {
         &self.cpu.state
     }
 
-    /// Returns the number of clocks of all calls so far.
+    /// Returns the number of i860 clocks in all calls so far.
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.cpu.clocks()

@@ -1,5 +1,5 @@
-//! The message software as i860 code of the board (kernels/ring.s), and the memory that it shares with the ring
-//! interface.
+//! The message software as i860 code of the board (kernels/ring.s), and the memory that the software shares with the
+//! ring interface.
 //!
 //! ```text
 //!   CODE      DATA                REQUESTS     WINDOW, never in a cache
@@ -61,16 +61,16 @@ const DONE: u32 = WINDOW + 12;
 /// Number of kinds of messages that a header can state: words for a program, commands, and pixels.
 const KINDS: u32 = 3;
 
-/// Flag of a send request: the receiver's port stays reserved for the next message.
+/// Flag of a request to send a message: the receiver's port stays reserved for the next message.
 const HOLD: Word = 1;
 
-/// Instruction budget of a call. A message needs only a small part of the budget.
+/// Instruction budget of a call of the message software. A message needs only a small part of the budget.
 const BUDGET: u64 = 10_000;
 
 impl Processor {
-    /// Runs the software that receives a message, and returns the time of this software. The software has four parts:
-    /// interrupt, dispatch, queue, and the program's part. The program's part takes the message and releases its
-    /// buffer.
+    /// Runs the i860 code that receives a message, and returns the time of this code. The code has four parts:
+    /// interrupt, dispatch, queue, and the program's part. The program's part takes the message from the queue and
+    /// releases the message's buffer.
     ///
     /// # Errors
     ///
@@ -127,7 +127,7 @@ impl Processor {
 /// A send request of four words: receiver, kind and flags, length in words, and address.
 type Request = [Word; 4];
 
-/// A received message as the program takes it from the queue.
+/// A received message in the form in which a program takes it from the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Taken {
     place: u32,
@@ -139,8 +139,8 @@ struct Taken {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Refusal(Word);
 
-/// Puts a message into the next receive buffer, as the interface does, and runs the code that receives it. `header` has
-/// the kind and length of the message.
+/// Puts a message into the next receive buffer, as the ring interface does, and runs the code that receives the
+/// message. `header` has the kind and length of the message.
 fn deliver(
     processor: &mut Processor,
     source: NodeId,
@@ -181,8 +181,8 @@ fn chain(
     Ok((span, (processor.register(16) != 0).then(|| processor.register(17) as usize)))
 }
 
-/// Initializes queues, descriptors and the table of handlers in memory. If memory already holds them, the function
-/// changes nothing.
+/// Initializes the queues, the descriptors and the table of handlers in memory. If memory already holds these data, the
+/// function changes nothing.
 fn install(processor: &mut Processor) -> Result<(), ProcessorFault> {
     if processor.word(RX_NEXT)? != 0 {
         return Ok(());

@@ -8,7 +8,7 @@ pxpl5_sim::parameters::parameter_table! {
     pub struct GpTiming {
         /// Size of the memory of one board.
         memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608 in 0..=1_073_741_824, "TR94: 8 MB";
-        /// Part of the memory for the bins of Rendering Control. Both bin contexts share this part.
+        /// Part of the memory for the bins of Rendering Control. The two sets of bins (contexts) share this part.
         bin_bytes: 51_360, "bytes", Derived, 51_040..=51_680 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen. Each slave has 642 of them in 20 bins, with 4 bytes for a pointer. The value is twice as large if the bins hold 7,700 triangles for each eye";
         /// CPU time to send a batch of messages or to receive one message.
         message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the published latencies allow this range";
@@ -16,7 +16,7 @@ pxpl5_sim::parameters::parameter_table! {
         triangle_ns: 21_700, "ns", Derived, 18000..=32000 in 0..=MAX, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
         /// CPU time to put one entry into a bin.
         bin_entry_ns: 1_000, "ns", Assumed, 500..=2000 in 0..=MAX, "a pointer store and a count, partly out of cache";
-        /// CPU time of one bin entry when a bin is sent to its renderer together with the token of its region.
+        /// CPU time of one bin entry in the answer to a token, when the bin is sent to its renderer.
         token_entry_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a message, because no separate time was published; times of code count it separately";
         /// Additional CPU time of a triangle that needs clipping.
         guard_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the published time of a triangle; times of code count it separately";
@@ -54,7 +54,8 @@ impl GpTiming {
     };
 }
 
-/// The pipeline whose i860 code for triangles and spheres is used. Each pipeline has other times.
+/// The pipeline whose i860 code for triangles and spheres determines the times of the timing table. Each pipeline has
+/// other times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CodeUse {
     /// PPHIGS: whole frames, Phong shading, commands in bins.
@@ -76,8 +77,8 @@ pub enum CodeUse {
 // `pass_ns` is the time at the start of a pass that does not belong to structures: to reset bins and to load code into
 // the caches. A structure with culling takes 3.2 us more than others. The table does not contain this difference.
 impl GpTiming {
-    /// Returns this table with the primitive times of i860 code. `version` is the version of the code, and `of` is the
-    /// pipeline whose code is used.
+    /// Returns this table with the times of primitives that the i860 code takes. `version` is the version of the code,
+    /// and `of` is the pipeline whose code is used.
     ///
     /// PPHIGS has times only for scheduled code. This code fits the instruction cache, like the code of every PPHIGS in
     /// the papers.
@@ -92,8 +93,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the primitive times of PPHIGS. The code is scheduled, the triangles are Phong triangles
-    /// of a frame, and the commands go into bins.
+    /// Returns this table with the times of primitives in PPHIGS. The code is scheduled by hand, the triangles are
+    /// Phong triangles of a frame, and the commands go into bins.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
         Self {
@@ -129,8 +130,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the primitive times of scheduled code for Slats. The triangles are triangles of a field
-    /// with precomputed colours, in clumps.
+    /// Returns this table with the times of primitives in Slats. The code is scheduled by hand, the picture is a field,
+    /// and vertex colours are precomputed. Triangles are sent in clumps.
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
         Self {
@@ -147,8 +148,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the primitive times of Slats with lighting on the graphics processor. The code is
-    /// compiled, and the triangles are Gouraud triangles of a field. A clump has thirty triangles.
+    /// Returns this table with the times of primitives in Slats with lighting on the graphics processor. The code is
+    /// compiled, the picture is a field, and the triangles are Gouraud triangles. A clump has thirty triangles.
     #[must_use]
     pub const fn of_compiled_gouraud(self) -> Self {
         Self {
@@ -165,8 +166,9 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the primitive times of scheduled code for Slats with lighting on the graphics processor.
-    /// The triangles are Gouraud triangles of a field, in clumps.
+    /// Returns this table with the times of primitives in Slats with lighting on the graphics processor. The code is
+    /// scheduled by hand, the picture is a field, and the triangles are Gouraud triangles. Triangles are sent in
+    /// clumps.
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {
@@ -192,13 +194,13 @@ pxpl5_sim::parameters::parameter_table! {
         /// CPU time of the host to send or receive one message.
         message_ns: 20_000, "ns", Assumed, 10000..=100000 in 0..=MAX, "a system call";
         /// Time between two successive poses that the host sends, if the scene defines the motion of the head. With a
-        /// tracker, the host sends the tracker's reports instead.
+        /// tracker, this time has no effect, because the host sends the tracker's reports.
         view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
         /// Mean time of the application on the host between the EDIT of a frame and the next frame. This time has an
         /// effect only if the host waits for EDIT.
         application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: the host asks at once; within the range, and with the jitter, a trivial scene keeps its printed 30 frames/s";
-        /// Half of the width of the uniform distribution of the application's time. The value must not exceed the mean
-        /// time.
+        /// Half of the width of the uniform distribution from which the application's time is chosen. The value must
+        /// not exceed the mean time.
         application_jitter_ns: 0, "ns", Assumed, 0..=10000000 in 0..=MAX, "a tick of a Unix clock of 100 Hz";
     }
 }
@@ -210,7 +212,7 @@ impl HostTiming {
         Span((words as u128 * 4 * 1_000_000_000_000 / self.link_bytes_per_s as u128) as u64)
     }
 
-    /// Returns the application's time for one frame. The time is uniformly distributed around its mean. `drawn` is a
+    /// Returns the application's time for one frame, chosen from a uniform distribution around the mean. `drawn` is a
     /// random 64-bit number that selects the time.
     #[must_use]
     pub const fn application_span(&self, drawn: u64) -> Span {
@@ -242,8 +244,8 @@ mod tests {
         assert_eq!(HostTiming::PAPERS.out_of_range(), []);
     }
 
-    /// The fitted times follow from published limits of triangles. They may lie outside the range of plausible times
-    /// for PPHIGS, but must lie within the limits of the model.
+    /// The fitted times of primitives follow from published limits of triangles. These times may lie outside the range
+    /// of plausible times for PPHIGS, but must lie within the limits of the model.
     #[test]
     fn every_preset_is_within_the_limits() {
         for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
@@ -261,8 +263,8 @@ mod tests {
         assert_eq!(times, [30_000, 55_800, 10_000].map(|ns| [ns, ns, 0]));
     }
 
-    /// A table of times from i860 code replaces every time of the base table. A test of pxpl5-lab compares these times
-    /// with the code.
+    /// A table with times of i860 code replaces every time of the base table. A test of pxpl5-lab compares the replaced
+    /// times with the code.
     #[test]
     fn tables_of_code_leave_no_time_of_code_as_it_was() {
         let mut before = GpTiming::PAPERS;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// Memory range of the message software: the end of the first megabyte. Other programs must not use it.
+/// Memory range of the message software: the end of the first megabyte. Other programs must not use this range.
 pub const RING_MEMORY: Range<u32> = 0xF_0000..0x10_0000;
 
 /// First address of the uncached part of memory, which ends with [`RING_MEMORY`]. The ring interface reads and writes

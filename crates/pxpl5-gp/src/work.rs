@@ -5,7 +5,7 @@ use crate::processor::{Processor, ProcessorFault};
 use crate::timing::GpTiming;
 use pxpl5_sim::Span;
 
-/// A unit of CPU work. Its time can be taken from the timing table or measured by running i860 code.
+/// A unit of CPU work. The time of the work can be taken from the timing table or measured by running i860 code.
 pub trait Work {
     /// Returns the CPU time of the work according to the timing table.
     fn by_table(&self, timing: &GpTiming) -> Span;
@@ -37,7 +37,7 @@ impl Gp {
         Ok(())
     }
 
-    /// Does a unit of work that answers a message. [`GpUse`](crate::GpUse) counts this work separately.
+    /// Does a unit of work that answers a message. [`GpUse`](crate::GpUse) counts the CPU time of this work separately.
     pub(crate) async fn answer_work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = self.time_of(work)?;
         self.shared.borrow_mut().answer_work += span;
@@ -45,7 +45,8 @@ impl Gp {
         Ok(())
     }
 
-    /// Returns the CPU time of work, from the timing table or from i860 code, and counts the transformed vertices.
+    /// Returns the CPU time of a unit of work, from the timing table or from i860 code, and counts the transformed
+    /// vertices.
     fn time_of(&self, work: &impl Work) -> Result<Span, Fault> {
         let shared = &mut *self.shared.borrow_mut();
         shared.vertex_transforms += work.vertex_transforms();
@@ -61,8 +62,8 @@ impl Gp {
         self.shared.borrow().processor.is_some()
     }
 
-    /// Calls `image`, which writes data to the memory of the i860. On boards that do not run i860 code, the function
-    /// does nothing.
+    /// Calls `image`, a function that writes data to the memory of the i860. On boards that do not run i860 code,
+    /// `image` is not called.
     ///
     /// # Errors
     ///
@@ -83,7 +84,7 @@ mod tests {
 
     const SCHEDULED: Option<CodeVersion> = Some(CodeVersion::Scheduled);
 
-    /// Work whose code is a loop of this many turns. For `None`, the code traps.
+    /// Work whose i860 code is a loop with this number of turns. For `None`, the code traps.
     struct Turns(Option<u32>);
 
     impl Work for Turns {
@@ -125,7 +126,7 @@ mod tests {
         assert_eq!(twenty.0 - ten.0, 10 * 4 * Processor::CLOCK.0);
     }
 
-    /// Regression test: a table time of one nanosecond once decided whether the code ran.
+    /// Regression test: a change of the timing table by one nanosecond must not decide whether the code runs.
     #[test]
     fn a_changed_time_per_triangle_still_runs_the_code() {
         let table = run(GpTiming::PAPERS, SCHEDULED, Some(10)).busy();
@@ -146,7 +147,7 @@ mod tests {
         assert_eq!(fault, "graphics processor at node 5: trap at 0x00001010: trap instruction");
     }
 
-    /// Installs an image at an address and reads it back.
+    /// Writes data to the memory of the i860 at an address and reads the data back.
     async fn install(gp: Gp, address: u32) -> Result<(), crate::Fault> {
         gp.install(|processor| processor.write(address, &[7]))?;
         gp.install(|processor| {

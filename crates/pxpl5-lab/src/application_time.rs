@@ -1,13 +1,14 @@
 //! Effect of the application's time per frame on the latencies of fly-throughs. No paper prints this time.
 //!
 //! The host of a real viewer ran a loop under Unix that read input, changed its scene, and asked for the next frame.
-//! The simulated host asks for the next frame at once unless `host.application_ns` and `host.application_jitter_ns` are
-//! set. This module varies both parameters and reports the mean and standard deviation of each figure. Nothing is
-//! fitted.
+//! The simulated host asks for the next frame immediately unless `host.application_ns` and `host.application_jitter_ns`
+//! are set. This module varies both parameters and reports the mean and standard deviation of each figure. No parameter
+//! is fitted to the results.
 //!
 //! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. No rate is printed
-//! for the fly-throughs, so their application may have taken longer. In this module the mean time reaches 40 ms, with a
-//! jitter of up to 30 ms. A Unix host polled its serial lines once in 30 ms (TR94). Both maxima are assumed.
+//! for the fly-throughs, so the application of a fly-through may have taken longer than this range. In this module,
+//! therefore, the mean time reaches 40 ms, with a jitter of up to 30 ms. A Unix host polled its serial ports once in 30
+//! ms (TR94). Both maxima are assumed.
 
 use crate::figures::{Bench, FIGURES};
 use crate::parallel;
@@ -23,8 +24,8 @@ const JITTER: &str = "host.application_jitter_ns";
 /// second.
 const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 
-/// Jitters of the application's time to simulate, in milliseconds. A jitter is left out for shorter mean times.
-/// Assumed: up to the polling period (TR94).
+/// Jitters of the application's time to simulate, in milliseconds. A jitter above the mean time is not simulated,
+/// because some times would be negative. Assumed: up to the polling period (TR94).
 const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
 /// Numbers of the figures in TR94 that show fly-throughs.
@@ -32,7 +33,7 @@ const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 
 /// Mean and standard deviation of the latency in one figure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
+pub struct FlyThroughLatency {
     /// Number of the figure, as in [`FIGURES`].
     pub id: &'static str,
     /// Mean over all samples, in the figure's unit.
@@ -41,7 +42,7 @@ pub struct Spread {
     pub sd: f64,
 }
 
-/// Latencies of all fly-throughs for one setting of the application's time.
+/// Latencies of all fly-throughs for one mean and one jitter of the application's time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ApplicationTime {
     /// Mean time of the application for a frame, in milliseconds.
@@ -49,11 +50,11 @@ pub struct ApplicationTime {
     /// Half the width of the uniform distribution of the application's time, in milliseconds.
     pub jitter_ms: u64,
     /// Latencies of figures 7, 7b and 7c.
-    pub figures: Vec<Spread>,
+    pub figures: Vec<FlyThroughLatency>,
 }
 
-/// Simulates the fly-throughs for all application times at the analytic level. Interpretation, seeds and frames come
-/// from the given bench (common settings).
+/// Simulates the fly-throughs for all application times at the analytic level. The interpretation of the papers and the
+/// numbers of seeds and frames come from the given bench (common settings of all measurements).
 ///
 /// # Errors
 ///
@@ -73,7 +74,7 @@ fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTim
     let spread = |id: &'static str| {
         let measured = bench.measure(id)?;
         let sd = measured.details.iter().find(|detail| detail.name == "standard deviation");
-        Ok(Spread { id, mean: measured.value, sd: sd.map_or(f64::NAN, |detail| detail.value) })
+        Ok(FlyThroughLatency { id, mean: measured.value, sd: sd.map_or(f64::NAN, |detail| detail.value) })
     };
     let figures = FLY_THROUGHS.into_iter().map(spread).collect::<Result<_, ExperimentError>>()?;
     Ok(ApplicationTime { mean_ms, jitter_ms, figures })
@@ -81,10 +82,10 @@ fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTim
 
 /// Returns the printed mean and standard deviation of the latency of each fly-through.
 #[must_use]
-pub fn published() -> Vec<Spread> {
+pub fn published() -> Vec<FlyThroughLatency> {
     let of_fly_throughs = FIGURES.iter().filter(|figure| FLY_THROUGHS.contains(&figure.id));
     of_fly_throughs
-        .map(|figure| Spread { id: figure.id, mean: figure.value, sd: figure.spread.unwrap_or(f64::NAN) })
+        .map(|figure| FlyThroughLatency { id: figure.id, mean: figure.value, sd: figure.spread.unwrap_or(f64::NAN) })
         .collect()
 }
 

@@ -1,5 +1,5 @@
-//! Measures the times of primitives by executing i860 code. The results fill the table of times (timing table) of the
-//! other levels of modelling.
+//! Measures the times of primitives by executing i860 code. The results fill the timing table, from which the levels of
+//! modelling without executed code take their times.
 //!
 //! The measurement executes the transformation of the application scenes on one board (a *pass*), and attributes the
 //! board's clocks to primitives:
@@ -12,12 +12,14 @@
 //! - `guard` comes from triangles that cover the screen and reach beyond the guard band (`CLIPPED_M`).
 //! - `triangle`, `entry` and `sphere` come from one board's share of each of the three application scenes, seen along
 //!   the scene's own head motion. The first pass only fills the caches.
-//! - `entry` is the slope over all passes by least squares.
-//! - `triangle` is the mean of the scenes' means. Triangles are measured without the spheres of their scene, because
-//!   the code for spheres would displace the code for triangles from the instruction cache.
+//! - `entry` is the slope of the clocks over the number of bin entries, fitted to all passes by least squares.
+//! - `triangle` is first averaged over the passes of each scene, then over the scenes. Triangles are measured without
+//!   the spheres of their scene, because the code for spheres would displace the code for triangles from the
+//!   instruction cache.
 //! - `sphere` is the time of spheres without their bin entries: the mean over the scenes that have spheres.
 //!
-//! Each of `guard`, `entry` and `triangle` depends on the other two, so they are computed in turn until they converge.
+//! Each of `guard`, `entry` and `triangle` depends on the other two, so the measurement computes one time after the
+//! other. Repetitions make the three times converge.
 //!
 //! ```text
 //!   beginning of a pass = pass + structure * (structures * eyes) + sphere view * (structures with spheres * eyes)
@@ -30,9 +32,10 @@
 //! Each of `structure`, `sphere view` and `pass` is the mean of the scenes' means.
 //!
 //! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
-//! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under Slats
-//! the messages of display fields count. The result is the mean over the three scenes. `token entry` is the additional
-//! time to send a bin for each entry in the bin. This time is the slope of a least-squares fit over all bins.
+//! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under Slats,
+//! the measured messages are those that a board receives and sends in one display field. The time of a message is the
+//! mean over the three scenes. `token entry` is the additional time to send a bin for each entry in the bin. This time
+//! is the slope of a least-squares fit over all bins.
 
 mod messages;
 mod strips;
@@ -96,7 +99,8 @@ pub struct CodeTimes {
     pub sphere_ns: f64,
     /// Time to write one entry into a bin.
     pub entry_ns: f64,
-    /// Additional time of a clipped triangle: the time to cut it, and to process all resulting triangles except one.
+    /// Additional time of a clipped triangle: the time to cut the triangle, and to process all resulting triangles
+    /// except one.
     pub guard_ns: f64,
     /// Time to begin a pass over the display list, without its structures: mean of the scenes' means.
     pub pass_ns: f64,
@@ -192,8 +196,8 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
 }
 
 impl CodeTimes {
-    /// Computes the times of a bin entry, a triangle and the clipper. Each time is fitted to the samples after the
-    /// other two times are subtracted.
+    /// Improves the times of a bin entry, a triangle and the clipper by one step of an iteration. Each time is fitted
+    /// to the samples after the other two times are subtracted.
     fn improve(&mut self, of: CodeUse, cut: &[Sample], scenes: &[Vec<Sample>]) {
         // Clipped triangles are counted apart, so their time is subtracted here.
         let of_clipper = self.triangle_ns + self.guard_ns;
@@ -228,7 +232,6 @@ impl CodeTimes {
     }
 }
 
-/// Returns the mean of the values, or 0 if there are no values.
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let [n, sum] = values.fold([0.0; 2], |[n, sum], value| [n + 1.0, sum + value]);
     sum / f64::max(n, 1.0)
@@ -238,8 +241,8 @@ fn extremes(values: &[f64]) -> [f64; 2] {
     [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(0.0, f64::max)]
 }
 
-/// Returns the first of two unknown factors of a linear model, fitted by least squares. If all coefficients of the
-/// second factor are 0, only the first factor is fitted.
+/// Fits `y = a p + b q` to rows of `([a, b], y)` by least squares. Returns `p`, the time of one item such as a bin
+/// entry. If all `b` are 0, only `p` is fitted.
 fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
     let mut sums = [0.0; 5];
     for ([a, b], y) in rows {
@@ -252,7 +255,8 @@ fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
     if bb == 0.0 { ay / aa } else { (ay * bb - by * ab) / (aa * bb - ab * ab) }
 }
 
-/// A scene on one board, with the head poses from which the scene is transformed.
+/// A measuring set-up: the share of a scene that one board stores, and the head poses from which the board transforms
+/// the share.
 struct Rig {
     share: Share,
     views: Views,
@@ -268,7 +272,7 @@ impl Rig {
         Self::of_list(version, scene, boards, |list| list)
     }
 
-    /// Returns a measuring set-up with the scene's triangles and without its spheres.
+    /// Returns a measuring set-up with the triangles of a scene. The spheres of the scene are left out.
     fn of_triangles(version: CodeVersion, scene: &str, boards: usize) -> Result<Self, ExperimentError> {
         Self::of_list(version, scene, boards, without_spheres)
     }
@@ -356,7 +360,7 @@ fn without_spheres(mut list: DisplayList) -> DisplayList {
     list
 }
 
-/// Returns the display list without its spheres and with [`MORE_STRUCTURES`] empty structures at its end.
+/// Returns the display list with its spheres removed, and with [`MORE_STRUCTURES`] empty structures at its end.
 fn with_more_structures(list: DisplayList) -> DisplayList {
     let mut list = without_spheres(list);
     let end = list.triangles.len();

@@ -2,8 +2,8 @@
 //! evaluation.
 //!
 //! [`CompareQuery`] describes a comparison. [`Comparison`] is its result. Each [`ComparisonRow`] has the latency from
-//! head to display, the prediction interval, and the error in pixels by cause. The row also has the number of triangles
-//! that the pipeline could draw.
+//! head to display, the prediction interval, and the error in pixels by cause. The row also has the largest number of
+//! triangles that the pipeline can draw in time.
 
 mod bootstrap;
 mod contender;
@@ -13,6 +13,7 @@ mod length;
 mod pictures;
 mod precision;
 mod predictors;
+mod progress;
 mod query;
 mod resume;
 mod row;
@@ -20,8 +21,7 @@ mod store;
 mod trial;
 
 pub use crate::head_names::{
-    MOTIONS, MotionError, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by,
-    walk,
+    MOTIONS, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by, walk,
 };
 pub use bootstrap::{BlockBootstrap, BootstrapSize, MIN_BOOTSTRAP_VALUES, RESAMPLES};
 pub use contender::usual_rows;
@@ -29,7 +29,7 @@ pub use gallery::LastPicture;
 pub use interval::{CONFIDENCE, IntervalMethod, MeanInterval};
 pub use length::RecordedLength;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
-pub use precision::{MAX_SEEDS, Precision, PrecisionError, UntilPrecise};
+pub use precision::{MAX_SEEDS, Precision, UntilPrecise};
 pub use predictors::{PredictorError, Predictors, predictors};
 pub use query::{CompareQuery, Comparison, LEAST_SEEDS};
 pub use row::{CauseShare, ComparisonRow, ErrorSpread, PredictorMean};

@@ -111,8 +111,8 @@ fn flatten<'a>(path: String, value: &'a Value, leaves: &mut BTreeMap<String, &'a
     }
 }
 
-/// Returns the name of an entry in a list, such as a part of the latency. An entry without a name is identified by its
-/// index.
+/// Returns the name of an entry in a list, such as a part of the latency. For an entry without a name, returns the
+/// index of the entry in the list.
 fn name_of(value: &Value) -> Option<String> {
     let texts = ["name", "resource", "port", "of", "until"].map(|key| value[key].as_str());
     let texts: Vec<&str> = texts.into_iter().flatten().collect();

@@ -1,8 +1,7 @@
 //! The error of studies of many experiments.
 
-use crate::experiment_file::FileError;
-use crate::sweep::SweepError;
-use pxpl5_run::{ExperimentError, HeadError};
+use pxpl5_run::ExperimentError;
+use pxpl5_sim::parameters::{FileError, SettingError};
 use thiserror::Error;
 use tracking::rig::RigError;
 
@@ -13,7 +12,7 @@ use tracking::rig::RigError;
 pub enum StudyError {
     /// A setting is invalid.
     #[error(transparent)]
-    File(#[from] FileError),
+    Setting(#[from] SettingError),
     /// An experiment of the study cannot run.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
@@ -28,7 +27,7 @@ pub enum StudyError {
     /// The query has no seeds.
     #[error("expected at least one seed, found none")]
     NoSeed,
-    /// The registry has no pipeline that is to be compared.
+    /// The registry has no pipeline that takes part in comparisons.
     #[error("expected a registry with a pipeline that is compared, found none")]
     NoPipeline,
     /// A row in the query does not exist.
@@ -55,12 +54,12 @@ pub enum StudyError {
     Seeds {
         /// The expected seeds, in words.
         expected: String,
-        /// The seed or the number of seeds in the query.
+        /// The unusable seed, or the unusable number of seeds, in the query.
         found: u64,
     },
     /// A file of finished rows cannot be read or written.
     #[error(transparent)]
-    Files(#[from] SweepError),
+    File(#[from] FileError),
     /// The folder holds rows of a comparison with other settings.
     #[error("{path}: these rows are of another comparison: {key} was {found}, expected {expected}")]
     OtherSettings {
@@ -85,6 +84,9 @@ pub enum StudyError {
         /// Number of rows of the interrupted comparison.
         of: usize,
     },
+    /// The caller stopped the comparison.
+    #[error("the comparison was stopped")]
+    Stopped,
     /// A line in the file of rows is not a row.
     #[error("{path}, line {line}: expected a row of a comparison, found {found}")]
     Damaged {
@@ -95,10 +97,8 @@ pub enum StudyError {
         /// Error of the parser.
         found: String,
     },
-    /// The settings of the tracker are invalid.
-    #[error(transparent)]
-    Tracker(#[from] HeadError),
-    /// The tracker reported no low point of the pendulum, or the photodiode detected no bright pixel.
+    /// The pendulum rig gave no measurement: the tracker reported no low point of the pendulum, or the photodiode
+    /// detected no bright pixel.
     #[error(transparent)]
     Rig(#[from] RigError),
     /// A requested frame was not shown completely.

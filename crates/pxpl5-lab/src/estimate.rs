@@ -1,14 +1,14 @@
 //! Estimates the memory and time of an experiment, computed from its settings before the experiment starts. Budgets,
 //! sweeps and Slurm jobs use these estimates.
 //!
-//! Memory in bytes: `BASE + GP gps + PRIMITIVE primitives + WAITING batch + kept`
+//! Memory in bytes: `BASE + PICTURES + GP gps + PRIMITIVE primitives + WAITING batch + kept`
 //!
-//! - A run that keeps all observations has `kept = fields (FIELD + COPY copies)`.
-//! - A run that keeps statistics and its last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK
-//!   blocks`.
+//! - `PICTURES` counts only for a run that computes all pixels.
+//! - A run that keeps all observations has `kept = fields (FIELD + COPY blocks)`. A run that keeps statistics and its
+//!   last pictures has `kept = fields STATISTICS + min(fields, WINDOW) BLOCK blocks`.
 //! - A tracked head adds `min(fields, JUDGED) ERRORS` to either value of `kept`.
-//! - `batch` and `blocks` are 0 except in frameless rendering. `blocks` is the number of blocks copied in a field,
-//!   limited by the ring.
+//! - `batch` is the number of blocks of pixels drawn with one head pose, and `blocks` the greatest number that the ring
+//!   can carry in a field. Both are 0 except in frameless rendering.
 //!
 //! The constants of memory are measured: the memory peaks of 23 runs of all pipelines, rounded up (docs/hardening.md).
 //!
@@ -16,8 +16,10 @@
 //! LOAD_S eyes primitives + JUDGED_FIELD_S fields`
 //!
 //! - `runs` is `RUNS_OF_HEAD` for a tracked head, otherwise 1.
-//! - `LOAD_S` counts only for pictures whose times a closed-form formula gives.
-//! - `BLOCK_S` counts only for pipelines that draw blocks.
+//! - `LOAD_S` counts only for pictures whose times a closed-form formula gives. At the cycle level, the time of a
+//!   picture also contains `PRIMITIVE_AS_CODE_S primitives`.
+//! - `BLOCK_S` counts only for pipelines that draw blocks. Here `blocks` is the number that the experiment's processors
+//!   can send in a field.
 //! - `JUDGED_FIELD_S` counts only for a tracked head.
 //!
 //! The constants of time are fitted to 606 points of all pipelines (experiments/sweep-costs.toml and
@@ -32,7 +34,7 @@ use pxpl5_scene::Scene;
 
 /// Quantities of an experiment that determine its memory and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Work {
+pub struct RunWork {
     /// Number of display periods.
     pub fields: u64,
     /// Number of graphics processors.
@@ -70,13 +72,13 @@ pub struct Estimate {
 
 /// Memory in bytes of the process with a small machine.
 const BASE: f64 = 15e6;
-/// Memory in bytes of pictures computed in advance.
+/// Memory in bytes of the pictures in a run that computes all pixels.
 const PICTURES: f64 = 10e6;
 /// Memory in bytes of a graphics processor.
 const GP: f64 = 60e3;
 /// Memory in bytes of a primitive, including its entries in all lists.
 const PRIMITIVE: f64 = 200.0;
-/// Memory in bytes of a block of pixels that waits to be drawn.
+/// Memory in bytes for each block of pixels that is drawn with one head pose.
 const WAITING: f64 = 5.5e3;
 /// Memory in bytes for each field, in a run that keeps all observations.
 const FIELD: f64 = 4e3;
@@ -101,7 +103,7 @@ const PICTURE_S: f64 = 1.8e-4;
 const GP_S: f64 = 1.3e-5;
 /// Seconds to simulate a block of pixels in frameless rendering.
 const BLOCK_S: f64 = 5.6e-6;
-/// Seconds to transform a primitive for one eye. Each primitive is transformed when its head pose is first drawn.
+/// Seconds to transform a primitive for one eye. The primitives are transformed when a head pose is first drawn.
 const LOAD_S: f64 = 2.8e-5;
 /// Seconds to simulate one primitive of a picture as i860 code. Assumed, from the speeds in the README.
 const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
@@ -110,8 +112,8 @@ const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
 const RUNS_OF_HEAD: f64 = 2.0;
 /// Seconds to evaluate the pixel errors of a field.
 const JUDGED_FIELD_S: f64 = 6e-4;
-/// Slowdown factor of a simulation on a computer that is busy with other work. Assumed. The four runs of the test
-/// below, on two busy cores, took 1.3 to 12 times as long as the estimate for an idle core.
+/// Slowdown factor of a simulation on a computer that is busy with other work. Assumed. Four measured runs on two busy
+/// cores took 1.3 to 12 times as long as the estimate for an idle core.
 const BUSY: f64 = 2.5;
 
 /// Duration of an NTSC field in seconds. Estimates use this value for every display.
@@ -130,8 +132,8 @@ const BLOCK_GPS: f64 = 20.0;
 const LEAST_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
-    /// Returns the estimate of many runs on a number of threads. The time is the sum of all times divided by the number
-    /// of threads. The memory is the largest memory of a run times the number of threads.
+    /// Combines the estimates of many runs that share a number of threads. The time is the sum of all times divided by
+    /// the number of threads. The memory is the largest memory of a run times the number of threads.
     #[must_use]
     pub fn of_all(all: impl IntoIterator<Item = Self>, threads: usize) -> Self {
         let threads = threads.max(1) as f64;
@@ -142,9 +144,9 @@ impl Estimate {
     }
 }
 
-impl Work {
-    /// Returns the work of a checked experiment with its scene. Each field has one picture, or less if the processors
-    /// need longer than a field to transform all primitives.
+impl RunWork {
+    /// Returns the quantities that determine the cost of a checked experiment with its scene. Each field has one
+    /// picture, or less if the processors need longer than a field to transform all primitives.
     #[must_use]
     pub fn of(plan: &Plan, scene: &Scene, keeps_everything: bool) -> Self {
         let settings = plan.pipeline.settings();
@@ -172,7 +174,7 @@ impl Work {
         work
     }
 
-    /// Returns the time in NTSC fields that the processors take to transform all primitives for all eyes.
+    /// Returns the time, in NTSC fields, that the simulated processors take to transform all primitives for all eyes.
     #[must_use]
     pub fn fields_of_transform(&self) -> f64 {
         let primitives = (self.primitives * self.eyes).max(1) as f64;
@@ -229,7 +231,7 @@ impl Work {
     }
 }
 
-/// A command that simulates a fixed set of experiments, with the settings that determine its cost.
+/// A command that simulates a fixed set of experiments, with the settings that determine the cost of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Study {
     /// The measurement of all published figures.
@@ -243,7 +245,7 @@ pub enum Study {
         /// Number of interpretations that are measured with events too.
         best: u64,
     },
-    /// The comparison of the levels of modelling ([`crate::levels`]).
+    /// The comparison of all levels of modelling ([`crate::levels`]).
     Levels {
         /// Number of random experiments that measure the error against the cycle level.
         experiments: u64,
@@ -255,22 +257,24 @@ pub enum Study {
 /// CPU seconds of all figures. This constant and the following constants are fitted to measurements with the build
 /// profile `dist` on one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
-/// CPU seconds of one frame of an application scene. `READINGS_BEST` is the additional fraction for each interpretation
-/// that is simulated with events.
+/// CPU seconds of one frame of an application scene. `READINGS_BEST` is the fraction of this time that each
+/// interpretation adds if it is simulated with events.
 const READINGS_FRAME_S: f64 = 0.0172;
 const READINGS_BEST: f64 = 0.1;
-/// CPU seconds of three computations: the figures at all levels, one random experiment at all levels, and the
-/// measurement of all speeds.
+/// CPU seconds to simulate the published figures at all levels of modelling. The next two constants are the CPU seconds
+/// of one random experiment at all levels, and of the measurement of all simulation speeds.
 const LEVELS_S: f64 = 56.0;
 const LEVELS_EXPERIMENT_S: f64 = 0.52;
 const SPEEDS_S: f64 = 23.0;
-/// Peak memory of a study in bytes, measured with two threads and rounded up.
+/// Peak memory of the study of all figures in bytes. This constant and the next two were measured with two threads and
+/// rounded up.
 const FIGURES_BYTES: f64 = 300e6;
 const READINGS_BYTES: f64 = 60e6;
 const LEVELS_BYTES: f64 = 800e6;
 
 impl Study {
-    /// Estimates the memory, and the time on a number of threads of a computer that does other work too.
+    /// Estimates the memory and the time of the study on a number of threads. The computer is assumed to do other work
+    /// too.
     #[must_use]
     pub fn estimate(self, threads: usize) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() / threads.max(1) as f64 }
@@ -285,7 +289,7 @@ impl Study {
         }
     }
 
-    /// Returns the seconds on one core that does nothing else.
+    /// Returns the run time in seconds on one core that does no other work.
     fn core_seconds(self) -> f64 {
         match self {
             Self::Figures => FIGURES_S,
@@ -306,7 +310,7 @@ impl Study {
 mod tests {
     use super::*;
 
-    const SMALL: Work = Work {
+    const SMALL: RunWork = RunWork {
         fields: 1_200,
         gps: 11,
         primitives: 417,
@@ -322,19 +326,19 @@ mod tests {
     };
 
     /// Measured runs under `/usr/bin/time`: the work and the peak memory in MB.
-    const MEASURED: [(Work, f64); 12] = [
+    const MEASURED: [(RunWork, f64); 12] = [
         (SMALL, 13.8),
-        (Work { fields: 12_000, keeps_everything: true, ..SMALL }, 61.4),
-        (Work { fields: 120, primitives: 1_000_000, ..SMALL }, 195.2),
-        (Work { fields: 1_200, gps: 1_000, ..SMALL }, 50.6),
-        (Work { fields: 120, block: 16, ..SMALL }, 25.3),
-        (Work { fields: 120, block: 16, batch: 65_535, ..SMALL }, 421.0),
-        (Work { fields: 120, block: 16, gps: 1_000, ..SMALL }, 130.9),
-        (Work { fields: 480, block: 16, primitives: 8, keeps_everything: true, ..SMALL }, 228.9),
-        (Work { is_cycle_level: true, ..SMALL }, 18.6),
-        (Work { fields: 4_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 20.1),
-        (Work { fields: 100_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 42.7),
-        (Work { fields: 215_784, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 47.1),
+        (RunWork { fields: 12_000, keeps_everything: true, ..SMALL }, 61.4),
+        (RunWork { fields: 120, primitives: 1_000_000, ..SMALL }, 195.2),
+        (RunWork { fields: 1_200, gps: 1_000, ..SMALL }, 50.6),
+        (RunWork { fields: 120, block: 16, ..SMALL }, 25.3),
+        (RunWork { fields: 120, block: 16, batch: 65_535, ..SMALL }, 421.0),
+        (RunWork { fields: 120, block: 16, gps: 1_000, ..SMALL }, 130.9),
+        (RunWork { fields: 480, block: 16, primitives: 8, keeps_everything: true, ..SMALL }, 228.9),
+        (RunWork { is_cycle_level: true, ..SMALL }, 18.6),
+        (RunWork { fields: 4_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 20.1),
+        (RunWork { fields: 100_000, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 42.7),
+        (RunWork { fields: 215_784, gps: 1, primitives: 140, is_tracked: true, ..SMALL }, 47.1),
     ];
 
     #[test]
@@ -352,15 +356,15 @@ mod tests {
         }
     }
 
-    /// Tests the estimated times of the same runs, measured on two busy cores. An estimate must lie between a tenth of
-    /// the measured time and twice the measured time.
+    /// Tests the estimated times of the runs in `MEASURED`, which were measured on two busy cores. An estimate must lie
+    /// between a tenth of the measured time and twice the measured time.
     #[test]
     fn time_is_estimated_between_a_tenth_and_the_double_of_a_busy_computer() {
         for (work, seconds) in [
-            (Work { fields: 12_000, ..SMALL }, 47.5),
-            (Work { fields: 120, block: 16, ..SMALL }, 7.5),
-            (Work { fields: 1_200, gps: 1_000, ..SMALL }, 41.2),
-            (Work { is_cycle_level: true, ..SMALL }, 74.8),
+            (RunWork { fields: 12_000, ..SMALL }, 47.5),
+            (RunWork { fields: 120, block: 16, ..SMALL }, 7.5),
+            (RunWork { fields: 1_200, gps: 1_000, ..SMALL }, 41.2),
+            (RunWork { is_cycle_level: true, ..SMALL }, 74.8),
         ] {
             let ratio = work.estimate().seconds / seconds;
             assert!((0.1..2.0).contains(&ratio), "{work:?}: {ratio} times {seconds} s");
@@ -369,18 +373,18 @@ mod tests {
 
     #[test]
     fn more_of_anything_takes_more() {
-        let least = Work { block: 16, batch: 4, ..SMALL }.estimate();
+        let least = RunWork { block: 16, batch: 4, ..SMALL }.estimate();
         for more in [
-            Work { fields: 1_201, block: 16, batch: 4, ..SMALL },
-            Work { gps: 12, block: 16, batch: 4, ..SMALL },
-            Work { block: 8, batch: 4, ..SMALL },
+            RunWork { fields: 1_201, block: 16, batch: 4, ..SMALL },
+            RunWork { gps: 12, block: 16, batch: 4, ..SMALL },
+            RunWork { block: 8, batch: 4, ..SMALL },
         ] {
             assert!(more.estimate().bytes >= least.bytes && more.estimate().seconds > least.seconds, "{more:?}");
         }
-        assert!(Work { block: 16, batch: 5, ..SMALL }.estimate().bytes > least.bytes);
+        assert!(RunWork { block: 16, batch: 5, ..SMALL }.estimate().bytes > least.bytes);
     }
 
-    /// Studies with their measured CPU seconds and peak memory in MB. No constant was fitted to the last two.
+    /// Studies with their measured CPU seconds and peak memory in MB. No constant was fitted to the last two studies.
     const STUDIES: [(Study, f64, f64); 11] = [
         (Study::Figures, 36.1, 280.0),
         (Study::Readings { seeds: 6, frames: 150, best: 20 }, 69.8, 52.7),

@@ -25,7 +25,6 @@
 //! error, whose message names the most similar valid key.
 
 mod display;
-mod error;
 mod head;
 mod hmd;
 mod keys;
@@ -38,7 +37,6 @@ mod text;
 mod tracking_numbers;
 mod units;
 
-pub use error::FileError;
 pub use head::HeadChoice;
 pub use keys::FileKey;
 pub use motion::{MotionChoice, PathChoice};
@@ -50,7 +48,9 @@ pub use text::Settings;
 pub use tracking_numbers::tracking_parameters;
 
 use pxpl5_run::Registry;
+use pxpl5_sim::parameters::{FileError, SettingError};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::Value;
@@ -65,7 +65,7 @@ pub(crate) struct Setting {
     pub(crate) folder: PathBuf,
 }
 
-/// Name of the head motion that takes its seed from the run.
+/// Name of the head motion whose seed is the seed of the run.
 const SYNTHETIC: &str = "synthetic";
 
 /// The settings of an experiment by path. Each setting was read, but the combination of all settings is not yet
@@ -82,13 +82,13 @@ pub struct ExperimentFile {
 }
 
 impl ExperimentFile {
-    /// Returns a file without settings that can name the built-in pipelines and displays.
+    /// Creates an experiment file without settings. The settings can name the built-in pipelines and displays.
     #[must_use]
     pub fn new() -> Self {
         Self::with(crate::registry())
     }
 
-    /// Returns a file without settings that can name the pipelines and displays of a registry.
+    /// Creates an experiment file without settings. The settings can name the pipelines and displays of a registry.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
         let contents = BTreeMap::new();
@@ -112,8 +112,8 @@ impl ExperimentFile {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError::Io`] if the file cannot be read, and the errors of [`Self::parse`].
-    pub fn load(path: impl AsRef<Path>) -> Result<Self, FileError> {
+    /// Returns a [`SettingError`] if the file cannot be read, and the errors of [`Self::parse`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SettingError> {
         Self::new().and_load(path)
     }
 
@@ -122,13 +122,12 @@ impl ExperimentFile {
     /// # Errors
     ///
     /// Fails in the same cases as [`Self::load`].
-    pub fn and_load(self, path: impl AsRef<Path>) -> Result<Self, FileError> {
+    pub fn and_load(self, path: impl AsRef<Path>) -> Result<Self, SettingError> {
         let path = path.as_ref();
         let file = path.display().to_string();
         let bytes =
-            std::fs::read(path).map_err(|error| FileError::Io { file: file.clone(), reason: error.to_string() })?;
-        let text = pxpl5_sim::parameters::text_of(&bytes)
-            .map_err(|error| FileError::Syntax { place: file.clone(), reason: error.to_string() })?;
+            std::fs::read(path).map_err(|error| FileError::unreadable(&file, "a readable experiment file", error))?;
+        let text = pxpl5_sim::parameters::text_of(&bytes).map_err(|error| invalid(&file, error))?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
         self.parse_in(text, &file, &folder)
     }
@@ -137,8 +136,8 @@ impl ExperimentFile {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError::Syntax`] or [`FileError::UnknownKey`] with the line.
-    pub fn parse(text: &str, name: &str) -> Result<Self, FileError> {
+    /// Returns a [`SettingError`] with the line.
+    pub fn parse(text: &str, name: &str) -> Result<Self, SettingError> {
         Self::new().and_parse(text, name)
     }
 
@@ -147,12 +146,12 @@ impl ExperimentFile {
     /// # Errors
     ///
     /// Fails in the same cases as [`Self::parse`].
-    pub fn and_parse(self, text: &str, name: &str) -> Result<Self, FileError> {
+    pub fn and_parse(self, text: &str, name: &str) -> Result<Self, SettingError> {
         self.parse_in(text, name, Path::new(""))
     }
 
     // Two parsers read the text: one gives the positions of keys for errors, the other the values.
-    fn parse_in(mut self, text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
+    fn parse_in(mut self, text: &str, name: &str, folder: &Path) -> Result<Self, SettingError> {
         let spans = DeTable::parse(text).map_err(|error| not_toml(&error, text, name))?;
         let values: toml::Table = toml::from_str(text).map_err(|error| not_toml(&error, text, name))?;
         for (key, value) in values {
@@ -178,8 +177,8 @@ impl ExperimentFile {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError::UnknownKey`] with the most similar valid path.
-    pub fn set(&mut self, path: &str, value: impl Into<Value>, place: &str) -> Result<(), FileError> {
+    /// Returns a [`SettingError`] with the most similar valid path.
+    pub fn set(&mut self, path: &str, value: impl Into<Value>, place: &str) -> Result<(), SettingError> {
         self.put(path, value.into(), place.to_owned(), Path::new(""))
     }
 
@@ -205,8 +204,8 @@ impl ExperimentFile {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError`] when the seed is not a whole number from 0 to 2^63 - 1.
-    pub fn seed(&self) -> Result<u64, FileError> {
+    /// Returns a [`SettingError`] when the seed is not a whole number from 0 to 2^63 - 1.
+    pub fn seed(&self) -> Result<u64, SettingError> {
         Ok(self.integer("seed", 0..=plan::MAX_SEED)?.unwrap_or(1))
     }
 
@@ -215,7 +214,7 @@ impl ExperimentFile {
     /// # Errors
     ///
     /// Fails in the same cases as [`Self::resolve`].
-    pub fn resolve_for(&self, seed: u64) -> Result<Plan, FileError> {
+    pub fn resolve_for(&self, seed: u64) -> Result<Plan, SettingError> {
         let mut file = self.clone();
         file.set("seed", i64::try_from(seed).unwrap_or(i64::MAX), "seed")?;
         if file.text("head.motion")? == Some(SYNTHETIC) {
@@ -224,13 +223,13 @@ impl ExperimentFile {
         file.resolve()
     }
 
-    /// Returns true if the head moves differently for each seed. This is the case for the synthetic motion without a
-    /// seed of its own.
+    /// Returns true if the head moves differently for each seed. The head does so for the motion `synthetic` if the
+    /// setting states no seed for the motion.
     ///
     /// # Errors
     ///
-    /// Returns [`FileError`] if the motion is not a text.
-    pub fn has_motion_for_each_seed(&self) -> Result<bool, FileError> {
+    /// Returns a [`SettingError`] if the motion is not a text.
+    pub fn has_motion_for_each_seed(&self) -> Result<bool, SettingError> {
         Ok(self.text("head.motion")? == Some(SYNTHETIC))
     }
 
@@ -238,12 +237,11 @@ impl ExperimentFile {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError::Syntax`] if the equals sign is missing, and the errors of [`Self::set`].
-    pub fn set_text(&mut self, assignment: &str, place: &str) -> Result<(), FileError> {
-        let (path, text) = assignment.split_once('=').ok_or_else(|| FileError::Syntax {
-            place: place.to_owned(),
-            reason: format!("expected path=value, found `{assignment}`"),
-        })?;
+    /// Returns a [`SettingError`] if the equals sign is missing, and the errors of [`Self::set`].
+    pub fn set_text(&mut self, assignment: &str, place: &str) -> Result<(), SettingError> {
+        let (path, text) = assignment
+            .split_once('=')
+            .ok_or_else(|| invalid(place, format_args!("expected path=value, found `{assignment}`")))?;
         // Numbers and lists need no quotes; any other text is taken literally.
         let parsed: Result<toml::Table, _> = toml::from_str(&format!("value = {text}"));
         let value = parsed.ok().filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
@@ -251,7 +249,7 @@ impl ExperimentFile {
     }
 
     /// Stores a value under the full path of its key.
-    pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
+    pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), SettingError> {
         let canonical = self.canonical_key(path, &place)?;
         let setting = Setting { value, place, folder: folder.to_owned() };
         // A number with a unit is kept as a number in the key's own unit.
@@ -269,13 +267,9 @@ impl ExperimentFile {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError::UnknownKey`] with the most similar valid path.
-    pub(crate) fn canonical_key(&self, path: &str, place: &str) -> Result<String, FileError> {
-        keys::canonical(&self.registry, path).ok_or_else(|| FileError::UnknownKey {
-            place: place.to_owned(),
-            found: path.to_owned(),
-            nearest: keys::nearest_key(&self.registry, path),
-        })
+    /// Returns a [`SettingError`] with the most similar valid path.
+    pub(crate) fn canonical_key(&self, path: &str, place: &str) -> Result<String, SettingError> {
+        keys::canonical(&self.registry, path).ok_or_else(|| keys::unknown(&self.registry, path).at(place))
     }
 
     /// Returns the keys that are set, in alphabetical order.
@@ -292,7 +286,7 @@ impl ExperimentFile {
         self.settings.extend(other.settings);
     }
 
-    /// Returns true if the file describes a sweep.
+    /// Returns true if the file describes a sweep (one experiment at many points of a parameter space).
     #[must_use]
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()
@@ -305,8 +299,8 @@ impl Default for ExperimentFile {
     }
 }
 
-/// Returns the leaves of a TOML value with their paths and byte positions. An empty table counts as a leaf, so that it
-/// is not lost.
+/// Returns the leaves of a TOML value with their paths and byte positions. An empty table counts as a leaf, so that the
+/// result contains the table.
 fn flat(
     path: String,
     value: Value,
@@ -343,10 +337,15 @@ fn place(text: &str, name: &str, at: usize) -> String {
     format!("{name}, line {}", line(text, at))
 }
 
-/// Converts an error of the TOML parser to a [`FileError`] with file name and line.
-fn not_toml(error: &toml::de::Error, text: &str, name: &str) -> FileError {
+/// Converts an error of the TOML parser to a [`SettingError`] with file name and line.
+fn not_toml(error: &toml::de::Error, text: &str, name: &str) -> SettingError {
     let at = error.span().map_or(0, |span| span.start);
-    FileError::Syntax { place: place(text, name, at), reason: error.message().to_owned() }
+    invalid(&place(text, name, at), error.message())
+}
+
+/// Creates the error of a text that is not valid TOML.
+fn invalid(place: &str, reason: impl Display) -> SettingError {
+    SettingError::combination(format_args!("not TOML: {reason}")).at(place)
 }
 
 /// Returns the line number of a byte position, counted from 1.

@@ -8,9 +8,9 @@
 //! Pixel-Planes 5.
 //!
 //! All rows come from the same machine parameters. Rows 3, 5 and 6 describe machines with other loads or costs than the
-//! presets. Their experiments change only the parameters that the paper's statement changes.
+//! presets. The experiments of these rows change only the parameters that the paper's statement changes.
 //!
-//! Sources: TR94, I3D95. The loads of the experiments are chosen by this project.
+//! Sources: TR94, I3D95. This project chose the loads of the experiments.
 
 mod applications;
 mod document;
@@ -32,10 +32,11 @@ pub use family::FigureFamily;
 pub use group::FigureGroup;
 pub use heads::PHOTODIODE_LINE;
 pub use measure::Bench;
-pub use measured::{Detail, FigureValue};
-pub use reading::{FieldCount, ROOM, Reading, Samples};
-pub use row::{FigureRow, MISS_PERCENT, mean_error_percent};
-pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
+pub use measured::FigureValue;
+pub use pxpl5_sim::figures::{Basis, Detail, FigureRow};
+pub use reading::{FieldCount, LatencySamples, ROOM, Reading};
+pub use row::{MISS_PERCENT, mean_error_percent};
+pub use table::{FIGURES, Figure, WITHOUT_CLOSED_FORM};
 pub use topics::figure_groups;
 
 use crate::application_time::{ApplicationTime, application_times};
@@ -90,7 +91,8 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
 }
 
 /// Measures all figures in parallel, with their intervals. `finished` is called with the number of finished steps and
-/// the number of all steps. A step is one figure of the main table, or one of the other parts of [`Figures`].
+/// the number of all steps. A step is the measurement of one figure of the main table, or of one other field of
+/// [`Figures`].
 ///
 /// # Errors
 ///
@@ -152,7 +154,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
 /// Measures one figure under common settings (`bench`) and returns its row.
 fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, FigureError> {
     match bench.measure(figure.id) {
-        Ok(measured) => Ok(FigureRow::new(figure, measured)),
+        Ok(measured) => Ok(figure.row(measured)),
         Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
     }
 }

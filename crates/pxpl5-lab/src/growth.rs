@@ -38,11 +38,12 @@ const SCENES: [u32; 2] = [10_000, 59_592];
 /// Sizes of the machines: number of GPs and number of renderers. Each machine draws each of the [`SCENES`].
 const MACHINES: [(usize, usize); 9] = [(2, 5), (4, 5), (13, 5), (24, 5), (50, 5), (13, 1), (13, 2), (13, 10), (13, 20)];
 
-/// Memory of a GP in bytes in these runs. A million triangles do not fit into the 8 MB of 50 real GPs.
+/// Memory of a GP in bytes in these runs. A million triangles do not fit into 50 real graphics processors with 8 MB
+/// each.
 const MEMORY_BYTES: u64 = 1 << 30;
 
-/// Time to process a triangle in nanoseconds: on its GP, and on a renderer for the 1.35 regions that it touches. The
-/// length of a run follows from these times.
+/// Time to process a triangle in nanoseconds: on its graphics processor, and on a renderer for the 1.35 regions that
+/// the triangle touches. The number of fields of a run is computed from these times.
 const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 
 /// Number of frames that a run must be long enough to show.
@@ -277,8 +278,8 @@ fn table(text: &mut String, points: &[Point]) {
     }
 }
 
-/// Writes a chart of host time over triangles, both logarithmic. Each row is one scene size, and each column a tenth of
-/// a decade.
+/// Writes a chart of host time over triangles, both logarithmic. Each row of the chart is one scene size, and each
+/// column is a tenth of a decade of the host time.
 fn chart(text: &mut String, points: &[Point]) {
     let least = points.iter().filter(|p| p.frames > 0).map(|p| p.host_ms).fold(f64::INFINITY, f64::min).log10().floor();
     for p in points.iter().filter(|p| p.frames > 0) {

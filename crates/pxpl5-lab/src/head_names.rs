@@ -1,69 +1,21 @@
 //! Builds head motions, trackers and predictors from their names.
 
 use glam::{DVec3, Vec3};
+use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
-use thiserror::Error;
 use tracking::Pose;
 use tracking::config::Tables;
 use tracking::motion::{
-    End, Motion, Pan, Pendulum, Recording, RecordingError, RecordingFormat, Sinusoid, Slide, Still, Synthetic, Walk,
+    End, Motion, Pan, Pendulum, Recording, RecordingFormat, Sinusoid, Slide, Still, Synthetic, Walk,
 };
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
 /// Maximum speed of the motion `pan` in degrees per second, well above the peak rate of a head, 370.
 const FASTEST_PAN: f64 = 10_000.0;
-
-/// Error in the name or parameters of a motion, tracker or predictor.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum MotionError {
-    /// The name is unknown.
-    #[error("there is no {what} `{found}`; expected {expected}")]
-    Unknown {
-        /// Kind of thing that was named: motion, tracker or predictor.
-        what: &'static str,
-        /// The unknown name.
-        found: String,
-        /// List of the accepted names, as text.
-        expected: &'static str,
-    },
-    /// The text after the colon is not a number, or the number is out of range.
-    #[error("expected {expected}, found `{found}`")]
-    Number {
-        /// The invalid text.
-        found: String,
-        /// Expected form and range of the number, in words.
-        expected: &'static str,
-    },
-    /// The motion walks along the scene's path, but the scene has no path.
-    #[error(
-        "`{found}` walks along the scene's path, and this scene has none; expected a scene with a path, such as gallery"
-    )]
-    NoPath {
-        /// Name of the motion, as given by the user.
-        found: String,
-    },
-    /// The file of a recorded head motion cannot be opened.
-    #[error("{path} cannot be opened: {error}")]
-    Open {
-        /// Path of the recording's file.
-        path: String,
-        /// Error of the operating system.
-        error: io::Error,
-    },
-    /// The recording of a head motion cannot be replayed.
-    #[error("{path}: {error}")]
-    Load {
-        /// Path of the recording's file.
-        path: String,
-        /// Error of the recording's reader.
-        error: RecordingError,
-    },
-}
 
 /// Forms of all motions that [`motion`] and [`walk`] accept, for help texts and errors.
 pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
@@ -77,7 +29,7 @@ const HIGHEST_HZ: f64 = 100.0;
 /// Options for replaying a recorded head motion: the format of its file, and the behaviour at its end.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Replay {
-    /// Columns and axes of the recording's file, unless its header states them.
+    /// Columns and axes of the recording's file, for a file whose header does not state them.
     pub format: RecordingFormat,
     /// Behaviour after the last sample of the recording.
     pub end: End,
@@ -89,16 +41,16 @@ pub fn is_walk(name: &str) -> bool {
     name.split(':').next() == Some("walk")
 }
 
-/// Builds a walk along a closed path from its name. In `walk:M_PER_S` the viewer looks straight ahead. In
-/// `walk:M_PER_S:SEED` the viewer looks around as in `synthetic:SEED`.
+/// Builds a walk along a closed path from its name. With `walk:M_PER_S`, the viewer always faces ahead. With
+/// `walk:M_PER_S:SEED`, the viewer's head turns at random as in `synthetic:SEED`.
 ///
 /// # Errors
 ///
-/// Returns [`MotionError`] for an empty path, and for an invalid speed or seed.
-pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
+/// Returns a [`SettingError`] for an empty path, and for an invalid speed or seed.
+pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, SettingError> {
     let expected =
         "a walk of -100 to 100 metres per second, such as walk:1, and a seed to look around by, such as walk:1:7";
-    let wrong = || MotionError::Number { found: text.to_owned(), expected };
+    let wrong = || SettingError::value("", expected, format_args!("`{text}`"));
     let numbers = text.strip_prefix("walk:").ok_or_else(wrong)?;
     // The speed comes before the optional seed.
     let speed = numbers.split(':').next().and_then(|speed| within(speed, FASTEST_SLIDE)).ok_or_else(wrong)?;
@@ -106,7 +58,7 @@ pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
         Some((_, seed)) => Some(seed.parse().map_err(|_| wrong())?),
         None => None,
     };
-    let no_path = |_| MotionError::NoPath { found: text.to_owned() };
+    let no_path = |_| no_path(text);
     let corners: Vec<DVec3> = path.iter().map(|corner| corner.as_dvec3()).collect();
     // An empty path is the error of a scene without a path.
     let ahead = Walk::new(&corners, speed).map_err(no_path)?;
@@ -129,8 +81,8 @@ pub fn is_recording(name: &str) -> bool {
 ///
 /// # Errors
 ///
-/// Returns [`MotionError`] with the expected form and the text found.
-pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> {
+/// Returns a [`SettingError`] with the expected form and the text found.
+pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, SettingError> {
     replayed(text, &Replay::default())
 }
 
@@ -139,8 +91,8 @@ pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> 
 /// # Errors
 ///
 /// Fails in the same cases as [`motion`].
-pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> {
-    let number = |found: &str, expected| MotionError::Number { found: found.to_owned(), expected };
+pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + Sync>, SettingError> {
+    let number = |found: &str, expected| SettingError::value("", expected, format_args!("`{found}`"));
     // Each motion has a name, and most have parameters after a colon.
     Ok(match text.split_once(':').unwrap_or((text, "")) {
         ("still", "") => Arc::new(Still(Pose::IDENTITY)),
@@ -168,10 +120,30 @@ pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + S
             let seed = seed.parse().map_err(|_| number(seed, "a seed of 0 to 2^64 - 1, such as synthetic:1"))?;
             Arc::new(Synthetic::recorded_use(seed))
         }
-        ("walk", _) => return Err(MotionError::NoPath { found: text.to_owned() }),
+        ("walk", _) => return Err(no_path(text)),
         _ if is_recording(text) => Arc::new(recording(Path::new(text), replay)?),
-        _ => return Err(MotionError::Unknown { what: "motion", found: text.to_owned(), expected: MOTIONS }),
+        _ => return Err(unknown("motion", text, listed("still pan slide sine pendulum synthetic walk"), MOTIONS)),
     })
+}
+
+fn no_path(motion: &str) -> SettingError {
+    SettingError::combination(format_args!(
+        "`{motion}` walks along the scene's path, and this scene has none; expected a scene with a path, such as gallery"
+    ))
+}
+
+/// Creates the error of an unknown name. The message states the most similar of the valid names first, then `forms`: all
+/// names, or names with their parameters.
+pub(crate) fn unknown<'a>(what: &str, found: &str, names: impl Iterator<Item = &'a str>, forms: &str) -> SettingError {
+    let SettingError { nearest, .. } = SettingError::unknown_path(what, found, names);
+    SettingError::combination(format_args!(
+        "there is no {what} `{found}`; did you mean `{nearest}`? (expected {forms})"
+    ))
+}
+
+/// Returns the names in a list such as `none, velocity or kalman`.
+fn listed(names: &str) -> impl Iterator<Item = &str> {
+    names.split([',', ' ']).filter(|name| !["", "or"].contains(name))
 }
 
 /// Parses a number whose absolute value is at most `most`.
@@ -179,16 +151,18 @@ fn within(text: &str, most: f64) -> Option<f64> {
     text.parse().ok().filter(|number: &f64| number.abs() <= most)
 }
 
-fn recording(path: &Path, replay: &Replay) -> Result<Recording, MotionError> {
+fn recording(path: &Path, replay: &Replay) -> Result<Recording, SettingError> {
     let name = || path.display().to_string();
-    let file = File::open(path).map_err(|error| MotionError::Open { path: name(), error })?;
+    let file = File::open(path).map_err(|error| {
+        FileError::because(FileErrorKind::Unreadable, format_args!("{} cannot be opened: {error}", name()))
+    })?;
     recording_of(file, &name(), replay)
 }
 
 /// Reads a recorded head motion from the contents of its file. Error messages call the recording `name`.
-pub(crate) fn recording_of(contents: impl Read, name: &str, replay: &Replay) -> Result<Recording, MotionError> {
+pub(crate) fn recording_of(contents: impl Read, name: &str, replay: &Replay) -> Result<Recording, SettingError> {
     let recording = Recording::read_as(contents, &replay.format);
-    Ok(recording.map_err(|error| MotionError::Load { path: name.to_owned(), error })?.ending(replay.end))
+    Ok(recording.map_err(|error| error.in_file(name))?.ending(replay.end))
 }
 
 /// Names of all trackers that [`tracker`] accepts, for help texts and errors.
@@ -198,8 +172,8 @@ pub const TRACKERS: &str = "optical, fastrak, fastrak-polled, flock, flock-patch
 ///
 /// # Errors
 ///
-/// Returns [`MotionError::Unknown`] with the list of names.
-pub fn tracker(name: &str) -> Result<TrackerConfig, MotionError> {
+/// Returns a [`SettingError`] with the list of names.
+pub fn tracker(name: &str) -> Result<TrackerConfig, SettingError> {
     Ok(tracker_by(&Tables::PAPERS, name)?.0)
 }
 
@@ -209,7 +183,7 @@ pub fn tracker(name: &str) -> Result<TrackerConfig, MotionError> {
 /// # Errors
 ///
 /// Fails in the same cases as [`tracker`].
-pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'static str), MotionError> {
+pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'static str), SettingError> {
     Ok(match name {
         "optical" => (TrackerConfig::optical_ceiling_by(tables), "optical"),
         "fastrak" => (TrackerConfig::fastrak_by(tables), "fastrak"),
@@ -219,7 +193,7 @@ pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'stati
         "3space" => (TrackerConfig::polhemus_3space_by(tables), "space"),
         "3space-patched" => (TrackerConfig::polhemus_3space_by(tables).without_polling(), "space"),
         "ideal" => (TrackerConfig::ideal_by(tables), "ideal"),
-        _ => return Err(MotionError::Unknown { what: "tracker", found: name.to_owned(), expected: TRACKERS }),
+        _ => return Err(unknown("tracker", name, listed(TRACKERS), TRACKERS)),
     })
 }
 
@@ -230,15 +204,15 @@ pub const PREDICTORS: &str = "none, velocity, acceleration or kalman";
 ///
 /// # Errors
 ///
-/// Returns [`MotionError::Unknown`] with the list of names.
-pub fn predictor(name: &str) -> Result<PredictorKind, MotionError> {
+/// Returns a [`SettingError`] with the list of names.
+pub fn predictor(name: &str) -> Result<PredictorKind, SettingError> {
     Ok(match name {
         "none" => PredictorKind::None,
         "velocity" => PredictorKind::ConstantVelocity,
         "acceleration" => PredictorKind::ConstantAcceleration,
         "kalman" => PredictorKind::Kalman,
         _ => {
-            return Err(MotionError::Unknown { what: "predictor", found: name.to_owned(), expected: PREDICTORS });
+            return Err(unknown("predictor", name, listed(PREDICTORS), PREDICTORS));
         }
     })
 }

@@ -38,7 +38,7 @@ impl Default for Workstation {
     }
 }
 
-/// Instant on the host from which seconds are counted.
+/// Instant from which the host's clock counts seconds: the first use of the clock.
 static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
 
 impl Host for Workstation {
@@ -54,14 +54,14 @@ impl Host for Workstation {
     }
 }
 
-/// A pool of threads that compute pixels. At the end of a run the simulating thread helps to empty the queue of
-/// regions.
+/// A pool of threads that compute pixels. At the end of a run, the thread of the simulation also computes regions until
+/// the queue of regions is empty.
 #[derive(Debug)]
 struct PixelThreads {
     regions: Sender<Arc<dyn PixelSource>>,
     waiting: Receiver<Arc<dyn PixelSource>>,
     threads: Vec<JoinHandle<u64>>,
-    /// Number of regions whose pixels the simulating thread computed.
+    /// Number of regions whose pixels the thread of the simulation computed itself.
     own: u64,
 }
 
@@ -73,13 +73,13 @@ impl PixelThreads {
     }
 }
 
-/// Starts a thread that computes the pixels of regions until the queue closes. The thread returns the number of
-/// regions.
+/// Starts a thread that computes the pixels of regions until the queue closes. The thread returns the number of regions
+/// that it computed.
 fn start_thread(waiting: Receiver<Arc<dyn PixelSource>>) -> JoinHandle<u64> {
     std::thread::spawn(move || compute_all(&waiting))
 }
 
-/// Computes the pixels of regions until the queue closes. Returns the number of regions.
+/// Computes the pixels of regions until the queue closes. Returns the number of regions that were computed.
 fn compute_all(waiting: &Receiver<Arc<dyn PixelSource>>) -> u64 {
     waiting.iter().fold(0, |regions, region| {
         let _ = region.pixels();

@@ -15,9 +15,10 @@
 //! the depth of the FIFO and the number of channels of a sender. For the figure of the pendulum rig, the photodiode's
 //! position and the interpretations vary too.
 
-use crate::figures::{Bench, FIGURES, FigureRow, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
+use crate::figures::{Bench, FIGURES, PHOTODIODE_LINE, Reading, WITHOUT_CLOSED_FORM};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
+use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::mix;
 use pxpl5_sim::parameters::Provenance;
 use serde::Serialize;
@@ -69,7 +70,8 @@ pub struct Interval {
     pub one_at_a_time: [f64; 2],
     /// Minimum and maximum value of the figure over the interpretations that change one answer at a time.
     pub readings: [f64; 2],
-    /// Interpretations that change the figure, each with the resulting value of the figure. The strongest comes first.
+    /// Interpretations that change the figure, each with the resulting value of the figure. The interpretation with the
+    /// greatest change comes first.
     pub rules: Vec<(String, f64)>,
     /// Minimum and maximum value of the figure over the random machines of the joint sample.
     pub joint: [f64; 2],
@@ -80,7 +82,8 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Returns the minimum and maximum of the figure over all designs, as computed at the analytic level.
+    /// Returns the minimum and maximum of the figure over all three designs of experiments, as computed at the analytic
+    /// level.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
@@ -102,8 +105,8 @@ const FITTED: [(&str, u64, (u64, u64)); 2] =
 /// Returns all parameters that are derived or assumed, have a range, and can change a figure at the analytic level.
 ///
 /// Parameters of the i860 are left out. The analytic level uses formulas with the timing tables and executes no code,
-/// so an interval would wrongly suggest that these parameters never matter. At the cycle level they do matter. Here the
-/// range of `gp.triangle_ns` stands for their effect.
+/// so an interval would wrongly suggest that these parameters never matter. At the cycle level these parameters do
+/// matter. In the intervals, the range of `gp.triangle_ns` stands for the effect of these parameters.
 #[must_use]
 pub fn variations() -> Vec<Variation> {
     let parameters = MachineConfig::small_hmd().parameters().into_iter().filter(|p| !p.path.starts_with("i860."));
@@ -135,7 +138,7 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
 }
 
-/// Computes the intervals of all figures at the analytic level, around their values for the given bench (common
+/// Computes the intervals of all figures at the analytic level, around the figures' values for the given bench (common
 /// settings of all measurements).
 #[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
@@ -176,7 +179,7 @@ const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 const OF_EVENTS: [&str; 2] = ["renderer.fifo_words", "ring.source_channels"];
 
 /// Computes the interval of a figure that needs a simulation with events. Each parameter of [`OF_EVENTS`] takes both
-/// ends of its range, one at a time.
+/// ends of its range, while the other parameters keep their presets.
 fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     let variations: Vec<_> = variations().into_iter().filter(|v| OF_EVENTS.contains(&v.path.as_str())).collect();
     let nominal = bench.measure(id).ok()?.value;
@@ -190,7 +193,12 @@ fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: 
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     crate::parallel::map(&ends, |(v, value)| {
         let changes = bench.changes.iter().cloned().chain([(v.path.clone(), *value)]).collect();
-        Bench { changes, ..bench.clone() }.measure(id).map_or(nominal, |measured| measured.value)
+        let moved = Bench { changes, ..bench.clone() };
+        // The end of a range can be the value that all machines have.
+        if bench.has_machines_of(&moved) {
+            return nominal;
+        }
+        moved.measure(id).map_or(nominal, |measured| measured.value)
     })
 }
 
@@ -220,8 +228,8 @@ pub(crate) fn photodiode_line() -> Option<Variation> {
     Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
 }
 
-/// Combines two designs into the interval of one figure. `ends` has the values at both ends of every range in turn, and
-/// `joint` the values of the random machines.
+/// Combines two designs into the interval of one figure. `ends` has the figure's values at both ends of each parameter
+/// range, one parameter after the other. `joint` has the figure's values on the random machines.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {
@@ -237,7 +245,7 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
 }
 
 impl Interval {
-    /// Adds the values of the figure under other interpretations to the interval.
+    /// Adds the values of the figure under other interpretations of the papers to the interval.
     fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
         let reach = |value: f64| (value / self.nominal - 1.0).abs();
         // Interpretations without a visible effect are left out.
@@ -267,7 +275,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Smallest relative change of a figure that is listed.
+/// Smallest relative change of a figure for which a parameter is listed.
 const VISIBLE: f64 = 1e-3;
 
 fn effects(variations: &[Variation], ends: &[f64], nominal: f64) -> Vec<Effect> {
@@ -322,7 +330,7 @@ mod tests {
             likely: [20.2, 21.0],
             effects: Vec::new(),
         };
-        let mut rows = [FigureRow::new(figure, FigureValue::from(simulated))];
+        let mut rows = [figure.row(FigureValue::from(simulated))];
         fill(&mut rows, &[interval]);
         let [row] = rows;
         row
@@ -348,7 +356,7 @@ mod tests {
     #[test]
     fn the_figure_of_the_scenes_has_no_interval() {
         let figure = FIGURES.iter().find(|figure| figure.id == "8").expect("listed");
-        let mut rows = [FigureRow::new(figure, FigureValue::from(9.0))];
+        let mut rows = [figure.row(FigureValue::from(9.0))];
         fill(&mut rows, &[]);
         assert_eq!((rows[0].interval, rows[0].analytic), (None, None));
         assert!(!rows[0].is_out_of_reach());
@@ -363,10 +371,8 @@ mod tests {
         let [low, high] = line.ends;
         assert!((high - low - 239.0 * 0.063_556).abs() < 0.01, "{low} to {high}");
         assert!(low < interval.nominal && interval.nominal < high);
-        let mut rows = [FigureRow::new(
-            FIGURES.iter().find(|figure| figure.id == OF_RIG).expect("listed"),
-            FigureValue::from(interval.nominal),
-        )];
+        let figure = FIGURES.iter().find(|figure| figure.id == OF_RIG).expect("listed");
+        let mut rows = [figure.row(FigureValue::from(interval.nominal))];
         fill(&mut rows, std::slice::from_ref(&interval));
         assert_eq!((rows[0].interval, rows[0].analytic), (Some(interval.bounds()), None));
     }

@@ -1,4 +1,4 @@
-//! The levels of modelling behind a common interface, and their comparison by speed and error.
+//! A common interface to all levels of modelling, and a comparison of the levels by speed and error.
 
 mod compare;
 mod random;

@@ -50,13 +50,13 @@ mod what_if;
 
 pub use error::StudyError;
 pub use experiment_file::{
-    ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
-    Settings, tracking_parameters,
+    ExperimentFile, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice, Settings,
+    tracking_parameters,
 };
-pub use head_names::{MotionError, PREDICTORS, TRACKERS, motion, predictor, tracker};
+pub use head_names::{PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
 pub use parallel::map as in_parallel;
-pub use snapshot::{Snapshot, SnapshotError};
+pub use snapshot::Snapshot;
 pub use suitability::{Suitability, suitability};
 pub use what_if::{WhatIf, what_if};
 

@@ -16,16 +16,17 @@ mod over;
 mod search;
 
 pub use over::{OverLimit, OverQuery, STEPS, Values};
-pub use search::{Hints, Limit, about, most};
+pub use search::{Hints, Limit, about, most, most_triangles};
 
-use crate::experiment_file::{FileError, Plan, SceneChoice};
+use crate::experiment_file::{Plan, SceneChoice};
 use crate::levels::summarise;
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::MachineConfig;
 use pxpl5_run::{
     Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry, Summary,
     TestScene,
 };
-use pxpl5_scene::{Scene, builtin};
+use pxpl5_scene::{Decimation, Scene, builtin};
+use pxpl5_sim::parameters::SettingError;
 use std::sync::Arc;
 
 /// A search for the largest number of triangles: a pipeline, a machine, the kind of triangles and the goal.
@@ -52,6 +53,8 @@ pub struct Model {
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
+    /// Decimation of `whole`. All sizes of a search share the first collapses.
+    decimation: Arc<Decimation>,
 }
 
 impl Model {
@@ -60,15 +63,22 @@ impl Model {
     /// # Errors
     ///
     /// Fails in the same cases as [`SceneChoice::load`].
-    pub fn load(choice: SceneChoice) -> Result<Self, FileError> {
-        let choice = SceneChoice { triangles: None, ..choice };
+    pub fn load(choice: SceneChoice) -> Result<Self, SettingError> {
         let whole = Arc::new(choice.load_whole()?);
-        Ok(Self { choice, whole })
+        Ok(Self::new(choice, whole))
     }
 
-    fn with_triangles(&self, triangles: u32) -> Result<Arc<Scene>, FileError> {
+    /// Creates the model of a scene that is already loaded. The search ignores the number of triangles in `choice`.
+    #[must_use]
+    pub fn new(choice: SceneChoice, whole: Arc<Scene>) -> Self {
+        let decimation = Arc::new(Decimation::new(Arc::clone(&whole)));
+        Self { choice: SceneChoice { triangles: None, ..choice }, whole, decimation }
+    }
+
+    fn with_triangles(&self, triangles: u32) -> Result<Arc<Scene>, SettingError> {
         let triangles = Some(triangles as usize).filter(|n| *n < self.whole.triangles().len());
-        SceneChoice { triangles, ..self.choice.clone() }.prepared(Arc::clone(&self.whole))
+        let choice = SceneChoice { triangles, ..self.choice.clone() };
+        choice.prepared_by(Arc::clone(&self.whole), |n| self.decimation.decimated(n))
     }
 }
 
@@ -108,7 +118,7 @@ impl LimitQuery {
     /// Returns [`ExperimentError::Config`] if the built-in registry does not contain the pipeline.
     pub fn of_papers(config: MachineConfig, pipeline: impl Pipeline) -> Result<Self, ExperimentError> {
         let registry = crate::registry();
-        let unknown = |_| ConfigError::Board(format!("no pipeline {} is known", pipeline.name()));
+        let unknown = |_| SettingError::combination(format_args!("no pipeline {} is known", pipeline.name()));
         let criterion = (registry.pipeline(pipeline.name()).map_err(unknown)?.limit)(&PipelineSettings::default());
         Ok(Self { registry, config, pipeline: Arc::new(pipeline), criterion, model: None, level: Level::Transaction })
     }
@@ -135,11 +145,25 @@ impl LimitQuery {
             progress(tried);
             self.reached(triangles)
         })?;
-        // A limit of zero may mean that the goal cannot be evaluated.
-        if limit.triangles == 0 {
-            self.check_rate()?;
-        }
+        self.check_limit(limit.triangles)?;
         Ok(limit)
+    }
+
+    /// Searches for the largest number of triangles alone. It equals [`Limit::triangles`] of [`search`](Self::search),
+    /// but no sizes above the first miss are tried.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`search`](Self::search).
+    pub fn search_triangles(&self) -> Result<u32, ExperimentError> {
+        let triangles = most_triangles(self.ceiling(), &self.hints(), |triangles| self.reached(triangles))?;
+        self.check_limit(triangles)?;
+        Ok(triangles)
+    }
+
+    /// Returns an error if a limit of zero means that the goal cannot be evaluated.
+    fn check_limit(&self, triangles: u32) -> Result<(), ExperimentError> {
+        if triangles == 0 { self.check_rate() } else { Ok(()) }
     }
 
     /// Returns an error if the goal is an update rate and the scene has no measurable update rate. A display with cube
@@ -169,8 +193,8 @@ impl LimitQuery {
     /// Returns the hints of the analytic level. The hints are empty if the pipeline has no closed form, or if the
     /// search itself uses the analytic level.
     ///
-    /// For a model, each size needs a decimated scene and its views. This takes as long at the analytic level as at any
-    /// other level. Small triangles therefore stand in for the model.
+    /// For a model, each number of triangles needs a decimated scene. Building this scene takes as long at the analytic
+    /// level as at any other level. The hints therefore use a test scene of small triangles in place of the model.
     fn hints(&self) -> Hints {
         if self.level == Level::Analytic && self.model.is_none() {
             return Hints::default();
@@ -184,8 +208,8 @@ impl LimitQuery {
         Hints { near, doubtful: doubtful.unwrap_or_default() }
     }
 
-    /// Returns numbers of triangles up to 5 % above `near` that have a smaller margin to the goal than their
-    /// neighbours. The smallest margin comes first.
+    /// Returns numbers of triangles, up to 5 % above `near`, that reach the goal with a smaller margin than the
+    /// neighbouring numbers. The smallest margin comes first.
     fn doubtful(&self, near: u32) -> Vec<u32> {
         let most = near + near / 20;
         let step = most.div_ceil(MARGINS).max(1) as usize;
@@ -198,8 +222,8 @@ impl LimitQuery {
         least.into_iter().take(DOUBTFUL).map(|(_, triangles)| triangles).collect()
     }
 
-    /// Returns the margin by which a number of triangles reaches the goal, in the unit of the goal. A negative margin
-    /// is a miss.
+    /// Returns a number that is greater if the goal is easier to reach: the update rate, the negative latency, or the
+    /// negative time of the first copy. Only the comparison of two numbers of triangles has a meaning.
     fn margin(&self, triangles: u32) -> Option<f64> {
         let summary = self.summary(triangles).ok()?;
         match self.criterion.goal {

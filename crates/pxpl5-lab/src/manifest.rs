@@ -1,15 +1,15 @@
 //! The manifest of an output folder, which lists the files of the last command that wrote there.
 //!
-//! A folder may hold files of several runs and files of the user. The manifest distinguishes them. Readers trust only
-//! files that are listed and unchanged. The next run removes the listed files that it does not write again.
+//! A folder may hold files of several runs and files of the user. The manifest distinguishes these files. Readers trust
+//! only files that are listed and unchanged. The next run removes each listed file that the run does not write again.
 
 use pxpl5_measure::program;
 use pxpl5_run::Fingerprint;
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use thiserror::Error;
 
 /// Name of the manifest file in its folder.
 pub const MANIFEST_FILE: &str = "manifest.json";
@@ -40,36 +40,6 @@ pub struct Manifest {
     replaced: Vec<ManifestEntry>,
 }
 
-/// Error of a manifest, or of a file in the manifest.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum ManifestError {
-    /// The manifest's file cannot be read.
-    #[error("{path}: cannot be read: {reason}")]
-    Io {
-        /// Path of the manifest's file.
-        path: String,
-        /// Reason given by the operating system.
-        reason: String,
-    },
-    /// A file has the manifest's name but is not a manifest.
-    #[error("{path}: expected a manifest of pxpl5 (schema {}), found {found}; choose another folder", Manifest::SCHEMA)]
-    NoManifest {
-        /// Path of the file.
-        path: String,
-        /// Description of the first error in the file.
-        found: String,
-    },
-    /// A file in the manifest is missing, or has other contents.
-    #[error("{path}: expected the file that {MANIFEST_FILE} lists, found {found}")]
-    Changed {
-        /// Path of the file.
-        path: String,
-        /// State of the file that was found.
-        found: &'static str,
-    },
-}
-
 impl ManifestEntry {
     fn of(name: &str, bytes: &[u8]) -> Self {
         Self { name: name.to_owned(), contents: Some(Fingerprint::of(bytes).to_string()) }
@@ -85,8 +55,8 @@ impl Manifest {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-manifest/1";
 
-    /// Command name in the manifest of a sweep. Its rows may be the work of hours, so other commands never replace
-    /// them.
+    /// Command name in the manifest of a sweep. The rows of a sweep may be the work of hours, so other commands never
+    /// replace these rows.
     pub const SWEEP: &'static str = "sweep";
 
     /// Creates an empty manifest for a command.
@@ -106,25 +76,28 @@ impl Manifest {
     ///
     /// # Errors
     ///
-    /// Returns [`ManifestError`] if the manifest's file exists but is not a manifest, or cannot be read.
-    pub fn read(folder: &Path) -> Result<Option<Self>, ManifestError> {
+    /// Returns a [`FileError`] if the manifest's file exists but is not a manifest, or cannot be read.
+    pub fn read(folder: &Path) -> Result<Option<Self>, FileError> {
         let path = folder.join(MANIFEST_FILE);
         let found = path.display().to_string();
-        let no_manifest = |what: String| ManifestError::NoManifest { path: found.clone(), found: what };
+        let no_manifest = |what: String| {
+            let expected = format_args!("a manifest of pxpl5 (schema {})", Self::SCHEMA);
+            let what = format_args!("{what}; choose another folder");
+            FileError::new(FileErrorKind::Occupied, expected, what).in_file(&found)
+        };
         match path.metadata() {
             // A missing folder has no manifest either.
             Err(error) if [io::ErrorKind::NotFound, io::ErrorKind::NotADirectory].contains(&error.kind()) => {
                 return Ok(None);
             }
-            Err(error) => return Err(ManifestError::Io { path: found, reason: error.to_string() }),
+            Err(error) => return Err(FileError::io(&path, "cannot be read")(error)),
             // Reading a pipe would block.
             Ok(there) if !there.is_file() => {
                 return Err(no_manifest("something that is not a regular file".to_owned()));
             }
             Ok(_) => {}
         }
-        let bytes =
-            fs::read(&path).map_err(|error| ManifestError::Io { path: found.clone(), reason: error.to_string() })?;
+        let bytes = fs::read(&path).map_err(FileError::io(&path, "cannot be read"))?;
         let manifest: Self = serde_json::from_slice(&bytes).map_err(|error| no_manifest(error.to_string()))?;
         if manifest.schema != Self::SCHEMA {
             return Err(no_manifest(format!("schema {}", manifest.schema)));
@@ -180,11 +153,14 @@ impl Manifest {
     ///
     /// # Errors
     ///
-    /// Returns [`ManifestError::Changed`] if the file is missing or its contents have changed.
-    pub fn read_file(&self, folder: &Path, name: &str) -> Result<Option<Vec<u8>>, ManifestError> {
+    /// Returns a [`FileError`] if the file is missing or its contents have changed.
+    pub fn read_file(&self, folder: &Path, name: &str) -> Result<Option<Vec<u8>>, FileError> {
         let Some(entry) = self.files.iter().find(|entry| entry.name == name) else { return Ok(None) };
         let path = folder.join(name);
-        let changed = |found| ManifestError::Changed { path: path.display().to_string(), found };
+        let changed = |found| {
+            let expected = format_args!("the file that {MANIFEST_FILE} lists");
+            FileError::new(FileErrorKind::Damaged, expected, found).in_file(path.display())
+        };
         if !path.is_file() {
             return Err(changed("no file"));
         }
@@ -282,7 +258,7 @@ mod tests {
                 Manifest::SCHEMA
             );
             fs::write(folder.join(MANIFEST_FILE), text).expect("ours");
-            assert!(matches!(Manifest::read(&folder), Err(ManifestError::NoManifest { .. })), "{name}");
+            assert_eq!(Manifest::read(&folder).expect_err(name).kind, FileErrorKind::Occupied, "{name}");
         }
         fs::remove_dir_all(folder).expect("ours");
     }

@@ -19,13 +19,13 @@ pub struct PipelineFigure {
     pub fields: Option<u64>,
 }
 
-/// The papers' diagrams of pipelines. The papers name no scenes. The scenes are chosen so that the stages have the
-/// published relations. Figure 4 also needs a chosen number of triangles and time per triangle. TRANSFORM, RENDER and
-/// COPY then take 15.6 ms each, as in row 5 of ACCURACY.md.
+/// The papers' diagrams of pipelines. The papers name no scenes. The scenes are chosen so that the durations of the
+/// stages have the published relations to each other. Figure 4 also needs a chosen number of triangles and time per
+/// triangle. TRANSFORM, RENDER and COPY then take 15.6 ms each, as in row 5 of ACCURACY.md.
 ///
-/// Figures 3 and 4 show TR94's theory. Like rows 3 and 5 of ACCURACY.md they follow the rules of TR94's text. A
-/// renderer with a finished region continues with the next region (`finished = "store"`). By default renderers wait,
-/// which agrees with TR94's measurements.
+/// Figures 3 and 4 show TR94's theory. Like rows 3 and 5 of ACCURACY.md, both figures follow the rules in the text of
+/// TR94. A renderer with a finished region continues with the next region (`finished = "store"`). By default renderers
+/// wait, which agrees with TR94's measurements.
 pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
     PipelineFigure {
         name: "tr94-1-rendering-control-mono",

@@ -10,7 +10,7 @@
 //! the interpretation that fits all other figures best. The result also counts the interpretations that are as good as
 //! the best within the printed digits. The text of the papers decides between these interpretations.
 //!
-//! Source of the questions: TR94, which leaves them open.
+//! Source of the questions: TR94, which does not answer these questions.
 
 mod fit;
 mod rank;

@@ -1,11 +1,12 @@
 //! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
 //! with the system's own time stamps.
 //!
-//! As in I3D95, the host starts a frame when it detects the pendulum's low point. Frames alternate between dark and
-//! light, and a D/A line changes when the program starts a frame. Frames therefore come on demand, the pipeline is not
-//! full, and the latency contains no wait for stages of an earlier frame. Under Rendering Control the host drives the
-//! line, so SEND and EDIT belong to the rendering part. Firmware that starts frames itself, such as Slats, switches the
-//! line when it samples the pose of a frame.
+//! As in I3D95, the host starts a frame when the host detects the pendulum's low point. Frames alternate between dark
+//! and light, and the output of a D/A converter (the D/A line) changes when the program starts a frame. Frames
+//! therefore come on demand, the pipeline is not full, and the latency contains no wait for stages of an earlier frame.
+//! Under Rendering Control the host drives the line, so SEND and EDIT belong to the rendering part of the latency.
+//! Firmware that starts frames itself, such as Slats, switches the D/A line when the firmware samples the pose of a
+//! frame.
 //!
 //! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The low points come
 //! from the pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from
@@ -15,6 +16,7 @@ use crate::Workstation;
 use crate::error::StudyError;
 use core::f64::consts::FRAC_PI_2;
 use glam::{DVec3, Vec3};
+use image::RgbImage;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
@@ -61,26 +63,62 @@ impl Rig {
     ///
     /// Returns [`StudyError`] if the pipeline cannot run on the machine, or does not show the requested frames.
     pub fn measure(&self, machine: &MachineConfig, pipeline: Arc<dyn Pipeline>) -> Result<Measurement, StudyError> {
+        let (measured, _) = self.measure_lines(machine, pipeline, [self.rig.photodiode_line])?;
+        let [measured] = measured;
+        Ok(measured)
+    }
+
+    /// Measures the latency under several lines of the screen in one run, and returns the run too. Photodiodes change
+    /// nothing on the machine, so each measurement is that of a run with this photodiode alone.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`Rig::measure`].
+    pub(crate) fn measure_lines<const N: usize>(
+        &self,
+        machine: &MachineConfig,
+        pipeline: Arc<dyn Pipeline>,
+        lines: [u32; N],
+    ) -> Result<([Measurement; N], Outcome), StudyError> {
         let tracker = TrackerModel::new(self.tracker.clone())?;
         check_frames(machine, pipeline.as_ref())?;
         // The pendulum determines when frames start.
         let sightings = self.rig.sightings(&tracker, self.seed, self.passes.max(2))?;
         let experiment = self.experiment(machine, pipeline, &sightings)?;
         // Watch the screen during the run, then read the pipeline's records for the inside measurement.
-        let mut photodiode = Photodiode::new(self.rig.photodiode_line);
-        let outcome = photodiode.watch(&experiment)?;
-        let frames = frames_asked_for(&outcome, &sightings)?;
+        let mut photodiodes = lines.map(Photodiode::new);
+        let outcome = watch(&mut photodiodes, &experiment)?;
+        let measured = photodiodes.map(|photodiode| self.compared(&tracker, &outcome, &sightings, photodiode));
+        // Report the error of the first line that has one.
+        let mut errors = Vec::new();
+        let measured = measured.map(|one| one.map_err(|error| errors.push(error)).ok());
+        match errors.into_iter().next() {
+            Some(error) => Err(error),
+            None => Ok((measured.map(|one| one.expect("no line has an error")), outcome)),
+        }
+    }
+
+    /// Compares the light under one photodiode with the pendulum and with the system's own time stamps.
+    fn compared(
+        &self,
+        tracker: &TrackerModel,
+        outcome: &Outcome,
+        sightings: &[LowPointReport],
+        photodiode: Photodiode,
+    ) -> Result<Measurement, StudyError> {
+        let rig = PendulumRig { photodiode_line: photodiode.line, ..self.rig };
+        let frames = frames_asked_for(outcome, sightings)?;
         let dac =
             ScopeTrace::toggling("D/A line", frames.iter().map(|frame| started(outcome.record(), frame).0).collect());
         let screen = ScopeTrace::sampled("screen", photodiode.samples);
-        let oscilloscope = Oscilloscope::of(&self.rig, dac, screen);
+        let oscilloscope = Oscilloscope::of(&rig, dac, screen);
         let inside = sightings.iter().zip(&frames).map(|(sighting, frame)| InsidePass {
             sighting: *sighting,
             started_ps: frame.sampled_at.unwrap_or(frame.transform_at).0,
             shown_ps: frame.shown_at.0,
         });
         // Compare the oscilloscope's times with the pipeline's time stamps.
-        let measured = self.rig.compare(&tracker, photodiode.place_ps, &oscilloscope, inside.collect())?;
+        let measured = rig.compare(tracker, photodiode.place_ps, &oscilloscope, inside.collect())?;
         let counted = frames.iter().map(|frame| behind_the_retrace(outcome.record(), frame.shown_at)).max();
         Ok(measured.with_frames_counted_in_scan(counted.unwrap_or_default()))
     }
@@ -144,7 +182,7 @@ fn away() -> Pose {
 }
 
 /// Returns a scene with a white wall straight ahead (along -z) that fills the view. The scene's own viewer looks away
-/// from the wall. The wall's two triangles are the minimal data set.
+/// from the wall. The wall has two triangles, the smallest number for a rectangle.
 fn lamp() -> Scene {
     const CORNERS: [[f32; 2]; 4] = [[-1.6, -1.6], [1.6, -1.6], [1.6, 1.6], [-1.6, 1.6]];
     let vertex = |[x, y]: [f32; 2]| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
@@ -192,24 +230,6 @@ impl Photodiode {
         Self { line, place_ps: 0, samples: Vec::new(), ring: Vec::new() }
     }
 
-    /// Runs an experiment and samples the photodiode. A run that ends before it can fill the pipeline with pictures is
-    /// accepted here.
-    fn watch(&mut self, experiment: &Experiment) -> Result<Outcome, StudyError> {
-        self.check(experiment.build()?.record().display())?;
-        let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
-        let result = experiment.run_stopping(&every, |period, machine| {
-            // The stop comes before the retrace that ends the previous period.
-            if let Some(over) = period.before(2) {
-                self.look(over, machine);
-            }
-            Ok(())
-        });
-        match result {
-            Err(ExperimentError::TooShort { partial, .. }) => Ok(*partial),
-            other => Ok(other?),
-        }
-    }
-
     fn check(&self, display: &dyn Display) -> Result<(), StudyError> {
         let lines =
             display.surfaces().first().map_or(0, |surface| surface.height / display.rows_lit(PeriodNumber::FIRST).1);
@@ -217,9 +237,8 @@ impl Photodiode {
         if found < lines { Ok(()) } else { Err(StudyError::Photodiode { lines, found }) }
     }
 
-    /// Samples the photodiode in a period that has ended.
-    fn look(&mut self, period: PeriodNumber, machine: &mut Machine) {
-        let record = machine.record();
+    /// Samples the photodiode in a period that has ended. `screen` is the picture of the period, once it was read.
+    fn look(&mut self, period: PeriodNumber, record: &Record, screen: &mut Option<Option<RgbImage>>) {
         let display = record.display();
         let Some(surface) = display.surfaces().first() else { return };
         let (first_row, row_distance) = display.rows_lit(period);
@@ -229,13 +248,16 @@ impl Photodiode {
         self.place_ps = self.place_ps.max(at.since(display.tick(period)).0);
         self.ring.push((record.ring().stats().messages, record.ring().is_idle()));
         // A picture is read only if it can have changed.
-        let is_light = self.unchanged().unwrap_or_else(|| brightness(display, x, y, period) >= LIGHT);
+        let is_light = self.unchanged().unwrap_or_else(|| {
+            let picture = screen.get_or_insert_with(|| display.seen(0, period));
+            picture.as_ref().map_or(0, |picture| brightness(picture, x, y)) >= LIGHT
+        });
         self.samples.push((at.0, is_light));
     }
 
-    /// Returns the sample of two periods ago, if no message has been on the ring since the beginning of that period.
-    /// The display lit the same line in that period, and the screen of an idle machine does not change. The ring is
-    /// read one period later than the screen.
+    /// Returns the sample of two periods ago if the screen cannot have changed since then. In this case the picture
+    /// need not be read again. The screen does not change while the ring carries no message. Two periods ago, the
+    /// display lit the same line. The state of the ring is recorded one period later than the sample of the screen.
     fn unchanged(&self) -> Option<bool> {
         let [.., before, _, _, _, now] = self.ring[..] else { return None };
         let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;
@@ -243,10 +265,29 @@ impl Photodiode {
     }
 }
 
-/// Returns the mean of red, green and blue of a pixel when it is lit in a period, or 0 if no picture was shown.
-fn brightness(display: &dyn Display, x: u32, y: u32, period: PeriodNumber) -> u32 {
-    let seen = display.seen(0, period);
-    seen.map_or(0, |picture| picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3)
+/// Returns the mean of red, green and blue of a pixel.
+fn brightness(picture: &RgbImage, x: u32, y: u32) -> u32 {
+    picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3
+}
+
+/// Runs an experiment and samples the photodiodes. A run that ends before it can fill the pipeline with pictures is
+/// accepted here.
+fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
+    let machine = experiment.build()?;
+    photodiodes.iter().try_for_each(|photodiode| photodiode.check(machine.record().display()))?;
+    let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
+    let result = experiment.run_stopping(&every, |period, machine| {
+        // The stop comes before the retrace that ends the previous period.
+        if let Some(over) = period.before(2) {
+            let mut screen = None;
+            photodiodes.iter_mut().for_each(|photodiode| photodiode.look(over, machine.record(), &mut screen));
+        }
+        Ok(())
+    });
+    match result {
+        Err(ExperimentError::TooShort { partial, .. }) => Ok(*partial),
+        other => Ok(other?),
+    }
 }
 
 /// Returns the first complete picture after each reported low point, according to the pipeline's records.
@@ -267,11 +308,33 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<V
 }
 
 /// Returns the time at which a program sampled the head pose for a frame and switched the D/A line. Under Rendering
-/// Control this is the time at which the host begins SEND. Under Slats it is the time at which a field begins on the
-/// graphics processor.
+/// Control this is the time at which the host begins SEND. Under Slats this is the time at which a graphics processor
+/// begins a field.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();
     let begun = marks
         .filter(|mark| mark.stage == Stage::Sample && mark.edge == StageEdge::Begin && mark.picture == frame.picture);
     begun.map(|mark| mark.time).min().unwrap_or(frame.transform_at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_run::RenderingControl;
+
+    /// Compares three photodiodes in one run with three runs of one photodiode each.
+    #[test]
+    fn photodiodes_of_one_run_measure_what_each_measures_alone() {
+        let rig = Rig { passes: 4, ..Rig::assumed(TrackerConfig::optical_ceiling()) };
+        let (machine, pipeline) = (MachineConfig::small_hmd(), Arc::new(RenderingControl::stereo()));
+        let lines = [0, 100, 239];
+        let (together, _) = rig.measure_lines(&machine, pipeline.clone(), lines).expect("it shows frames");
+        for (line, together) in lines.into_iter().zip(together) {
+            let rig = Rig { rig: PendulumRig { photodiode_line: line, ..rig.rig }, ..rig.clone() };
+            let alone = rig.measure(&machine, pipeline.clone()).expect("it shows frames");
+            assert_eq!(format!("{alone:?}"), format!("{together:?}"), "line {line}");
+        }
+        let refused = rig.measure_lines(&machine, pipeline, [0, 240]);
+        assert!(matches!(refused, Err(StudyError::Photodiode { lines: 240, found: 240 })), "there are 240 lines");
+    }
 }

@@ -12,16 +12,17 @@
 //!
 //! The file is JSON with a version and a checksum. Damaged and foreign files are refused with the reason.
 
-use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_machine::Machine;
-use pxpl5_run::{Experiment, ExperimentError, Fingerprint, Registry, Stepper};
+use pxpl5_run::{Experiment, Fingerprint, Registry, Stepper};
 use pxpl5_scene::Scene;
-use pxpl5_sim::{Span, Time};
+use pxpl5_sim::Time;
+use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
 use pxpl5_wire::PeriodNumber;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::fmt::Display;
 use std::sync::Arc;
-use thiserror::Error;
 
 /// The data that repeat a run up to a field, and the hashes that verify the repeated run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,88 +53,6 @@ pub struct Snapshot {
     /// Text of the experiment file. `None` for an experiment that was built in code.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub experiment: Option<String>,
-}
-
-/// Error that makes a snapshot unusable.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum SnapshotError {
-    /// The file is not a snapshot.
-    #[error("{file}: this is not a checkpoint: {reason}")]
-    Foreign {
-        /// Name of the file, as given by the user.
-        file: String,
-        /// Description of the error in the text of the file.
-        reason: String,
-    },
-    /// The snapshot has a layout of another version.
-    #[error(
-        "{file}: expected a checkpoint of layout {expected}, found {found}; use the version of pxpl5 that wrote it"
-    )]
-    Version {
-        /// Name of the file, as given by the user.
-        file: String,
-        /// Name and version of the layout that this program reads.
-        expected: &'static str,
-        /// Name and version of the layout stated in the file.
-        found: String,
-    },
-    /// The snapshot was changed after it was written.
-    #[error("{file}: the checkpoint is damaged: expected checksum {expected}, found {found}")]
-    Damaged {
-        /// Name of the file, as given by the user.
-        file: String,
-        /// Checksum computed from the contents.
-        expected: String,
-        /// Checksum in the file.
-        found: String,
-    },
-    /// This version of the program cannot read the experiment in the snapshot.
-    #[error("{file}: {error}")]
-    Experiment {
-        /// Name of the file, as given by the user.
-        file: String,
-        /// Error of the experiment file in the snapshot.
-        error: Box<FileError>,
-    },
-    /// The snapshot is of an experiment that was built in code, so the snapshot has no text of an experiment file.
-    #[error("{file}: the experiment was built in code; build it again and call Snapshot::resume")]
-    BuiltInCode {
-        /// Name of the file, as given by the user.
-        file: String,
-    },
-    /// The run has not just reached the start of a period, so it cannot be saved.
-    #[error("expected a run at the start of a period of the first display, found {now}, {since} after the start")]
-    WithinPeriod {
-        /// Simulated time of the run.
-        now: Time,
-        /// Time since the start of the current period.
-        since: Span,
-    },
-    /// The experiment cannot run again up to the saved period.
-    #[error("{file}: {error}")]
-    Run {
-        /// Name of the file, as given by the user.
-        file: String,
-        /// Error of the experiment.
-        error: Box<ExperimentError>,
-    },
-    /// The repeated run differs from the saved run.
-    #[error(
-        "{file}: the repeated run differs from the saved run (version {version}): {what}: expected {expected}, found {found}"
-    )]
-    Differs {
-        /// Name of the file, as given by the user.
-        file: String,
-        /// Version of the program that saved the snapshot.
-        version: String,
-        /// Name of the first value that differs: a fingerprint, a hash or a number of events.
-        what: &'static str,
-        /// Value in the saved snapshot.
-        expected: String,
-        /// Value of this quantity in the repeated run.
-        found: String,
-    },
 }
 
 impl Snapshot {
@@ -167,18 +86,20 @@ impl Snapshot {
 
     /// Creates a snapshot of a run of an experiment that was built in code.
     ///
-    /// The file does not describe such an experiment. [`Snapshot::resume`] needs the same experiment again.
+    /// The file of the snapshot does not describe such an experiment, so the caller must give the same experiment to
+    /// [`Snapshot::resume`].
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError::WithinPeriod`] unless the run has just reached the start of a period
+    /// Returns a [`SettingError`] unless the run has just reached the start of a period
     /// ([`Stepper::step_period`]).
-    pub fn of_stepper(stepper: &Stepper) -> Result<Self, SnapshotError> {
+    pub fn of_stepper(stepper: &Stepper) -> Result<Self, SettingError> {
         let (experiment, machine, field) = (stepper.experiment(), stepper.machine(), stepper.period());
         let start = machine.record().tick(field);
         // An event at the start of the period may have been handled already.
         if stepper.now() != start || stepper.last().is_some() {
-            return Err(SnapshotError::WithinPeriod { now: stepper.now(), since: stepper.now().since(start) });
+            let found = format!("{}, {} after the start", stepper.now(), stepper.now().since(start));
+            return Err(SettingError::value("", "a run at the start of a period of the first display", found));
         }
         Ok(Self {
             schema: Self::SCHEMA.to_owned(),
@@ -201,15 +122,14 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError::Differs`] if the experiment, the scene or the repeated run differs from the saved data,
-    /// and [`SnapshotError::Run`] if the experiment cannot run.
-    pub fn resume(&self, experiment: &Experiment, file: &str) -> Result<Stepper, SnapshotError> {
+    /// Returns a [`FileError`] if the experiment, the scene or the repeated run is not the saved one, or if the
+    /// experiment cannot run.
+    pub fn resume(&self, experiment: &Experiment, file: &str) -> Result<Stepper, FileError> {
         // A different experiment is refused before its run.
         self.check_scene(experiment.scene(), file)?;
         let found = experiment.config_hash().to_string();
         self.same("the fingerprint of the settings", &self.config_hash, found, file)?;
-        let fault = |error| SnapshotError::Run { file: file.to_owned(), error: Box::new(error) };
-        let mut stepper = experiment.stepper().map_err(fault)?;
+        let mut stepper = experiment.stepper().map_err(|error| foreign(file, error))?;
         // A run that ended early differs in its hash.
         stepper.run_to(Time(self.time_ps));
         self.check_machine(stepper.machine(), file)?;
@@ -229,25 +149,27 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError`] for any text that [`Self::to_text`] did not write.
-    pub fn read(text: &str, file: &str) -> Result<Self, SnapshotError> {
+    /// Returns [`FileError`] for any text that [`Self::to_text`] did not write.
+    pub fn read(text: &str, file: &str) -> Result<Self, FileError> {
         let value: Value =
-            serde_json::from_str(text).map_err(|error| foreign(file, format!("not whole JSON: {error}")))?;
+            serde_json::from_str(text).map_err(|error| no_snapshot(file, format!("not whole JSON: {error}")))?;
         let found = value.get("schema").and_then(Value::as_str).unwrap_or("none");
         // A foreign file and another version get different errors.
         if !found.starts_with("pxpl5-snapshot/") {
-            return Err(foreign(file, format!("expected schema {}, found {found}", Self::SCHEMA)));
+            return Err(no_snapshot(file, format!("expected schema {}, found {found}", Self::SCHEMA)));
         }
         if found != Self::SCHEMA {
-            let file = file.to_owned();
-            let found = found.to_owned();
-            return Err(SnapshotError::Version { file, expected: Self::SCHEMA, found });
+            let expected = format!("a checkpoint of layout {}", Self::SCHEMA);
+            let found = format!("{found}; use the version of pxpl5 that wrote it");
+            return Err(FileError::new(FileErrorKind::Foreign, expected, found).in_file(file));
         }
-        let sealed: Sealed = serde_json::from_value(value).map_err(|error| foreign(file, error.to_string()))?;
+        let sealed: Sealed = serde_json::from_value(value).map_err(|error| no_snapshot(file, error.to_string()))?;
         // The checksum detects every later change.
         let expected = sealed.snapshot.checksum();
         if sealed.checksum != expected {
-            return Err(SnapshotError::Damaged { file: file.to_owned(), expected, found: sealed.checksum });
+            let found = sealed.checksum;
+            let reason = format!("the checkpoint is damaged: expected checksum {expected}, found {found}");
+            return Err(FileError::because(FileErrorKind::Damaged, reason).in_file(file));
         }
         Ok(sealed.snapshot)
     }
@@ -260,9 +182,8 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError::Experiment`] if this version cannot read the experiment, and
-    /// [`SnapshotError::BuiltInCode`] if the snapshot has no experiment file.
-    pub fn experiment(&self, file: &str) -> Result<ExperimentFile, SnapshotError> {
+    /// Returns a [`FileError`] if this version cannot read the experiment, or if the snapshot has no experiment file.
+    pub fn experiment(&self, file: &str) -> Result<ExperimentFile, FileError> {
         self.experiment_with(crate::registry(), file)
     }
 
@@ -271,21 +192,20 @@ impl Snapshot {
     /// # Errors
     ///
     /// Fails in the same cases as [`Self::experiment`].
-    pub fn experiment_with(&self, registry: Arc<Registry>, file: &str) -> Result<ExperimentFile, SnapshotError> {
+    pub fn experiment_with(&self, registry: Arc<Registry>, file: &str) -> Result<ExperimentFile, FileError> {
         let text = format!("{file}: experiment");
-        let experiment =
-            self.experiment.as_ref().ok_or_else(|| SnapshotError::BuiltInCode { file: file.to_owned() })?;
-        ExperimentFile::with(registry)
-            .and_parse(experiment, &text)
-            .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error: Box::new(error) })
+        let experiment = self.experiment.as_ref().ok_or_else(|| {
+            foreign(file, "the experiment was built in code; build it again and call Snapshot::resume")
+        })?;
+        ExperimentFile::with(registry).and_parse(experiment, &text).map_err(|error| foreign(file, error))
     }
 
     /// Compares the scene with the saved scene.
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError::Differs`] if the scenes differ.
-    pub fn check_scene(&self, scene: &Scene, file: &str) -> Result<(), SnapshotError> {
+    /// Returns a [`FileError`] if the scenes differ.
+    pub fn check_scene(&self, scene: &Scene, file: &str) -> Result<(), FileError> {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
@@ -293,25 +213,30 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns [`SnapshotError::Differs`] if the machines differ.
-    pub fn check_machine(&self, machine: &Machine, file: &str) -> Result<(), SnapshotError> {
+    /// Returns a [`FileError`] if the machines differ.
+    pub fn check_machine(&self, machine: &Machine, file: &str) -> Result<(), FileError> {
         self.same("the trace hash", &self.trace_hash, machine.record().trace_hash().to_string(), file)?;
         self.same("the number of events", &self.events.to_string(), machine.events().to_string(), file)
     }
 
-    fn same(&self, what: &'static str, expected: &str, found: String, file: &str) -> Result<(), SnapshotError> {
+    fn same(&self, what: &'static str, expected: &str, found: String, file: &str) -> Result<(), FileError> {
         if expected == found {
             return Ok(());
         }
-        let file = file.to_owned();
-        let version = self.version.clone();
-        let expected = expected.to_owned();
-        Err(SnapshotError::Differs { file, version, what, expected, found })
+        let version = &self.version;
+        let part = format!("the repeated run differs from the saved run (version {version}): {what}");
+        Err(FileError::new(FileErrorKind::Foreign, expected, found).at(part).in_file(file))
     }
 }
 
-fn foreign(file: &str, reason: String) -> SnapshotError {
-    SnapshotError::Foreign { file: file.to_owned(), reason }
+/// Creates the error of a file that is no snapshot.
+fn no_snapshot(file: &str, reason: String) -> FileError {
+    FileError::because(FileErrorKind::Syntax, format_args!("this is not a checkpoint: {reason}")).in_file(file)
+}
+
+/// Creates the error of a snapshot whose experiment cannot be repeated.
+fn foreign(file: &str, reason: impl Display) -> FileError {
+    FileError::because(FileErrorKind::Foreign, reason).in_file(file)
 }
 
 /// A snapshot with its checksum, in the form that is written to the file.
@@ -334,7 +259,7 @@ mod tests {
     use tracking::predict::PredictorKind;
     use tracking::tracker::TrackerConfig;
 
-    /// Returns a plan, a snapshot of its run at field 9, and the trace hash at the end of the run.
+    /// Returns a plan (checked experiment), a snapshot of the run at field 9, and the trace hash at the end of the run.
     fn saved() -> (Plan, Snapshot, String) {
         let text = "pipeline = \"rendering-control\"\nscene = \"mig\"\ntriangles = 40\nfields = 24\nseed = 5\n";
         let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");
@@ -355,9 +280,7 @@ mod tests {
     fn a_run_repeated_from_its_checkpoint_is_equal_at_the_field_and_at_the_end() {
         let (plan, snapshot, end) = saved();
         let snapshot = Snapshot::read(&snapshot.to_text(), "s").expect("as written");
-        let restored = snapshot.experiment("s").and_then(|file| {
-            file.resolve().map_err(|error| SnapshotError::Experiment { file: "s".to_owned(), error: Box::new(error) })
-        });
+        let restored = snapshot.experiment("s").and_then(|file| file.resolve().map_err(|error| foreign("s", error)));
         let restored = restored.expect("as written");
         assert_eq!(restored, plan);
         let scene = restored.load_scene().expect("built in");
@@ -396,7 +319,8 @@ mod tests {
         assert_eq!(resumed.period(), PeriodNumber(9));
         assert_eq!(resumed.finish().expect("it runs").record().trace_hash(), end);
         // There is no text from which the experiment could be made.
-        assert!(matches!(snapshot.experiment("s"), Err(SnapshotError::BuiltInCode { .. })));
+        let error = snapshot.experiment("s").expect_err("no file");
+        assert!(error.to_string().starts_with("s: the experiment was built in code"), "{error}");
     }
 
     #[test]
@@ -466,8 +390,8 @@ mod tests {
             assert!(error.contains(says), "{text}: {error}");
         }
         let newer = snapshot.to_text().replace("snapshot/1", "snapshot/2");
-        assert!(matches!(Snapshot::read(&newer, "s"), Err(SnapshotError::Version { .. })));
+        assert_eq!(Snapshot::read(&newer, "s").expect_err("newer").kind, FileErrorKind::Foreign);
         let edited = snapshot.to_text().replace("\"seed\": 5", "\"seed\": 6");
-        assert!(matches!(Snapshot::read(&edited, "s"), Err(SnapshotError::Damaged { .. })));
+        assert_eq!(Snapshot::read(&edited, "s").expect_err("edited").kind, FileErrorKind::Damaged);
     }
 }

@@ -31,8 +31,8 @@ pub fn suitability(registry: &Registry, config: &MachineConfig) -> Vec<Suitabili
     registry.pipelines().iter().map(tried).collect()
 }
 
-/// Simulated time after which a missing resource has caused an error. Programs reserve their memory before they first
-/// wait.
+/// Simulated time after which a missing resource has caused an error. This time suffices because programs reserve all
+/// memory before the first wait.
 const BEGIN: Time = Time(1_000_000);
 
 fn begins(
@@ -74,8 +74,8 @@ mod tests {
         }
     }
 
-    /// Tests that the start of a run finds the same reasons as a whole field. The machines have all resources, or lack
-    /// boards, or have too little memory for the programs.
+    /// Tests that the start of a run finds the same missing resources as the simulation of a whole field. The machines
+    /// have all resources, or lack boards, or have too little memory for the programs.
     #[test]
     fn the_begin_of_a_run_says_what_a_whole_field_says() {
         let small = |n_gps, n_renderers, memory_bytes| {

@@ -15,18 +15,17 @@
 //! - After a crash the last line may be incomplete. [`Store::open`] removes this line, and only the point of this line
 //!   is computed again.
 //! - A point that cannot be simulated has a row with the reason. The other points continue.
-//! - Two processes never write into one folder. The second process is refused.
-//! - Every row has the number of pictures due, of pictures not shown, and of evaluated pixels, whatever the file measures.
-//!   Without these counts, a mean over few pictures looks like a mean over all.
+//! - Two processes never write into one folder. The second process gets an error.
+//! - Every row has the numbers of due pictures, of pictures not shown, and of evaluated pixels, even if the file
+//!   selects other quantities. Without these counts, a mean over few pictures looks like a mean over all.
 //!
 //! # Not modelled
 //!
 //! Random sampling and adaptive refinement of the space are not supported. Several hosts can share a sweep only if each
-//! runs a different shard (part) of it.
+//! host runs a different shard (part) of the sweep.
 
 mod chunk;
 mod cost;
-mod error;
 mod header;
 mod inputs;
 mod joined;
@@ -45,18 +44,19 @@ mod table;
 pub(crate) use inputs::inputs_of;
 pub(crate) use store::{line_of, lock, opened};
 
-pub use error::SweepError;
 pub use header::Header;
+pub use inputs::hash_of_model;
 pub use merge::{Merged, merge};
-pub use point::{Status, SweepRow};
+pub use point::{PointResults, Status, SweepRow, Swept};
 pub use run::{RunOptions, run, run_stoppable};
+pub use scenes::SceneCache;
 pub use shard::Shard;
-pub use space::{Axis, MAX_POINTS, SweepSpace, Values};
+pub use space::{Axis, AxisValues, MAX_POINTS, SweepSpace, leaves};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 
-use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::Measure;
-use scenes::Scenes;
+use pxpl5_sim::parameters::SettingError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -66,7 +66,7 @@ pub struct Sweep {
     base: ExperimentFile,
     space: SweepSpace,
     /// Scenes loaded so far, shared by all clones of the sweep.
-    scenes: Arc<Scenes>,
+    scenes: Arc<SceneCache>,
 }
 
 impl Sweep {
@@ -75,7 +75,7 @@ impl Sweep {
     /// # Errors
     ///
     /// Fails in the same cases as [`ExperimentFile::load`] and [`Sweep::new`].
-    pub fn load(path: impl AsRef<Path>) -> Result<Self, FileError> {
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SettingError> {
         Self::new(ExperimentFile::load(path)?)
     }
 
@@ -83,9 +83,12 @@ impl Sweep {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError`] if the table is missing or invalid.
-    pub fn new(base: ExperimentFile) -> Result<Self, FileError> {
-        let space = SweepSpace::read(&base)?;
+    /// Returns a [`SettingError`] if the table is missing or invalid.
+    pub fn new(base: ExperimentFile) -> Result<Self, SettingError> {
+        let of_file = base.sweep.as_ref();
+        let place = of_file.map_or("", |sweep| &sweep.place);
+        let key_of = |path: &str, place: &str| base.canonical_key(path, place);
+        let space = SweepSpace::read(of_file.map(|sweep| &sweep.value), (place, &base.sweep_places), key_of)?;
         Ok(Self { base, space, scenes: Arc::default() })
     }
 
@@ -107,8 +110,8 @@ impl Sweep {
     }
 }
 
-/// Returns the quantities of a row: the quantities of the plan, then the counts without which no mean can be compared
-/// ([`Measure::counts`]).
+/// Returns the quantities of a row: the quantities that the experiment file selects, then the counts that are necessary
+/// to compare means ([`Measure::counts`]).
 fn measures(plan: &Plan) -> Vec<Measure> {
     let mut all = plan.measure.clone();
     all.extend(Measure::counts().into_iter().filter(|count| !plan.measure.contains(count)));

@@ -43,7 +43,7 @@ const KNOBS: [Knob; 6] = [
 ];
 
 impl Knob {
-    /// Returns the value of the setting on a machine.
+    /// Returns the value of this resource's setting on a machine.
     fn value(&self, config: &MachineConfig) -> Option<u64> {
         let path = self.key.strip_prefix("machine.")?;
         match path {
@@ -53,8 +53,8 @@ impl Knob {
         }
     }
 
-    /// Returns three items: the old value, the new value, and the machine with 10 % more of the resource. `None` if the
-    /// machine cannot have more.
+    /// Returns the old value of the setting, the new value, and the machine with 10 % more of the resource. Returns
+    /// `None` if the machine cannot have more of the resource.
     fn more(&self, config: &MachineConfig) -> Option<(u64, u64, MachineConfig)> {
         let from = self.value(config)?;
         let to = if self.is_time { from.min((from * 10).div_ceil(11)) } else { from + (from / 10).max(1) };

@@ -4,10 +4,11 @@
 use pphigs::FrameView;
 use pxpl5_lab::StudyError;
 use pxpl5_lab::rig::Rig;
-use pxpl5_machine::{ConfigError, Machine, MachineConfig, Record};
+use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_run::{PictureRules, PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, Views};
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use std::sync::{Arc, Mutex};
 use tracking::rig::Measurement;
 use tracking::tracker::TrackerConfig;
@@ -42,10 +43,10 @@ fn outside_and_inside_agree_within_a_report_and_the_photodiodes_place() {
             println!(
                 "{pipeline} {}: tracking {:.2} {:.2}, rendering {:.2} {:.2} ms",
                 tracker.name,
-                ms(outside.tracking.mean_s),
-                ms(inside.tracking.mean_s),
-                ms(outside.rendering.mean_s),
-                ms(inside.rendering.mean_s)
+                ms(outside.tracking.mean),
+                ms(inside.tracking.mean),
+                ms(outside.rendering.mean),
+                ms(inside.rendering.mean)
             );
             assert!(measured.agrees(), "{pipeline} {}", tracker.name);
             let bound_s = measured.bound_ps() as f64 * 1e-12;
@@ -82,11 +83,8 @@ fn from_outside_a_field_of_slats_takes_a_field_and_the_photodiodes_place() {
     // of a line is 460 of 780 pixel periods after its start.
     let least = (262.5 + 142.0 + 460.0 / 780.0) * line_ms;
     let found = measured.outside.rendering;
-    assert!(
-        (ms(found.least_s) - least).abs() < 1e-3 || (ms(found.least_s) - least - line_ms / 2.0).abs() < 1e-3,
-        "{found:?}"
-    );
-    assert!(ms(found.greatest_s) < least + line_ms / 2.0 + 1e-3, "{found:?}");
+    assert!((ms(found.min) - least).abs() < 1e-3 || (ms(found.min) - least - line_ms / 2.0).abs() < 1e-3, "{found:?}");
+    assert!(ms(found.max) < least + line_ms / 2.0 + 1e-3, "{found:?}");
 }
 
 /// The pipeline Rendering Control with an injected fault.
@@ -129,7 +127,7 @@ impl Pipeline for Faulty {
         self.inner.layout()
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let views = if self.fault == Fault::StaleViews { stale(&setup.views) } else { Arc::clone(&setup.views) };
         self.inner.load(machine, &Setup { views, ..setup.clone() })
     }

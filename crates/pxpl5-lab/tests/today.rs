@@ -72,7 +72,10 @@ fn numbers_of_a_display_that_cannot_be_are_refused_with_the_key_and_the_range() 
             "display = { hz = 90, persistence_ms = 12 }",
             "display.persistence_ms: panel.persistence_us: expected 0 to 11111, a period of 90 Hz, found 12000",
         ),
-        ("display = { scan = \"sideways\" }", "display.scan: expected one of rolling, global (the nearest is"),
+        (
+            "display = { scan = \"sideways\" }",
+            "display.scan: there is no scan `sideways`; did you mean `global`? (expected one of rolling, global)",
+        ),
         (
             "display = { width = 4000, height = 4000 }",
             "display.width: panel.width: expected at most 128 regions of 128 x 128",

@@ -1,11 +1,11 @@
 //! Names of boards, and descriptions of their events.
 
 use pxpl5_sim::Time;
-use pxpl5_sim::parameters::TextError;
+use pxpl5_sim::parameters::SettingError;
 use std::fmt;
 use std::str::FromStr;
 
-/// Identifies one board of a machine, or the ring.
+/// One board of a machine, or the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Board {
     /// The host workstation.
@@ -20,7 +20,7 @@ pub enum Board {
     Ring,
 }
 
-/// Describes one event of the simulation for a debugger or a log.
+/// A description of one event of the simulation, for a debugger or a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EventDescription {
     /// Simulated time of the event.
@@ -32,7 +32,8 @@ pub struct EventDescription {
 }
 
 impl Board {
-    /// Returns the host for port 0, and graphics processor `port - 1` for any other port.
+    /// Returns the board at a port of the host or of a graphics processor: the host for port 0, else graphics processor
+    /// `port - 1`.
     #[must_use]
     pub const fn of_processor(port: usize) -> Self {
         match port {
@@ -61,13 +62,13 @@ impl fmt::Display for EventDescription {
 }
 
 impl FromStr for Board {
-    type Err = TextError;
+    type Err = SettingError;
 
     /// Parses `host`, `ring`, or a name with a number: `gp`, `renderer` or `display`.
     ///
     /// Case does not matter. A space between name and number is optional.
-    fn from_str(text: &str) -> Result<Self, TextError> {
-        let refused = TextError::whole("host, ring, gp N, renderer N or display N", text);
+    fn from_str(text: &str) -> Result<Self, SettingError> {
+        let refused = SettingError::text("host, ring, gp N, renderer N or display N", text);
         let text = text.to_ascii_lowercase();
         // Split off the digits at the end, then remove an optional space.
         let (name, number) = text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len());

@@ -3,15 +3,14 @@
 use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
-use pxpl5_sim::parameters::{Entry, ParameterError, ParameterInfo, ParameterTable, Value, nearest};
+use pxpl5_sim::parameters::{self, Entry, ParameterInfo, ParameterTable, SettingError, Value};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::display::{DisplayConfig, DisplayError};
+use pxpl5_wire::display::DisplayConfig;
 use pxpl5_wire::{NodeId, PeriodNumber};
 use serde::Serialize;
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
-use thiserror::Error;
 
 /// The boards of a machine and all their timing parameters.
 ///
@@ -26,7 +25,7 @@ pub struct MachineConfig {
     pub n_renderers: usize,
     /// Timing of the ring: number of channels, clock and overhead.
     pub ring: RingTiming,
-    /// Times of the graphics processors' work, for runs that do not execute i860 code.
+    /// Times of the graphics processors' work. Runs without i860 code use these times.
     pub gp: GpTiming,
     /// Version of the i860 code that the graphics processors execute at the cycle level. With `None`, the times come
     /// from `gp` instead.
@@ -76,65 +75,6 @@ impl PartialEq for MachineConfig {
     }
 }
 
-/// An error in a machine's configuration.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum ConfigError {
-    /// No preset has the requested name.
-    #[error("there is no machine `{found}`; did you mean `{nearest}`? (`pxpl5 machines` lists all)")]
-    UnknownPreset {
-        /// The requested name.
-        found: String,
-        /// The valid name that is most similar to the requested one.
-        nearest: &'static str,
-    },
-    /// A number of boards is out of range.
-    #[error("{what} must be {} to {}, found {found}", expected.0, expected.1)]
-    Value {
-        /// Path of the parameter that holds the number of boards, such as `n_gps`.
-        what: String,
-        /// Smallest and largest valid value.
-        expected: (u64, u64),
-        /// The requested value.
-        found: u64,
-    },
-    /// No parameter has the requested path.
-    #[error("there is no parameter `{found}`; did you mean `{nearest}`?")]
-    UnknownParameter {
-        /// The requested path.
-        found: String,
-        /// The valid path that is most similar to the requested one.
-        nearest: String,
-    },
-    /// The parameter is a fixed property of a chip. Programs can read it but not set it.
-    #[error("{path} is {value} in every machine ({origin}); it is listed, but cannot be set")]
-    ReadOnly {
-        /// Path of the parameter.
-        path: String,
-        /// Value of the parameter in every machine.
-        value: Value,
-        /// Source of the value.
-        origin: &'static str,
-    },
-    /// A parameter table refused a value.
-    #[error("{board}.{error}")]
-    Parameter {
-        /// Prefix of the parameter table, such as `ring`.
-        board: String,
-        /// The expected values and the refused value.
-        error: ParameterError,
-    },
-    /// A board, a display or a pipeline refused its configuration. The text states the reason.
-    #[error("{0}")]
-    Board(String),
-}
-
-impl From<DisplayError> for ConfigError {
-    fn from(error: DisplayError) -> Self {
-        Self::Board(error.to_string())
-    }
-}
-
 /// A parameter of a machine: path, metadata and value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
@@ -150,7 +90,8 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Returns the parameters of one table. Paths begin with `prefix`, and `read_only` marks all of them as fixed.
+    /// Returns the parameters of one table. Paths begin with `prefix`, and `read_only` states if all these parameters
+    /// are fixed properties of a chip.
     pub fn of_table(prefix: &str, table: &dyn ParameterTable, read_only: bool) -> impl Iterator<Item = Self> {
         table.entries().into_iter().map(move |Entry { info, value }| {
             let path = format!("{prefix}.{}", info.name);
@@ -261,7 +202,7 @@ impl MachineConfig {
         all.flat_map(|(path, table)| Parameter::of_table(path, table, path == i860::CHIP_PATH)).collect()
     }
 
-    /// Returns the parameters that differ from the preset's values, by path.
+    /// Returns the parameters that differ from the values of the preset. The keys are the paths of the parameters.
     ///
     /// The preset may lack a table, for example the table of a firmware or of another display. The parameters of such a
     /// table are compared with the values from the papers.
@@ -285,7 +226,7 @@ impl MachineConfig {
         self.parameters().into_iter().filter(is_supposed).collect()
     }
 
-    /// Returns the numbers of boards and all parameters, by path.
+    /// Returns the numbers of boards and the values of all parameters, each with its path.
     #[must_use]
     pub fn settings(&self) -> Vec<(String, Value)> {
         let [n_gps, n_renderers] = self.boards();
@@ -298,11 +239,9 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// - [`ConfigError::UnknownParameter`], with the most similar valid path, if the path is unknown.
-    /// - [`ConfigError::ReadOnly`] if the parameter is a fixed property of a chip.
-    /// - [`ConfigError::Parameter`] if the table refuses the value, such as a fraction where an integer is expected.
-    /// - [`ConfigError::Board`] if a number of boards is not an integer.
-    pub fn set(&mut self, path: &str, value: impl Into<Value>) -> Result<(), ConfigError> {
+    /// Returns a [`SettingError`] if the path is unknown, if the parameter is a fixed property of a chip, or if the value
+    /// has a fraction where an integer is expected.
+    pub fn set(&mut self, path: &str, value: impl Into<Value>) -> Result<(), SettingError> {
         let value = value.into();
         match path {
             "n_gps" => self.n_gps = whole(path, value)?,
@@ -312,37 +251,35 @@ impl MachineConfig {
         Ok(())
     }
 
-    fn set_parameter(&mut self, path: &str, value: Value) -> Result<(), ConfigError> {
+    fn set_parameter(&mut self, path: &str, value: Value) -> Result<(), SettingError> {
         // The last part of the path is the parameter's name. The prefix may itself contain a dot (`i860.chip`).
         let Some((board, name)) = path.rsplit_once('.') else { return Err(self.unknown(path)) };
         for (prefix, table) in self.tables_mut() {
             if prefix == board && table.infos().iter().any(|info| info.name == name) {
-                return table.set(name, value).map_err(|error| refused(board, error));
+                return table.set(name, value).map_err(|error| error.in_table(board));
             }
         }
         Err(self.not_settable(path))
     }
 
     /// Returns the error for a path that is not in any changeable table: the parameter is read-only or unknown.
-    fn not_settable(&self, path: &str) -> ConfigError {
+    fn not_settable(&self, path: &str) -> SettingError {
         match self.parameters().into_iter().find(|parameter| parameter.path == path) {
-            Some(Parameter { path, info, value, .. }) => ConfigError::ReadOnly { path, value, origin: info.source },
+            Some(Parameter { path, info, value, .. }) => SettingError::read_only(&path, value, info.source),
             None => self.unknown(path),
         }
     }
 
-    fn unknown(&self, path: &str) -> ConfigError {
-        let paths: Vec<String> = self.settings().into_iter().map(|(path, _)| path).collect();
-        let nearest = nearest(path, paths.iter().map(String::as_str)).unwrap_or_default().to_owned();
-        ConfigError::UnknownParameter { found: path.to_owned(), nearest }
+    fn unknown(&self, path: &str) -> SettingError {
+        SettingError::unknown_path("parameter", path, self.settings().into_iter().map(|(path, _)| path))
     }
 
     /// Returns the duration of the first display's first period. For NTSC, a period is one field.
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError::Board`] if the machine has no display or the display's parameters are invalid.
-    pub fn period(&self) -> Result<Span, ConfigError> {
+    /// Returns a [`SettingError`] if the machine has no display or the display's parameters are invalid.
+    pub fn period(&self) -> Result<Span, SettingError> {
         let display = self.displays.first().ok_or_else(no_display)?;
         let nodes: Vec<NodeId> = (0..display.ports(1) as u16).map(NodeId).collect();
         Ok(display.build(&nodes)?.tick(PeriodNumber(1)).since(Time::ZERO))
@@ -352,18 +289,18 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// Returns a [`ConfigError`] with the first invalid value and the expected values.
-    pub fn check(&self) -> Result<(), ConfigError> {
-        check("n_gps", self.n_gps as u64, 1, MAX_BOARDS)?;
-        check("n_renderers", self.n_renderers as u64, 1, MAX_BOARDS)?;
+    /// Returns a [`SettingError`] with the first invalid value and the expected values.
+    pub fn check(&self) -> Result<(), SettingError> {
+        parameters::check("n_gps", self.n_gps as u64, (1, MAX_BOARDS))?;
+        parameters::check("n_renderers", self.n_renderers as u64, (1, MAX_BOARDS))?;
         for (board, table) in self.tables() {
-            table.check().map_err(|error| refused(board, error))?;
+            table.check().map_err(|error| error.in_table(board))?;
         }
         if self.displays.is_empty() {
             return Err(no_display());
         }
         self.check_channels()?;
-        self.displays.iter().try_for_each(|display| Ok(display.check()?))
+        self.displays.iter().try_for_each(|display| display.check())
     }
 }
 
@@ -380,12 +317,12 @@ impl MachineConfig {
         Self { n_renderers, ..self }
     }
 
-    /// Returns an error for a ring in which commands for full renderer FIFOs can block all channels.
+    /// Returns an error for a ring in which commands for full renderer FIFOs can occupy all channels.
     ///
-    /// A renderer empties its FIFO only when it can send pixels. Without a free channel, the pixels would wait for
-    /// ever. Each renderer receives one message at a time, and each graphics processor sends on at most
-    /// `source_channels` channels.
-    fn check_channels(&self) -> Result<(), ConfigError> {
+    /// A renderer empties its FIFO only when it can send pixels. Without a free channel, the renderers would therefore
+    /// wait for ever. Three limits apply to the channels that such commands occupy: `fifo_channels`, one channel for
+    /// each renderer, and `source_channels` channels for each graphics processor.
+    fn check_channels(&self) -> Result<(), SettingError> {
         let RingTiming { channels, fifo_channels, source_channels, .. } = self.ring;
         let sent = source_channels.saturating_mul(self.n_gps as u64);
         let held = fifo_channels.min(self.n_renderers as u64).min(sent);
@@ -396,7 +333,7 @@ impl MachineConfig {
             0 | 1 => format!("ring.channels {}", held + 1),
             _ => format!("ring.fifo_channels {} or ring.channels {}", channels - 1, held + 1),
         };
-        Err(ConfigError::Board(format!(
+        Err(SettingError::combination(format_args!(
             "ring.channels {channels} with ring.fifo_channels {fifo_channels} and {} renderers: commands for full FIFOs could hold all channels, and \
              no pixels would leave the renderers; nearest possible: {possible}",
             self.n_renderers
@@ -405,25 +342,15 @@ impl MachineConfig {
 }
 
 /// Converts the value of `n_gps` or `n_renderers` to an integer.
-fn whole(path: &str, value: Value) -> Result<usize, ConfigError> {
+fn whole(path: &str, value: Value) -> Result<usize, SettingError> {
     let number = value.whole().and_then(|number| usize::try_from(number).ok());
-    number.ok_or_else(|| ConfigError::Board(format!("{path} must be a whole number, found {value}")))
+    number.ok_or_else(|| SettingError::not_whole(path, value))
 }
 
-fn no_display() -> ConfigError {
-    ConfigError::Board("a machine needs a display; found none".to_owned())
+fn no_display() -> SettingError {
+    SettingError::combination("a machine needs a display; found none")
 }
 
-fn refused(board: &str, error: ParameterError) -> ConfigError {
-    ConfigError::Parameter { board: board.to_owned(), error }
-}
-
-fn check(what: &str, found: u64, low: u64, high: u64) -> Result<(), ConfigError> {
-    if (low..=high).contains(&found) {
-        return Ok(());
-    }
-    Err(ConfigError::Value { what: what.to_owned(), expected: (low, high), found })
-}
 #[cfg(test)]
 mod tests {
     use super::*;

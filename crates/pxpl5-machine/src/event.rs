@@ -9,11 +9,11 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::DisplayEvent;
 
-/// An event. One board, or the ring, handles the event.
+/// An event in the queue of the machine. Either one board or the ring handles the event.
 #[derive(Debug)]
 pub(crate) enum Event {
     Ring(RingEvent),
-    /// Output of the ring to one of the other boards.
+    /// Output of the ring to a board.
     FromRing(RingOutput),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
@@ -28,7 +28,7 @@ pub(crate) enum Event {
 }
 
 impl Event {
-    /// Returns true for events of displays and clocks. Such events occur even while all programs wait.
+    /// Returns true for events of displays, host lines and clocks. Such events occur even while all programs wait.
     pub(crate) const fn is_of_displays(&self) -> bool {
         matches!(self, Self::Edge | Self::Tick(..) | Self::Display(..) | Self::HostLine(_))
     }

@@ -3,12 +3,13 @@
 use pxpl5_gp::Mark;
 use pxpl5_wire::{Body, Message, RegionPixels, SurfaceId};
 
-/// Returns the trace entry of a message. `kind` is the number of the event's type.
+/// Returns the numbers that enter the trace hash for a ring message: event code, ports of sender and receiver, and
+/// length. `kind` is the event code, which is 1 for an announced message and 2 for a delivered message.
 pub(crate) fn facts(kind: u64, message: &Message) -> [u64; 4] {
     [kind, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)]
 }
 
-/// Returns the trace entry of a message that a host line delivered to a display's port.
+/// Returns the numbers that enter the trace hash for a message that a host line delivered to port `port` of a display.
 pub(crate) fn host_line_facts(port: usize, body: &Body) -> Vec<u64> {
     match body {
         Body::Words(words) => [8, port as u64].into_iter().chain(words.iter().map(|word| u64::from(*word))).collect(),
@@ -19,16 +20,17 @@ pub(crate) fn host_line_facts(port: usize, body: &Body) -> Vec<u64> {
     }
 }
 
-/// Returns the trace entry of a time stamp that a program set at the start or end of a stage.
+/// Returns the numbers that enter the trace hash for a time stamp at the start or end of a stage.
 pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
     let surface = surface_fact(mark.surface);
     [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
 }
 
-/// Returns the code of a surface in the trace. Code 2 stands for no surface. The code of surface 2 or more is therefore
-/// its number plus 1.
+/// Returns the number that stands for a surface in the trace hash. The number 2 stands for no surface. The third
+/// surface and all later surfaces therefore have their own number plus 1.
 ///
-/// This code comes from versions with at most two surfaces. It is kept so that old trace hashes remain valid.
+/// These numbers come from versions with at most two surfaces. The numbers must not change, so that old trace hashes
+/// remain valid.
 fn surface_fact(surface: Option<SurfaceId>) -> u64 {
     match surface {
         None => 2,

@@ -1,6 +1,6 @@
 //! The complete machine: its boards and the connections between them.
 //!
-//! - [`Machine`] is the schematic. Only [`Machine`] connects boards to each other.
+//! - [`Machine`] builds all boards. Only [`Machine`] connects boards to each other.
 //! - [`MachineConfig`] holds every number of a machine. A configuration starts from a preset of the papers
 //!   ([`PRESETS`]).
 //! - [`Record`] holds the boards after a run and all observations of the run.
@@ -8,8 +8,8 @@
 //! A machine owns any number of displays ([`pxpl5_wire::display::Display`]). The machine uses only this interface and
 //! contains no code for a particular kind of display.
 //!
-//! **Not here:** clocks, threads and files of the host computer. To compute pixels on a thread, a caller passes in a
-//! [`PixelWorker`].
+//! **Not here:** clocks, threads and files of the computer that runs the simulation. To compute pixels on another
+//! thread, a caller passes a [`PixelWorker`] to the machine.
 
 #![warn(missing_docs)]
 
@@ -31,7 +31,7 @@ mod savings;
 mod traffic;
 
 pub use board::{Board, EventDescription};
-pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Parameter};
+pub use config::{FirmwareTable, MachineConfig, NamedTable, Parameter};
 pub use host_line::HostLine;
 pub use machine::{DEADLOCK_TICKS, Machine};
 pub use observation::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};

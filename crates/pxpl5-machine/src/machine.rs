@@ -1,4 +1,4 @@
-//! The schematic: only this file connects boards.
+//! The schematic of the machine: no other file connects boards.
 //!
 //! ```text
 //!   port   0      1 .. n_gps      then renderers       then the displays' ports
@@ -14,7 +14,7 @@ mod displays;
 
 use crate::agenda::{schedule_outputs, schedule_own};
 use crate::board::{Board, EventDescription};
-use crate::config::{ConfigError, MachineConfig};
+use crate::config::MachineConfig;
 use crate::event::Event;
 use crate::facts::{facts, host_line_facts, mark_facts};
 use crate::host_line::HostLine;
@@ -26,6 +26,7 @@ use crate::savings::Optimization;
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, GpUse, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Context, EventQueue, Phase, Time};
 use pxpl5_wire::display::{DisplayContext, DisplayEvent};
 use pxpl5_wire::{Body, CopyTarget, Message, NodeId, PeriodNumber};
@@ -48,9 +49,10 @@ pub struct Machine {
     /// True if every edge of the boards' clock causes an event (optimization `IdleBoards` disabled).
     every_edge: bool,
     failure: Option<RunError>,
-    /// Number of events of boards other than displays and clocks since the last tick of the first display.
+    /// Number of events since the last tick of the first display. Events of displays, host lines and clocks do not
+    /// count.
     work_events: u64,
-    /// Number of ticks of the first display since the last event of another kind.
+    /// Number of successive idle ticks of the first display up to now (see [`DEADLOCK_TICKS`]).
     idle_ticks: u64,
     /// The simulated time up to which the machine has run.
     now: Time,
@@ -66,11 +68,12 @@ struct Contexts {
 
 /// Number of idle ticks of the first display after which a machine with waiting programs counts as deadlocked.
 ///
-/// A tick is idle if no other event happened since the previous tick, and no other event is pending.
+/// A tick is idle if only displays, host lines and clocks had events since the previous tick, and no other part of the
+/// machine has a pending event.
 pub const DEADLOCK_TICKS: u64 = 120;
 
-/// Number of events caused by each tick: the signal to the first graphics processor, and the poll of the first graphics
-/// processor's programs.
+/// Number of events of the first graphics processor that each tick causes: the signal of the tick, and a poll of the
+/// processor's programs. These events do not end a series of idle ticks.
 const EVENTS_OF_A_TICK: u64 = 2;
 
 impl Machine {
@@ -78,16 +81,15 @@ impl Machine {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] if a parameter of the machine or of a display is invalid.
-    pub fn new(config: &MachineConfig, pictures: usize, layout: Layout) -> Result<Self, ConfigError> {
+    /// Returns [`SettingError`] if a parameter of the machine or of a display is invalid.
+    pub fn new(config: &MachineConfig, pictures: usize, layout: Layout) -> Result<Self, SettingError> {
         config.check()?;
         // Number the ports first: every board needs its own port number.
         let ports = Ports::plug(config, pictures);
         // Renderers are not elastic: they accept a message only when their FIFO has room.
         let renderers = ports.renderers.clone();
         let elastic = move |node: NodeId| !renderers.contains(&node);
-        let ring =
-            Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
+        let ring = Ring::new(config.ring, ports.count(), elastic).map_err(SettingError::combination)?;
         // Build the boards in the order of their ports.
         let signal = config.ring.signal();
         let host = GpBoard::new(ports.host, config.host.board(), signal);
@@ -110,6 +112,7 @@ impl Machine {
                 hash: pxpl5_sim::TraceHash::default(),
                 events: 0,
                 vertex_transforms: 0,
+                met_full_store: false,
                 elapsed: Time::ZERO,
                 processors_used: Vec::new(),
             },
@@ -137,8 +140,8 @@ impl Machine {
         self.pixels = Some(worker);
     }
 
-    /// Makes the graphics processors execute i860 code for the times of their work. The call has an effect only if the
-    /// configuration has a code version.
+    /// Makes the graphics processors execute i860 code, so that the clocks of the code give the times of their work.
+    /// The call has an effect only if the configuration has a code version.
     ///
     /// Call this method before loading programs.
     pub fn run_code(&mut self) {
@@ -159,15 +162,16 @@ impl Machine {
         }
     }
 
-    /// Records messages, busy channels and FIFOs as they change. Call this method before the machine runs.
+    /// Records all ring messages, and all changes of occupied channels and of renderer FIFOs. Call this method before
+    /// the machine runs.
     pub fn record_traffic(&mut self) {
         self.record.observation.traffic = Some(Box::default());
         self.record.ring.watch();
         self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
     }
 
-    /// Discards time stamps of stages, region arrivals and swaps before an instant, to save memory. The call changes no
-    /// simulated time.
+    /// Discards all observations before an instant, to save memory. The last earlier swap of each port is kept. The
+    /// call changes no simulated time.
     pub fn discard_before(&mut self, instant: Time) {
         let Record { observation, displays, .. } = &mut self.record;
         observation.discard_before(instant, |period| displays[0].tick(period));
@@ -179,8 +183,8 @@ impl Machine {
         &self.record
     }
 
-    /// Returns the use of the CPU time of the host and of each graphics processor up to `now`, in the order of their
-    /// ports. `now` must not be earlier than the last event.
+    /// Returns the CPU time up to `now` by kind of work. There is one entry for the host and one for each graphics
+    /// processor, in the order of their ports. `now` must not be earlier than the last event.
     #[must_use]
     pub fn processors_used(&self, now: Time) -> Vec<GpUse> {
         self.processors.iter().map(|board| board.used(now)).collect()
@@ -192,6 +196,8 @@ impl Machine {
         self.finish_pixels();
         self.record.events = self.queue.events_taken();
         self.record.vertex_transforms = self.processors.iter().map(|board| board.vertex_transforms()).sum();
+        self.record.met_full_store = self.record.renderers.iter().any(|board| board.waited_for_room())
+            || self.processors.iter().any(GpBoard::found_store_full);
         self.record.elapsed = self.now;
         self.record.processors_used = self.processors_used(self.now);
         self.record
@@ -203,7 +209,8 @@ impl Machine {
         &self.record.ports
     }
 
-    /// Returns a handle for a program on the board at a port (host or graphics processor).
+    /// Returns the handle through which a program uses its board, the host or graphics processor at port `node`.
+    /// `level` is the CPU priority of the program.
     ///
     /// # Panics
     ///
@@ -312,7 +319,8 @@ impl Machine {
         self.queue.schedule(now + self.record.config.ring.signal(), Phase::Work, Event::Edge);
     }
 
-    /// Handles a display's clock tick. The first display's tick also signals a retrace to the first graphics processor.
+    /// Handles a tick of a display's clock. If the tick belongs to the first display, the function also signals a
+    /// retrace to the first graphics processor.
     fn tick(&mut self, now: Time, display: usize, period: PeriodNumber) {
         self.display_event(now, display, DisplayEvent::Tick(period));
         let next = period.next();
@@ -323,10 +331,10 @@ impl Machine {
         }
     }
 
-    /// Detects a deadlock. In a deadlock, programs wait, [`DEADLOCK_TICKS`] ticks have passed without another event,
-    /// and no work is pending.
+    /// Checks for a deadlock at a tick of the first display. The machine is deadlocked if [`DEADLOCK_TICKS`] successive
+    /// ticks were idle, and a program, renderer or message still waits for another board.
     ///
-    /// Pending work is checked because one task of a board may take longer than [`DEADLOCK_TICKS`] ticks.
+    /// A tick with pending work is not idle, because one task of a board may take longer than [`DEADLOCK_TICKS`] ticks.
     fn watch(&mut self, now: Time) {
         let is_idle = self.work_events <= EVENTS_OF_A_TICK && self.is_at_rest();
         self.idle_ticks = if is_idle { self.idle_ticks + 1 } else { 0 };
@@ -346,13 +354,13 @@ impl Machine {
             || !self.record.ring.waiting().is_empty()
     }
 
-    /// Returns the number of ticks of the first display since the last event of another kind.
+    /// Returns the number of successive idle ticks of the first display up to now (see [`DEADLOCK_TICKS`]).
     #[must_use]
     pub const fn idle_ticks(&self) -> u64 {
         self.idle_ticks
     }
 
-    /// Returns true if all pending events belong to displays or to the boards' clock.
+    /// Returns true if all pending events belong to displays, to host lines or to the boards' clock.
     ///
     /// The next tick of a display can still end the wait of a program.
     #[must_use]
@@ -360,7 +368,8 @@ impl Machine {
         self.queue.pending().all(Event::is_of_displays)
     }
 
-    /// Returns the waiting boards. Each entry has the condition of the wait, and the board that must act first.
+    /// Returns a list of all waits. Each entry has the waiting board, the condition of the wait, and the board that
+    /// must act first, if known.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let Record { ports, renderers, ring, .. } = &self.record;

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 pub struct Arrival {
     /// The surface that shows the region.
     pub surface: SurfaceId,
-    /// The region's picture, its index in the picture, and the display port that receives it.
+    /// The region with its frame buffer port, its picture and its index in the picture.
     pub target: CopyTarget,
     /// Arrival of the region's first message.
     pub first_part_at: Time,
@@ -40,11 +40,11 @@ pub struct Swap {
     pub number: u64,
     /// The display period at whose start the swap takes effect.
     pub tick: PeriodNumber,
-    /// The buffer shown from this swap on. It can be the buffer that was shown before.
+    /// The buffer shown from this swap on. This buffer can be the same buffer as before the swap.
     pub buffer: u8,
 }
 
-/// A picture, or a part of a picture, that a double-buffered port has shown.
+/// A picture, or a part of a picture, that the double buffer at one port has shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
     /// Number of the picture, as counted by its pipeline.
@@ -66,7 +66,7 @@ pub struct Observation {
     pub swaps: Vec<Swap>,
     /// Regions that were drawn, each with its renderer's index, in the order in which the copy commands started.
     pub drawn: Vec<(usize, DrawnRegion)>,
-    /// Ring messages and FIFO levels. `None` unless recording was enabled.
+    /// Ring messages, occupied channels and FIFO levels. `None` unless recording was enabled.
     pub traffic: Option<Box<Traffic>>,
     /// Summary of observations that were discarded to save memory.
     pub forgotten: DiscardedSummary,
@@ -75,8 +75,7 @@ pub struct Observation {
 /// Summary of observations discarded by [`Machine::discard_before`](crate::Machine::discard_before) in a long run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DiscardedSummary {
-    /// Time stamps of stages, arrivals and swaps before this instant were discarded. The last swap of each port was
-    /// kept.
+    /// Observations before this instant were discarded, except for the last earlier swap of each port.
     pub before: Time,
     /// Period of the first swap in the whole run, including discarded swaps.
     pub first_swap: Option<PeriodNumber>,
@@ -103,8 +102,8 @@ pub struct StageSpan {
 impl Observation {
     /// Returns all stages in the order of picture, surface and stage.
     ///
-    /// COPY is derived from arrivals at displays. It lasts from the start of the first region's transfer to the arrival
-    /// of the last region's last pixel. `message` is the duration of one message.
+    /// The stage COPY is derived from arrivals at displays. COPY lasts from the start of the first region's transfer to
+    /// the arrival of the last region's last pixel. `message` is the duration of one message.
     #[must_use]
     pub fn stages(&self, message: Span) -> Vec<StageSpan> {
         let mut spans: BTreeMap<(PictureNumber, Option<SurfaceId>, Stage), StageSpan> = BTreeMap::new();
@@ -136,10 +135,11 @@ impl Observation {
         spans.into_values().collect()
     }
 
-    /// Returns the frames that all of the first `surfaces` surfaces have shown. The key is the number of swaps before
-    /// the frame.
+    /// Returns the frames that each of the first `surfaces` surfaces has shown. A frame begins with a swap of each
+    /// surface. The key is the number of earlier swaps of a surface.
     ///
-    /// The value is the period of the latest swap to this frame, over all surfaces. Frames with discarded swaps are
+    /// The value is the display period from which on all of these surfaces show the frame. Frames with discarded swaps
+    /// are missing.
     /// missing.
     #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
@@ -152,13 +152,15 @@ impl Observation {
         frames
     }
 
-    /// Returns the first period that showed any picture.
+    /// Returns the earliest display period that began with a swap, or `None` if no display has swapped. Discarded swaps
+    /// count as well.
     #[must_use]
     pub fn first_swap(&self) -> Option<PeriodNumber> {
         self.forgotten.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
     }
 
-    /// Returns the number of discarded swaps of a port, or 0 if no swap of this port remains in memory.
+    /// Returns the number of swaps of a port before the first swap in memory, or 0 if no swap of this port is in
+    /// memory.
     #[must_use]
     pub fn first_swap_held(&self, port: NodeId) -> u64 {
         self.swaps.iter().filter(|swap| swap.port == port).map(|swap| swap.number).min().unwrap_or_default()

@@ -5,7 +5,7 @@ use pxpl5_wire::PixelSource;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Computes the pixels of regions while the simulation runs.
+/// A worker that computes the pixels of regions while the simulation runs.
 pub trait PixelWorker: Debug {
     /// Accepts a region. The worker may compute the region's pixels at any time before [`PixelWorker::finish`] returns.
     fn compute(&mut self, region: &Arc<dyn PixelSource>);

@@ -18,7 +18,8 @@ pub struct Ports {
 }
 
 impl Ports {
-    /// Assigns port numbers from 0 in the order of the schematic.
+    /// Assigns port numbers from 0 to the host, the graphics processors, the renderers and the displays, in this order.
+    /// `pictures` is the number of pictures that a pipeline draws at the same time.
     pub(crate) fn plug(config: &MachineConfig, pictures: usize) -> Self {
         let mut next = 0;
         Self {

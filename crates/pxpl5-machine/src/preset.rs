@@ -1,11 +1,11 @@
 //! The built-in machines, by name.
 
-use crate::config::{ConfigError, MachineConfig};
+use crate::config::MachineConfig;
 use pxpl5_framebuffer::FrameBufferConfig;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
-use pxpl5_sim::parameters::nearest;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 
 /// A built-in machine: name, description and parameters.
@@ -91,16 +91,17 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::UnknownPreset`], with the most similar valid name, if no preset is called `name`.
-    pub fn preset(name: &str) -> Result<Self, ConfigError> {
-        let preset = PRESETS.iter().find(|preset| preset.name == name).ok_or_else(|| ConfigError::UnknownPreset {
-            found: name.to_owned(),
-            nearest: nearest(name, PRESETS.iter().map(|preset| preset.name)).unwrap_or_default(),
-        })?;
+    /// [`SettingError`] with the most similar valid name if no preset is called `name`.
+    pub fn preset(name: &str) -> Result<Self, SettingError> {
+        let preset = PRESETS
+            .iter()
+            .find(|preset| preset.name == name)
+            .ok_or_else(|| SettingError::unknown_path("machine", name, PRESETS.iter().map(|preset| preset.name)))?;
         Ok(Self::from_preset(preset))
     }
 
-    /// Returns the machine with the times of its i860 code for primitives, instead of published or fitted times.
+    /// Returns this machine with other times for primitives: the times that its i860 code needs, instead of published
+    /// or fitted times.
     ///
     /// `of` is the pipeline that uses the code. A machine without a code version gets the times of compiled code.
     #[must_use]

@@ -25,6 +25,7 @@ pub struct Record {
     pub(crate) hash: TraceHash,
     pub(crate) events: u64,
     pub(crate) vertex_transforms: u64,
+    pub(crate) met_full_store: bool,
     pub(crate) elapsed: Time,
     pub(crate) processors_used: Vec<GpUse>,
 }
@@ -105,10 +106,11 @@ impl Record {
         self.observation.stages(self.message_span())
     }
 
-    /// Returns the pictures that a double-buffered port has shown, in the order of swaps.
+    /// Returns the pictures that the double buffer at a port has shown, in the order of swaps.
     ///
-    /// A swap shows the picture whose last region arrived before the swap. This rule holds because no region of the
-    /// next picture arrives before the other buffer is free. Pictures with discarded arrivals or swaps are missing.
+    /// A swap shows the newest picture with a region that arrived before the swap. The function can use this rule
+    /// because no region of the next picture arrives before the other buffer is free. Pictures with discarded arrivals
+    /// or swaps are missing.
     #[must_use]
     pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
         // Sort the arrivals at this port by time.
@@ -144,7 +146,8 @@ impl Record {
         self.display().tick(period)
     }
 
-    /// Returns the start of a period of a display. Other boards count the periods of the first display.
+    /// Returns the start of period `period` of the display `board`. For a board of another kind, the periods of the
+    /// first display count.
     pub(crate) fn period_start(&self, board: Board, period: PeriodNumber) -> Time {
         let display = if let Board::Display(number) = board { number } else { 0 };
         self.displays[display].tick(period)
@@ -168,8 +171,8 @@ impl Record {
         self.elapsed
     }
 
-    /// Returns the use of the CPU time of the host and of each graphics processor, in the order of their ports. The
-    /// slice is empty while the machine runs.
+    /// Returns the CPU time of the whole run by kind of work. There is one entry for the host and one for each graphics
+    /// processor, in the order of their ports. The slice is empty while the machine runs.
     #[must_use]
     pub fn processors_used(&self) -> &[GpUse] {
         &self.processors_used
@@ -181,5 +184,16 @@ impl Record {
     #[must_use]
     pub const fn vertex_transforms(&self) -> u64 {
         self.vertex_transforms
+    }
+
+    /// Returns true if the capacity of a backing store (`renderer.kept_bits`) has delayed a region, or has changed a
+    /// decision of a program, in the whole run.
+    ///
+    /// If it has not, the same run with larger backing stores has the same trace: every step is the same, because
+    /// nothing else depends on the capacity. Firmware that decides by the capacity must report a full store with
+    /// [`Gp::note_full_store`](pxpl5_gp::Gp::note_full_store).
+    #[must_use]
+    pub const fn met_full_store(&self) -> bool {
+        self.met_full_store
     }
 }

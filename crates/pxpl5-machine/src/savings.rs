@@ -17,11 +17,11 @@ pub enum Optimization {
     /// The ring computes the end of a message when it grants the channel. If disabled, every word on every channel
     /// causes an event.
     Transfers,
-    /// The pixels of a region without primitives are computed once. They are reused while the other commands of the
-    /// region stay the same.
+    /// The pixels of a region without primitives are computed once. These pixels are reused while the commands of such
+    /// a region stay the same.
     ///
-    /// Firmware of Slats also sends triangles to regions that they do not touch. Such triangles are skipped when pixels
-    /// are computed. If disabled, the pixels of every region and triangle are computed.
+    /// The firmware of Slats also sends triangles to regions that the triangles do not touch. The computation of pixels
+    /// skips these triangles. If disabled, the pixels of every region and triangle are computed.
     EmptyRegions,
     /// At the cycle level, the clocks of repeated code are reused from an earlier execution. The reuse requires that
     /// all instructions and data of the code are in the caches.

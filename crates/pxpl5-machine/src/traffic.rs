@@ -28,7 +28,7 @@ pub struct Traffic {
     pub busy_channels: Vec<(Time, u32)>,
     /// Changes of the renderers' FIFOs: index of the renderer, time, and change in words.
     ///
-    /// A complete command adds its words. A command that starts removes its words.
+    /// A command adds its words when its last word arrives, and removes its words when its execution starts.
     pub fifo_changes: Vec<(usize, Time, i64)>,
     /// Messages that a renderer has not yet accepted, by destination port.
     announced: BTreeMap<NodeId, Transfer>,
@@ -55,8 +55,8 @@ impl Traffic {
         self.transfers.len() + self.busy_channels.len() + self.fifo_changes.len()
     }
 
-    /// Discards messages and changes before an instant. The first remaining entries have the channel use and the FIFO
-    /// levels at this instant.
+    /// Discards messages and changes before an instant. For each recorded quantity, the first remaining entry has the
+    /// value at this instant.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         self.transfers.retain(|transfer| transfer.end >= instant);
         let last = self.busy_channels.partition_point(|(time, _)| *time < instant).saturating_sub(1);
@@ -87,8 +87,8 @@ impl Traffic {
         self.transfers.extend(announced.map(|transfer| Transfer { end, ..transfer }));
     }
 
-    /// Records a message to a receiver that takes all words without a gap. The start time is computed from the end time
-    /// and the length.
+    /// Records a message whose receiver takes all words without a gap. The arrival of the first word is computed from
+    /// `end`, the length of the message and `word`, the time of one word.
     pub(crate) fn deliver(&mut self, message: &Message, end: Time, word: Span) {
         let begin = Time(end.0.saturating_sub((word * u64::from(message.words)).0));
         self.transfers.push(transfer(message, begin, end));

@@ -67,8 +67,8 @@ impl Budget {
 
 /// Returns the sum of two means that the papers add, in milliseconds. `None` if no picture was measured.
 ///
-/// The first is the time from the measurement of the pose until its report reaches the host. The second is the time from
-/// the start of TRANSFORM until the picture is shown, over both eyes. The sum leaves out three stages of
+/// The first mean is the time from the measurement of the pose until its report reaches the host. The second mean is
+/// the time from the start of TRANSFORM until the picture is shown, over both eyes. The sum leaves out three stages of
 /// [`Budget::total_ms`]: the wait for the pipeline, SEND and EDIT, and the scan to the middle of the picture.
 #[must_use]
 pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
@@ -79,7 +79,8 @@ pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
     Some(tracking_ms + rendering_ms).filter(|sum| sum.is_finite())
 }
 
-/// Sums of the stages over complete pictures in the result window that have a measured pose, in milliseconds.
+/// Sums of the time of each latency stage, in milliseconds. The sums cover the complete pictures in the result window
+/// that have a measured pose.
 #[derive(Debug, Default)]
 pub(crate) struct BudgetSum {
     /// First period of the result window. `None` while the window is unknown.
@@ -92,10 +93,11 @@ pub(crate) struct BudgetSum {
     poses: Poses,
 }
 
-/// Number of poses kept from before the newest picture. A slow display memory shows older views than a fast memory.
+/// Number of poses that are kept from before the newest picture. They are needed because a slow display memory shows
+/// older views than a fast display memory.
 const OLDER_POSES: usize = 64;
 
-/// Sampled views by their numbers.
+/// Poses of the head that a pipeline requested, by the numbers of their views.
 pub(crate) type Poses = BTreeMap<ViewNumber, SampledPose>;
 
 pub(crate) const STAGES: usize = 6;
@@ -120,7 +122,7 @@ impl BudgetSum {
         }
     }
 
-    /// Returns the mean of each stage.
+    /// Returns the mean time of each latency stage.
     pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
         let means = self.stages_ms.map(|samples| samples.statistics().mean);
@@ -145,7 +147,8 @@ pub(crate) fn of_pictures<'a>(
     complete.filter_map(|times| of_picture(run, times, poses.get(&times.view)?)).collect()
 }
 
-/// Returns the durations of a picture's stages from the measured pose until the picture is lit, in milliseconds.
+/// Returns the durations of a picture's latency stages, from the measurement of the pose until the picture is lit, in
+/// milliseconds.
 fn of_picture(run: &FinalResults<'_>, times: &PictureTimes, sampled: &SampledPose) -> Option<[f64; STAGES]> {
     let light = run.pipeline.light(run.record, times);
     let taken_at = sampled.known.max(sampled.arrived_at?);

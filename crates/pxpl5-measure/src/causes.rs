@@ -17,7 +17,7 @@ pub struct ErrorCauses {
     pub whole_px: f64,
     /// Contribution of each cause in pixels, in the order of [`Cause::ALL`].
     pub parts_px: Vec<ErrorPart>,
-    /// Difference between `whole_px` and the sum of the parts, in pixels.
+    /// Interaction of the causes: `whole_px` minus the sum of the contributions `parts_px`, in pixels.
     pub interaction_px: f64,
 }
 

@@ -64,7 +64,8 @@ impl Contents {
 
     /// Returns the nearest point that a ray from the eye hits, with moving objects placed for the time `objects_at`.
     ///
-    /// `direction` covers 1 m of depth. Returns `None` if the ray hits nothing between the near and the far plane.
+    /// `direction` is scaled to a depth of 1 m along the axis of the view. Returns `None` if the ray hits nothing
+    /// between the near and the far plane.
     pub(crate) fn met(&self, origin: DVec3, direction: DVec3, objects_at: Time) -> Option<Content> {
         self.nearest(origin, direction, objects_at, |_| true).map(|(_, content)| content)
     }
@@ -127,7 +128,7 @@ impl Body {
         self.hinge.map_or(DMat4::IDENTITY, |hinge| hinge.model(at.0).as_dmat4())
     }
 
-    /// Returns the smallest depth at which a ray hits the structure between two depths.
+    /// Returns the smallest depth, between `near` and `far`, at which a ray hits the structure.
     fn met(&self, ray: &Ray, (near, far): (f64, f64)) -> Option<f64> {
         let patches = self.patches.iter().filter(|patch| ray.passes(patch.centre, patch.radius));
         let of_triangles =

@@ -18,7 +18,7 @@ use std::fmt;
 pub struct PathPart {
     /// The resource that the picture waits for.
     pub resource: Resource,
-    /// Share of the latency, 0 to 1.
+    /// Share of the latency for which the picture waits for the resource, 0 to 1.
     pub share: f64,
     /// Mean waiting time over the followed pictures, in milliseconds.
     pub ms: f64,
@@ -34,11 +34,11 @@ pub struct CriticalPath {
     /// Number of pictures that were followed: the last complete pictures of the result window, at most
     /// [`PICTURES_FOLLOWED`].
     pub pictures: usize,
-    /// Mean latency of these pictures from the start of TRANSFORM to the screen, in milliseconds.
+    /// Mean latency of the followed pictures from the start of TRANSFORM to the screen, in milliseconds.
     pub latency_ms: f64,
-    /// The waits for each resource, with the largest share first.
+    /// The waits of the followed pictures for each resource, with the largest share first.
     pub parts: Vec<PathPart>,
-    /// The largest of these waits, as a sentence.
+    /// The wait with the largest share, as a sentence.
     pub limited_by: String,
     /// The waits of the last picture as text, from the screen backwards.
     pub chain: Vec<String>,
@@ -47,7 +47,7 @@ pub struct CriticalPath {
 /// Largest number of pictures that are followed. Even a long run still has all records of its last 24 pictures.
 pub const PICTURES_FOLLOWED: usize = 24;
 
-/// Largest number of links of a chain that are printed.
+/// Largest number of waits of a chain that are printed.
 const LINKS_PRINTED: usize = 16;
 
 impl CriticalPath {
@@ -97,7 +97,7 @@ impl CriticalPath {
     }
 }
 
-/// Sums the steps of all chains that wait for one resource. Returns `None` if no step waits for the resource.
+/// Sums the waits for one resource over all chains. Returns `None` if no chain contains a wait for the resource.
 fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPart> {
     let of = || chains.iter().flatten().filter(|step| step.resource == resource);
     let span: Span = of().map(Step::span).sum();
@@ -138,7 +138,7 @@ impl fmt::Display for PathPart {
     }
 }
 
-/// Joins consecutive steps with the same resource and board. Returns the first links as text.
+/// Joins consecutive waits for the same resource and board. Returns the first [`LINKS_PRINTED`] joined waits as text.
 fn links_text(steps: &[Step]) -> Vec<String> {
     let mut links: Vec<(String, Span, usize)> = Vec::new();
     let mut last: Option<(Resource, Option<Board>)> = None;

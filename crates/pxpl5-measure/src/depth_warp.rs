@@ -18,7 +18,8 @@ pub struct DepthPicture {
     height: u32,
     /// Depth along the axis of the view in metres, row after row.
     depths: Vec<f32>,
-    /// Smallest and largest depth that is not 0.
+    /// Smallest and largest depth of the picture's pixels in metres, except depths of 0 (rows that do not belong to the
+    /// field).
     range: (f32, f32),
 }
 
@@ -39,23 +40,25 @@ impl DepthPicture {
     }
 }
 
-/// Largest ratio of the depths of two neighbours that belong to one surface. Between other neighbours, the picture has
-/// a gap behind which content is hidden. Assumed, 1.02 to 1.2: the depth of a floor that is seen at a grazing angle of
-/// 5 degrees changes by a factor of 1.03.
+/// Largest ratio of the depths of two neighbours that belong to one surface. Between other neighbours, the surface has
+/// an edge, and the nearer surface hides content of the farther surface. Assumed, 1.02 to 1.2: the depth of a floor
+/// that is seen at a grazing angle of 5 degrees changes by a factor of 1.03 from row to row.
 const SAME_SURFACE: f32 = 1.1;
 
-/// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that the
-/// compiler computes several pixels at once.
+/// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that vector
+/// instructions can compute several pixels together.
 #[derive(Debug, Default)]
 struct SeenRow {
-    /// Positions on the screen, in pixels and in rows of the field.
+    /// Positions on the screen, horizontally in pixels and vertically in rows of the field.
     x: Vec<f32>,
     row: Vec<f32>,
-    /// Depth from the new pose.
+    /// Depth of each pixel's content, seen from the new pose.
     depth: Vec<f32>,
-    /// Depth from the old pose, or infinity if the point is behind the eye of the new pose.
+    /// Depth of each pixel's content, seen from the old pose. Infinity if the content is behind the eye of the new
+    /// pose.
     old_depth: Vec<f32>,
-    /// First column and first row at or after the position, within the limits of the target.
+    /// First column and first row of the screen at or after each position, within the limits of the rows that are
+    /// drawn.
     next_column: Vec<i32>,
     next_row: Vec<i32>,
 }
@@ -79,7 +82,8 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Computes the smaller and the larger number for each pair of pixels, one above the other.
+    /// Computes these ranges for each pair of pixels, one above the other: the smaller and the larger of their two
+    /// numbers.
     fn join(&mut self, above: &SeenRow, below: &SeenRow) {
         smaller(&mut self.near, &above.old_depth, &below.old_depth);
         larger(&mut self.far, &above.old_depth, &below.old_depth);
@@ -106,13 +110,13 @@ pub(crate) struct Drawing<'a> {
     pub(crate) picture: &'a RgbImage,
     pub(crate) depths: &'a DepthPicture,
     pub(crate) view: &'a HmdView,
-    /// Rows that the picture has.
+    /// Rows of the screen that the picture contains: all rows, or the rows of one field.
     pub(crate) rows: Rows,
     pub(crate) drawn_for: &'a Pose,
 }
 
 impl Drawing<'_> {
-    /// Writes the pixels of some rows of the field, seen from another pose. `targets` counts rows of the field.
+    /// Writes the pixels of the rows `targets` of the field, seen from another pose. Rows are counted within the field.
     ///
     /// Pixels without content become black. Returns the number of these pixels.
     pub(crate) fn move_rows(&self, now: &Pose, targets: Range<u32>, out: &mut RgbImage) -> u64 {
@@ -217,9 +221,9 @@ impl Drawing<'_> {
 struct Target {
     width: u32,
     rows: Range<u32>,
-    /// Depth of the content.
+    /// Depth of the nearest content found so far, for each pixel.
     depths: Vec<f32>,
-    /// Source of the content: column plus width times row of the field.
+    /// Source pixel of the nearest content found so far, for each pixel: column plus width times row of the field.
     sources: Vec<u32>,
 }
 
@@ -234,7 +238,7 @@ impl Target {
         Self { width, rows, depths: vec![f32::INFINITY; size], sources: vec![NOTHING; size] }
     }
 
-    /// Draws the cells between the row `upper_row` of the picture and the next lower row.
+    /// Draws the cells of the mesh between the row `upper_row` of the picture and the next lower row.
     fn draw_cells(&mut self, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
         let count = pairs.near.len();
         let first = upper_row * self.width;
@@ -269,8 +273,8 @@ impl Target {
         }
     }
 
-    /// Draws a pixel that a cell covers. The pixel gets the content of the nearest corner, as in a device without
-    /// filters.
+    /// Draws a pixel that a cell of the mesh covers. The pixel gets the content of the nearest corner of the cell, as
+    /// in a device without filters.
     #[inline]
     fn draw_covered(&mut self, [column, row]: [i32; 2], [above, below]: [&SeenRow; 2], x: usize, first: u32) {
         let [at_column, at_row] = [column as f32, row as f32];
@@ -313,7 +317,7 @@ impl Target {
         }
     }
 
-    /// Copies the colours of the sources. Returns the number of pixels without a source.
+    /// Copies the colour of each pixel's source to the moved picture. Returns the number of pixels without a source.
     fn copy(&self, drawing: &Drawing<'_>, out: &mut RgbImage) -> u64 {
         let width = self.width as usize;
         let pixels = drawing.picture.as_raw();
@@ -336,7 +340,8 @@ impl Target {
     }
 }
 
-/// Returns the first whole number at or after a position, within two limits that are not negative.
+/// Returns the first whole number at or after a position, clamped to the range from `least` to `greatest`. Neither
+/// limit is negative.
 ///
 /// The function `ceil` of the standard library is not used, because `ceil` is a function call on processors without SSE
 /// 4.1.
@@ -469,7 +474,8 @@ mod tests {
         }
     }
 
-    /// An approach magnifies. A floor seen from above is slanted. Neither may open cracks.
+    /// Checks a picture that grows because the head approaches, and a slanted floor that is seen from above. Neither
+    /// picture may have cracks.
     #[test]
     fn surfaces_that_grow_or_lean_have_no_cracks() {
         let floor = |_: u32, y: u32| 1.6 * HmdView::ntsc().focal_px() as f32 / (y as f32 + 60.0);

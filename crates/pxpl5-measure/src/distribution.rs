@@ -4,7 +4,8 @@ use crate::percentiles::Percentiles;
 use pxpl5_run::Samples;
 use std::collections::BTreeMap;
 
-/// Number of fraction bits that select a bin. The width of a bin is at most 1/1024 of its values.
+/// Number of fraction bits of a value that select the bin of the value. The width of a bin is at most 1/1024 of the
+/// values in it.
 const FRACTION_BITS: u32 = 10;
 const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 
@@ -17,8 +18,8 @@ const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 pub(crate) struct Distribution {
     samples: Samples,
     limit: usize,
-    /// Number of values in each bin. The key holds the leading bits of the values. The map is empty up to `limit`
-    /// values.
+    /// Number of values in each bin. The key holds the leading bits of the values. The map is empty until more than
+    /// `limit` values were added.
     bins: BTreeMap<u64, u64>,
 }
 

@@ -10,13 +10,13 @@ use tracking::Pose;
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
     pub(crate) objects_at: Time,
-    /// Time at which the tracker measured the newest report behind the pose. `None` before the first report, or if
-    /// unknown.
+    /// Time at which the tracker measured the newest report from which the pose was computed. `None` before the first
+    /// report, or if unknown.
     pub(crate) measured_at: Option<Time>,
 }
 
 impl Moment {
-    /// Returns true if two moments give the same picture.
+    /// Returns true if views drawn for two moments are the same picture.
     pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
         self.pose == other.pose && self.objects_at == other.objects_at
     }
@@ -33,16 +33,16 @@ pub(crate) enum Drawn {
         on_screen: bool,
     },
     /// A picture that the display shifts while scanning it out (raster offset).
-    AdvancedMotion(Moment, DVec2),
-    /// Faces of a cube around the eye, read in the latched direction of the head. The nearest scene point in all
-    /// display memories is visible.
+    ShiftedRaster(Moment, DVec2),
+    /// Faces of a cube around the eye, read in the latched (sampled and held) direction of the head. The nearest scene
+    /// point in all display memories is visible.
     Faces(FacesSeen),
 }
 
-/// The memories and the direction from which a pixel of an address recalculation display was read.
+/// The display memories and the direction from which a pixel of an address recalculation display was read.
 #[derive(Clone, Debug)]
 pub(crate) struct FacesSeen {
-    /// For each memory, starting with the lowest: the eye's pose in the latched direction, and a flag for each
+    /// For each display memory, starting with the lowest: the eye's pose in the latched direction, and a flag for each
     /// structure of the scene. The flag is true if the memory holds the structure.
     pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
     /// Instant for which the latched direction was predicted.
@@ -59,7 +59,7 @@ impl Drawn {
                 let ahead_ps = to.objects_at.since(from.objects_at).0 as f64 * part;
                 Time(from.objects_at.0 + ahead_ps as u64)
             }
-            Self::AdvancedMotion(..) => light,
+            Self::ShiftedRaster(..) => light,
             Self::Faces(faces) => faces.aimed_at,
         }
     }
@@ -79,7 +79,7 @@ mod tests {
             assert_eq!(between.instant(light), Time(expected), "{part}");
         }
         assert_eq!(Drawn::View(moment(7)).instant(light), Time(7));
-        assert_eq!(Drawn::AdvancedMotion(moment(7), DVec2::ONE).instant(light), light);
+        assert_eq!(Drawn::ShiftedRaster(moment(7), DVec2::ONE).instant(light), light);
         let faces = FacesSeen { memories: Vec::new(), aimed_at: Time(5) };
         assert_eq!(Drawn::Faces(faces).instant(light), Time(5));
     }

@@ -12,13 +12,13 @@ use crate::rows::Rows;
 use crate::shown::{Drawn, Moment, Seen, Shown};
 use pxpl5_run::{Cause, Estimator, Every, FinalResults, HeadViews, Reprojection, Warp};
 use pxpl5_sim::Time;
-use pxpl5_wire::display::{Display, Light, Scan};
+use pxpl5_wire::display::{Display, PixelLight, ScanOrder};
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use tracking::view::{Misregistration, RasterOffset};
 
-/// Sums the errors of a run's pictures as they are displayed.
+/// Sums of the pixel errors of a run's pictures in the way in which the display shows the pictures.
 #[derive(Debug, Default)]
 pub(crate) struct ErrorSum {
     /// Display mode of the pictures. `None` uses the mode of the head's display.
@@ -62,7 +62,8 @@ impl ErrorSum {
         judging.shown.forget(run);
     }
 
-    /// Returns the pixel errors, and the results of the eye if pixels are lit for some time or pictures are moved.
+    /// Returns the pixel errors. Also returns an [`EyeReport`] if pixels are lit for more than an instant, or if a
+    /// device moves pictures.
     pub(crate) fn result(self) -> (PixelErrors, Option<EyeReport>) {
         self.collected.map(Collected::result).unwrap_or_default()
     }
@@ -78,7 +79,7 @@ struct Evaluation {
     /// True if the error is evaluated at the instant for which the pixel was drawn, instead of the instant when it is
     /// lit.
     at_one_instant: bool,
-    /// First display period that is not evaluated yet.
+    /// First display period whose pixels are not evaluated yet.
     next: PeriodNumber,
 }
 
@@ -86,8 +87,9 @@ struct Evaluation {
 #[derive(Debug)]
 enum Content {
     Plain,
-    /// The display shifts the raster. The value holds the offset of the current field, if the field has one.
-    AdvancedMotion(Estimator, Option<RasterOffset>),
+    /// The display shifts the raster. The second value is the raster offset of the current field, if the field has an
+    /// offset.
+    ShiftedRaster(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
     /// A device moves pictures to the newest pose of the head.
     Reprojected(Reprojector),
@@ -111,10 +113,11 @@ impl Showing {
         let periods_per_s = PERIODS as f64 / seconds;
         let [columns, lines] = [surface.width, surface.height / Rows::lit(display, PeriodNumber::FIRST).distance];
         // Strips follow each other in the direction of the scan.
-        let along = if matches!(display.light().scan, Scan::Right | Scan::Left) { columns } else { surface.height };
+        let along =
+            if matches!(display.light().scan, ScanOrder::Right | ScanOrder::Left) { columns } else { surface.height };
         // A global scan lights all pixels at once, so the device can use only one pose per period.
         let poses = match (setting.every, display.light().scan) {
-            (_, Scan::Global) | (Every::Field, _) => 1,
+            (_, ScanOrder::Global) | (Every::Field, _) => 1,
             (Every::Strip, _) => along.div_ceil(Every::STRIP),
             (Every::Line, _) if along == columns => columns,
             (Every::Line, _) => lines,
@@ -133,7 +136,7 @@ impl Evaluation {
         let estimator = Estimator::new(head, without);
         let content = match showing {
             Showing::Plain => Content::Plain,
-            Showing::RasterOffset => Content::AdvancedMotion(estimator, None),
+            Showing::RasterOffset => Content::ShiftedRaster(estimator, None),
             Showing::Ideal => Content::Ideal(estimator),
             Showing::Reprojected(setting) => Content::Reprojected(Reprojector::new(head, setting, without)),
             Showing::DelayedVideo => Content::DelayedVideo,
@@ -155,7 +158,8 @@ impl Evaluation {
         fields
     }
 
-    /// Replaces the poses of the visible views by the poses that the run would have had without one cause of error.
+    /// Replaces the poses of all visible views. The new poses are those that the run would have had without one cause
+    /// of error.
     fn replace_poses(
         &mut self,
         run: &FinalResults<'_>,
@@ -177,7 +181,7 @@ impl Evaluation {
     fn evaluate(&mut self, run: &FinalResults<'_>, field: PeriodNumber, collected: &mut Collected) {
         let display = run.record.display();
         // With a shifted raster, first find the offset of this field.
-        if let Content::AdvancedMotion(estimator, of_field) = &mut self.content {
+        if let Content::ShiftedRaster(estimator, of_field) = &mut self.content {
             let pose = pose_of_field(run, &self.shown, field);
             *of_field = pose.map(|pose| offset(estimator, display, field, &pose));
         }
@@ -219,10 +223,10 @@ impl Evaluation {
                 self.shown.seen(run, place, field, begins)
             }
             // Only whole views can be shifted. An interpolated picture or faces have no single pose.
-            Content::AdvancedMotion(_, offset) => match self.shown.seen(run, place, field, begins) {
+            Content::ShiftedRaster(_, offset) => match self.shown.seen(run, place, field, begins) {
                 Seen::Complete(Drawn::View(moment)) => {
                     let shift = offset.map(|offset| offset.shift_px(&self.evaluator.view, begins.0));
-                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::AdvancedMotion(moment, shift)))
+                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::ShiftedRaster(moment, shift)))
                 }
                 Seen::Complete(_) => Seen::Nothing,
                 other => other,
@@ -302,14 +306,14 @@ impl Evaluation {
     }
 
     /// Adds the distance that the content of a pixel moves across the screen while the pixel is lit.
-    fn smear(&self, seen: &Seen, pixel: Pixel, light: &Light, eye: &mut EyeSum) {
+    fn smear(&self, seen: &Seen, pixel: Pixel, light: &PixelLight, eye: &mut EyeSum) {
         let Seen::Complete(drawn) = seen else { return };
         if !light.is_instant() {
             self.smear_of(&self.evaluator.content(drawn, middle(pixel.place[0], pixel.place[1])), pixel, light, eye);
         }
     }
 
-    fn smear_of(&self, content: &crate::content::Content, pixel: Pixel, light: &Light, eye: &mut EyeSum) {
+    fn smear_of(&self, content: &crate::content::Content, pixel: Pixel, light: &PixelLight, eye: &mut EyeSum) {
         if light.is_instant() {
             return;
         }
@@ -319,7 +323,8 @@ impl Evaluation {
         }
     }
 
-    /// Checks at many positions of a field if the visible content lies beyond the edge of its picture.
+    /// Checks at many screen positions of a field if the content that should be visible lies beyond the edge of the
+    /// drawn picture.
     ///
     /// If pictures are moved with depth, only the evaluated pixels are checked, and this method checks none.
     fn look_for_edges(&self, run: &FinalResults<'_>, field: PeriodNumber, eye: &mut EyeSum) {
@@ -330,7 +335,7 @@ impl Evaluation {
             // Find the place in the drawn picture that the pixel shows. This place can lie beyond the edge of the
             // picture.
             let from = match &self.content {
-                Content::AdvancedMotion(_, offset) => {
+                Content::ShiftedRaster(_, offset) => {
                     let Some(offset) = offset else { continue };
                     let known = display.tick(field);
                     let arrived = self.head.report_by(known);
@@ -369,7 +374,7 @@ struct Collected {
     eye: EyeSum,
 }
 
-/// Number of grid errors that are kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for
+/// Number of pixel errors that are kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for
 /// degrees.
 const KEPT_OF_GRID: usize = 8;
 

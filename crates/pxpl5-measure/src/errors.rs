@@ -16,15 +16,16 @@ pub struct FieldMisregistration {
     pub field: PeriodNumber,
     /// Start of the period in simulated time, in seconds.
     pub time_s: f64,
-    /// Mean error over the pixels of the grid.
+    /// Mean error over the grid of evaluated pixels, in pixels.
     #[serde(deserialize_with = "number_or_nan")]
     pub mean_px: f64,
-    /// Error of the pixel in the middle, in pixels.
+    /// Error of the pixel in the middle of the picture, in pixels.
     #[serde(deserialize_with = "number_or_nan")]
     pub centre_px: f64,
 }
 
-/// Prints the name that this type had when report hashes were first published. The hash of a report covers this text.
+/// Prints the name that this type had when report hashes were first published, because the hash of a report covers this
+/// text.
 impl fmt::Debug for FieldMisregistration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { field, time_s, mean_px, centre_px } = self;
@@ -41,15 +42,15 @@ impl fmt::Debug for FieldMisregistration {
 /// JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PixelErrors {
-    /// Distance of grid pixels from their correct position, in pixels.
+    /// Distance of the evaluated pixels from their correct position, in pixels.
     pub pixels: Percentiles,
-    /// Angle between the displayed and the correct direction of grid pixels, in degrees.
+    /// Angle between the displayed and the correct direction of the evaluated pixels, in degrees.
     pub degrees: Percentiles,
     /// Error of the pixel in the middle of the picture, in pixels.
     pub centre_px: Percentiles,
     /// Error of the pixel in the middle of the picture, in degrees.
     pub centre_deg: Percentiles,
-    /// Number of evaluated pixels: grid pixels of all fields.
+    /// Number of evaluated pixels, summed over all fields of the result window.
     pub evaluated: u64,
     /// Number of pixels whose content lies behind the eye at the time when the pixels are lit.
     pub behind: u64,
@@ -72,10 +73,11 @@ pub struct PixelErrors {
     pub all_px: Vec<f64>,
 }
 
-/// Number of columns and rows of the grid. The number is odd, so that one pixel lies in the middle.
+/// Number of columns, and of rows, of the grid of evaluated pixels. The number is odd, so that one pixel lies in the
+/// middle.
 const GRID: u32 = 5;
 
-/// Index of the pixel in the middle of the grid.
+/// Index of the middle pixel in the grid of evaluated pixels.
 pub(crate) const CENTRE: usize = (GRID * GRID / 2) as usize;
 
 /// Returns the evaluated pixels of a display period in scan order, each with the time at which it is lit.
@@ -121,8 +123,8 @@ pub enum Showing {
     Reprojected(Reprojection),
     /// Pictures are shown as drawn, in front of a video of the real world that has the same delay (I3D95, 2.1).
     ///
-    /// Pictures and video show the instant at which the head was measured, so only the tracker's error remains. The
-    /// video lags behind the real world by the time from the measurement of the head until the pixels are lit.
+    /// Pictures and video show the instant at which the head's pose was measured, so only the tracker's error remains.
+    /// The video is later than the real world by the time from this measurement until the pixels are lit.
     DelayedVideo,
 }
 

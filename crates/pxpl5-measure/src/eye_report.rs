@@ -20,7 +20,7 @@ pub struct EyeReport {
 /// Results of a device that moves pictures to the newest pose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReprojectionReport {
-    /// Setting of the device.
+    /// Setting of the device: the method of moving, the part of a scan that gets one pose, and the latency.
     pub device: Reprojection,
     /// Number of pixels that the device computes per second for one eye.
     pub pixels_per_s: f64,
@@ -37,7 +37,7 @@ pub struct ReprojectionReport {
     pub disoccluded_share: Option<f64>,
 }
 
-/// The setting of a device, and the rates that follow from the setting and the display.
+/// A device that moves pictures: its setting, and the pixels and poses per second that it needs on the display.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Device {
     pub(crate) setting: Reprojection,
@@ -46,7 +46,7 @@ pub(crate) struct Device {
     pub(crate) has_depth: bool,
 }
 
-/// Sums for an [`EyeReport`].
+/// Sums from which an [`EyeReport`] is computed.
 #[derive(Debug)]
 pub(crate) struct EyeSum {
     smear: Option<Distribution>,
@@ -58,8 +58,8 @@ pub(crate) struct EyeSum {
 }
 
 impl EyeSum {
-    /// Returns empty sums that keep up to `limit` values of each kind. `smears` is true if pixels are lit for more than
-    /// an instant.
+    /// Creates empty sums that keep up to `limit` smears and pose ages individually. `smears` is true if pixels are lit
+    /// for more than an instant.
     pub(crate) fn keeping(limit: usize, smears: bool, device: Option<Device>) -> Self {
         // The limit is the same in every run. Beyond the limit, numbers are summed in another way, which can change the
         // last digit of a mean.
@@ -68,7 +68,7 @@ impl EyeSum {
         Self { smear, device, age_ms: Distribution::keeping(limit), looked_at: 0, beyond: 0, hidden: 0 }
     }
 
-    /// Adds the distance that a pixel's content moves while the pixel is lit.
+    /// Adds a smear: the distance in pixels that a pixel's content moves while the pixel is lit.
     pub(crate) fn smeared(&mut self, px: f64) {
         self.smear.iter_mut().for_each(|smear| smear.push(px));
     }
@@ -87,7 +87,8 @@ impl EyeSum {
         self.hidden += u64::from(is_hidden);
     }
 
-    /// Returns the results. `None` if pixels are lit for an instant only and no device moves pictures.
+    /// Returns the report of the added values. `None` if pixels are lit for an instant only and no device moves
+    /// pictures.
     pub(crate) fn result(self) -> Option<EyeReport> {
         let share = |count: u64| (self.looked_at > 0).then(|| count as f64 / self.looked_at as f64);
         let reprojection = self.device.map(|device| ReprojectionReport {

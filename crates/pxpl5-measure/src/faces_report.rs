@@ -6,10 +6,10 @@ use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use pxpl5_run::{Outcome, Statistics};
 use serde::Serialize;
 
-/// Results of an address recalculation pipeline and its memories in a run.
+/// Results of an address recalculation pipeline and its display memories in a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FacesReport {
-    /// Name and version of this record's layout.
+    /// Name and version of the layout of this report.
     pub schema: &'static str,
     /// Number of texels along the edge of a face, including guard texels.
     pub face_texels: u64,
@@ -17,9 +17,9 @@ pub struct FacesReport {
     pub latch: Latch,
     /// Time from the latching of an orientation until the first pixel that uses it is lit, in nanoseconds.
     pub pipeline_ns: f64,
-    /// Number of orientations that the display accepted.
+    /// Number of head orientations that the display accepted.
     pub matrix_loads: u64,
-    /// Number of orientations that the display refused.
+    /// Number of head orientations that the display refused.
     pub matrix_refused: u64,
     /// The display memories, starting with the memory that is drawn most often.
     pub memories: Vec<MemoryReport>,
@@ -39,29 +39,32 @@ pub struct MemoryReport {
     pub period_frames: Option<f64>,
     /// Number of updates shown in the whole run, including the warm-up.
     pub updates: u64,
-    /// Number of structures of the scene in the memory at its last update.
+    /// Number of structures of the scene in the display memory at its last update.
     pub segments: usize,
-    /// Number of regions that arrived at this memory.
+    /// Number of regions that arrived at this display memory.
     pub regions_copied: u64,
     /// Number of retraces at which a requested update was not complete.
     pub missed: u64,
     /// Latency from a translation of the head until the middle of the picture is lit, in milliseconds, over all fields.
     ///
-    /// The latency starts at the measurement of the head. Without a tracker the latency starts when the memory becomes
-    /// due. `None` before the first update, and in a run that discarded its records without a streaming observer.
+    /// The latency starts at the measurement of the head's pose. Without a tracker the latency starts when the display
+    /// memory must be redrawn (becomes due). `None` before the first update, and in a run that discarded its records
+    /// without a streaming observer.
     pub translation_latency_ms: Option<Statistics>,
     /// Means of the parts of the translation latency, in milliseconds. The parts add up to the mean of the latency.
     ///
-    /// The parts are: measurement until the memory became due, due until shown, age of the shown update, and scan-out.
+    /// The parts are: measurement until the display memory became due, due until shown, age of the shown update, and
+    /// scan-out.
     pub translation_latency_parts_ms: Vec<(&'static str, f64)>,
-    /// Total delay of late updates in milliseconds, each from the first missed retrace to the retrace that showed it.
+    /// Total delay of late updates in milliseconds. The delay of an update lasts from the first missed retrace to the
+    /// retrace that showed the update.
     pub lateness_ms: f64,
-    /// Size of both buffers of the memory, in bytes.
+    /// Size of both buffers of the display memory, in bytes.
     pub bytes: u64,
 }
 
 impl FacesReport {
-    /// Name and version of the record's layout.
+    /// Name and version of the layout of this report.
     pub const SCHEMA: &'static str = "pxpl5-arp/1";
 
     /// Returns the report of a run, or `None` if its display is not an address recalculation pipeline.

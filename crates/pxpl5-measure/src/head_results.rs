@@ -1,4 +1,5 @@
-//! Results that concern the head: from the streaming observer, or else computed from the records still in memory.
+//! Results that concern the head. They come from the streaming observer, or else from the records of the run that are
+//! still in memory.
 
 use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_observer::ErrorSum;
@@ -70,8 +71,8 @@ impl EyeReport {
     }
 }
 
-/// Returns the pixel errors in the display mode of the head's display, and the results of the eye. Returns `None` for a
-/// run without a head.
+/// Returns the pixel errors in the display mode of the head's display, and the [`EyeReport`] if there is one. Returns
+/// `None` for a run without a head.
 pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
     let showing = outcome.head()?.head().raster().into();
     let said = HeadResults::from_observer(outcome).map(|said| (said.error.clone(), said.eye.clone()));
@@ -85,7 +86,8 @@ pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
 }
 
 impl Budget {
-    /// Returns the mean time of each stage over the complete pictures in the result window whose pose was measured.
+    /// Returns the mean time of each stage of the latency, over the complete pictures in the result window whose pose
+    /// was measured.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         if let Some(said) = HeadResults::from_observer(outcome) {
@@ -96,7 +98,8 @@ impl Budget {
         sum.result()
     }
 
-    /// Returns the latency of each picture in memory, from the measured pose until the middle is lit, in milliseconds.
+    /// Returns the latency of each picture whose records are in memory, in milliseconds. The latency lasts from the
+    /// measurement of the pose until the middle of the picture is lit.
     #[must_use]
     pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
         let run = outcome.final_results();
@@ -118,7 +121,7 @@ impl Turns {
 }
 
 impl Steps {
-    /// Returns the latencies of a step of the head, for each display memory of a run.
+    /// Returns the latencies from a step (translation) of the head until the content of each display memory is lit.
     ///
     /// The result is empty if the run discarded its records without a streaming observer.
     pub(crate) fn of(outcome: &Outcome) -> Vec<Self> {

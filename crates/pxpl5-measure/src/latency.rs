@@ -28,12 +28,13 @@ pub struct LatencyPartStatistics {
     pub name: String,
     /// True if the latency stated in the papers includes this part.
     pub in_published_latency: bool,
-    /// The statistics, in milliseconds, and the definition of the part.
+    /// Statistics of this part of the latency in milliseconds, and the definition of the part.
     #[serde(flatten)]
     pub statistics: DefinedStatistics,
 }
 
-/// Prints the name that this type had when report hashes were first published. The hash of a report covers this text.
+/// Prints the name that this type had when report hashes were first published, because the hash of a report covers this
+/// text.
 impl fmt::Debug for LatencyPartStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, in_published_latency, statistics } = self;
@@ -51,12 +52,12 @@ pub struct SurfaceStatistics {
     pub of: String,
     /// Name of the final event: `end_of_copy`, `swap` or `light`.
     pub until: &'static str,
-    /// The statistics, in milliseconds, and their definition.
+    /// Statistics of the latency in milliseconds, and the definition of the latency.
     #[serde(flatten)]
     pub statistics: DefinedStatistics,
 }
 
-/// Returns the latencies of both surfaces and of the pair over the complete pictures in the result window.
+/// Returns the latencies of each surface and of the pair of surfaces, over the complete pictures in the result window.
 ///
 /// The result is empty if the surfaces share one TRANSFORM.
 #[must_use]

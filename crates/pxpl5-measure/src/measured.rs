@@ -8,7 +8,7 @@ use crate::pictures::picture;
 use crate::quantity::Measure;
 use image::RgbImage;
 use pxpl5_run::{LatencyParts, Outcome};
-use pxpl5_sim::parameters::NameError;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::SurfaceId;
 
 /// Common measurements of an [`Outcome`].
@@ -23,13 +23,13 @@ pub trait Measured {
     ///
     /// # Errors
     ///
-    /// [`NameError`] with the most similar name if no quantity is called `name`.
-    fn quantity(&self, name: &str) -> Result<Option<f64>, NameError>;
+    /// [`SettingError`] with the most similar name if no quantity is called `name`.
+    fn quantity(&self, name: &str) -> Result<Option<f64>, SettingError>;
 
     /// Returns the latency parts of each complete picture in the result window whose records are in memory.
     fn latency_parts(&self) -> Vec<LatencyParts>;
 
-    /// Returns the latencies of both eyes and of the pair. Empty if the eyes share one TRANSFORM.
+    /// Returns the latencies of each eye and of the pair of eyes. Empty if the eyes share one TRANSFORM.
     fn latency_by_surface(&self) -> Vec<SurfaceStatistics>;
 
     /// Returns the pixel errors in the display mode of the head's display, or `None` for a run without a head.
@@ -46,7 +46,7 @@ impl Measured for Outcome {
         Report::of(self)
     }
 
-    fn quantity(&self, name: &str) -> Result<Option<f64>, NameError> {
+    fn quantity(&self, name: &str) -> Result<Option<f64>, SettingError> {
         Ok(Measure::named(name)?.of_outcome(self))
     }
 

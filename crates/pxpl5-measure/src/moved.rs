@@ -16,7 +16,7 @@ use tracking::view::HmdView;
 /// Content of a pixel of the screen after a device has moved the picture.
 #[derive(Clone, Debug)]
 pub(crate) enum Moved {
-    /// Content of a picture, with the pose for which the picture was drawn.
+    /// The pixel shows content of a picture, with the pose for which the picture was drawn.
     Shows(Content, Drawn),
     /// No content, because this position of the picture shows nothing or no complete picture.
     NotComplete(Seen),
@@ -26,11 +26,11 @@ pub(crate) enum Moved {
     Hidden,
 }
 
-/// Largest number of iterations until a picture position agrees with its pose. Parts of a picture can have different
-/// poses.
+/// Largest number of iterations in the search for the picture position that a pixel shows. An iteration is needed
+/// because the pose depends on the position if parts of a picture have different poses.
 const STEPS: usize = 4;
 
-/// Returns the content of a pixel that is lit from the time `at`, with its picture moved to a pose.
+/// Returns the content of a pixel that is lit from the time `at`, after the picture has been moved to the pose `now`.
 pub(crate) fn moved(
     (evaluator, shown, run): (&Evaluator, &Shown, &FinalResults<'_>),
     (by, now): (Warp, &Pose),
@@ -59,9 +59,9 @@ pub(crate) fn moved(
     last
 }
 
-/// Returns the content that moves to a screen position, and its position in the picture.
+/// Returns the content that moves to a screen position, and the position of this content in the picture.
 ///
-/// Returns `None` if there is no such content. `reason` then states why.
+/// Returns `None` if no content moves to this position. `reason` then states the reason.
 fn source(
     evaluator: &Evaluator,
     by: Warp,

@@ -8,7 +8,7 @@ use crate::rows::Rows;
 use crate::shown::{Drawn, Moment, Shown};
 use image::RgbImage;
 use pxpl5_run::{Every, FinalResults, HeadViews, Reprojection, Warp};
-use pxpl5_wire::display::{Display, Scan};
+use pxpl5_wire::display::{Display, ScanOrder};
 use pxpl5_wire::{PeriodNumber, REGION_SIZE};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -22,7 +22,7 @@ pub(crate) struct PictureMover<'a> {
     evaluator: Evaluator,
     shown: Shown,
     setting: Reprojection,
-    /// The latest depths of a picture. Successive fields often show the same picture.
+    /// The depths that were computed last, kept because successive fields often show the same picture.
     latest: RefCell<Option<(Moment, Rows, Arc<DepthPicture>)>>,
 }
 
@@ -39,7 +39,7 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Writes the moved rows that a field lights. Rows without a drawn picture stay unchanged.
+    /// Writes the moved rows that a field lights. Rows that show no drawn picture stay unchanged.
     pub(crate) fn move_rows(&self, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
         let reprojector = self.reprojector(screen, field);
         if self.setting.by != Warp::Depth || !self.move_whole_rows(&reprojector, screen, field, out) {
@@ -47,7 +47,7 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns the newest poses for all parts of a field.
+    /// Returns the newest poses of the head for all parts of a field that one pose can move.
     fn reprojector(&self, screen: &RgbImage, field: PeriodNumber) -> Reprojector {
         let display = self.run.record.display();
         let mut reprojector = Reprojector::new(&self.head, self.setting, None);
@@ -57,7 +57,7 @@ impl<'a> PictureMover<'a> {
         reprojector
     }
 
-    /// Writes the moved rows of a field piece by piece. Each piece comes from the picture that it shows.
+    /// Writes the moved rows of a field in pieces, because the pieces of a row can show different pictures.
     fn move_pieces(&self, reprojector: &Reprojector, screen: &RgbImage, field: PeriodNumber, out: &mut RgbImage) {
         let display = self.run.record.display();
         for y in Rows::lit(display, field).of(screen.height()) {
@@ -67,10 +67,10 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns the ranges of pixels in a row that have one pose. A range covers a region, or a single pixel if each
-    /// column has its own pose.
+    /// Returns ranges of pixels in a row, so that all pixels of a range move to one pose. A range covers a region, or a
+    /// single pixel if each column has its own pose.
     fn pieces(&self, display: &dyn Display, width: u32) -> impl Iterator<Item = Range<u32>> + use<> {
-        let sideways = matches!(display.light().scan, Scan::Right | Scan::Left);
+        let sideways = matches!(display.light().scan, ScanOrder::Right | ScanOrder::Left);
         let length = if sideways && self.setting.every == Every::Line { 1 } else { REGION_SIZE };
         (0..width).step_by(length as usize).map(move |x| x..(x + length).min(width))
     }
@@ -85,7 +85,7 @@ impl<'a> PictureMover<'a> {
         out: &mut RgbImage,
     ) -> bool {
         let display = self.run.record.display();
-        if matches!(display.light().scan, Scan::Right | Scan::Left) && self.setting.every != Every::Field {
+        if matches!(display.light().scan, ScanOrder::Right | ScanOrder::Left) && self.setting.every != Every::Field {
             return false;
         }
         let Some(drawn_for) = self.only_moment(screen, field) else { return false };

@@ -6,7 +6,7 @@ use crate::resource::Resource;
 use crate::summary::summary;
 use pxpl5_gp::Stage;
 use pxpl5_run::{DuePictures, Outcome, Summary};
-use pxpl5_sim::parameters::{NameError, find_named};
+use pxpl5_sim::parameters::{SettingError, find_named};
 use std::fmt;
 use std::str::FromStr;
 
@@ -199,8 +199,8 @@ impl Measure {
     ///
     /// # Errors
     ///
-    /// [`NameError`] with the most similar name if no quantity is called `name`.
-    pub fn named(name: &str) -> Result<Self, NameError> {
+    /// [`SettingError`] with the most similar name if no quantity is called `name`.
+    pub fn named(name: &str) -> Result<Self, SettingError> {
         find_named("quantity", name, QUANTITIES.iter().map(|quantity| (quantity.name, Self(quantity))))
     }
 
@@ -228,19 +228,20 @@ impl Measure {
     /// Name of the number of evaluated pixels.
     pub const EVALUATED: &'static str = "error_px.n";
 
-    /// Returns the name with the unit.
+    /// Returns the name of the quantity, which includes the unit.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         self.0.name
     }
 
-    /// Returns the description of the measured interval or count, in one sentence.
+    /// Returns the definition of the quantity: a description of the measured interval or count, in one sentence.
     #[must_use]
     pub const fn definition(&self) -> &'static str {
         self.0.definition
     }
 
-    /// Returns the value, or `None` if the run has no finite value for this quantity.
+    /// Returns the value of this quantity in the given results, or `None` if they have no finite value for this
+    /// quantity.
     #[must_use]
     pub fn of(&self, results: &Results) -> Option<f64> {
         let value = match self.0.value {
@@ -252,9 +253,9 @@ impl Measure {
 }
 
 impl Measure {
-    /// Returns the value for a run, or `None` if the run has no finite value for this quantity.
+    /// Returns the value of this quantity for a run, or `None` if the run has no finite value for this quantity.
     ///
-    /// [`Measure::of`] avoids a second report if a report already exists.
+    /// This method computes a report of the run. If a report already exists, [`Measure::of`] takes less time.
     #[must_use]
     pub fn of_outcome(&self, outcome: &Outcome) -> Option<f64> {
         let value = match self.0.value {
@@ -272,9 +273,9 @@ impl fmt::Display for Measure {
 }
 
 impl FromStr for Measure {
-    type Err = NameError;
+    type Err = SettingError;
 
-    fn from_str(name: &str) -> Result<Self, NameError> {
+    fn from_str(name: &str) -> Result<Self, SettingError> {
         Self::named(name)
     }
 }

@@ -33,21 +33,21 @@ impl std::fmt::Debug for Vdrt<'_> {
 }
 
 impl<'a> Vdrt<'a> {
-    /// Creates the raster of a display whose offsets come from `estimator`.
+    /// Creates the shifted raster of a display. The raster offsets come from head poses that `estimator` predicts.
     #[must_use]
     pub const fn new(estimator: Estimator, display: &'a dyn Display) -> Self {
         Self { estimator, display }
     }
 
-    /// Returns the offset of a field whose picture was drawn for the pose `drawn_for`. Call with fields in ascending
-    /// order.
+    /// Returns the raster offset of a field whose picture was drawn for the pose `drawn_for`. The calls must have
+    /// fields in ascending order.
     pub fn offset(&mut self, field: PeriodNumber, drawn_for: &Pose) -> RasterOffset {
         offset(&mut self.estimator, self.display, field, drawn_for)
     }
 }
 
-/// Returns the offset of a field whose picture was drawn for a pose. The prediction uses the reports that have arrived
-/// at the field's start.
+/// Returns the raster offset of a field whose picture was drawn for a pose. The offset comes from a prediction, which
+/// uses the tracker reports that have arrived at the field's start.
 pub(crate) fn offset(
     estimator: &mut Estimator,
     display: &dyn Display,
@@ -76,7 +76,7 @@ pub struct RasterOffsets<'a> {
 
 #[derive(Clone, Debug)]
 enum MovedBy<'a> {
-    /// The offset of every field.
+    /// The raster offset of every field, or `None` for a field without an offset.
     Offsets(Vec<Option<RasterOffset>>),
     Device(Rc<PictureMover<'a>>),
 }
@@ -121,7 +121,7 @@ impl<'a> RasterOffsets<'a> {
 
     /// Copies the rows that a field lights from `screen` to `shifted`, moved by the field's offset in whole pixels.
     ///
-    /// Uncovered pixels become black. A field without an offset is copied unchanged.
+    /// Pixels to which no pixel moves become black. A field without an offset is copied unchanged.
     pub fn shift_rows(&self, screen: &RgbImage, field: PeriodNumber, shifted: &mut RgbImage) {
         if let MovedBy::Device(mover) = &self.moved_by {
             mover.move_rows(screen, field, shifted);
@@ -167,6 +167,6 @@ pub(crate) fn pose_of_field(run: &FinalResults<'_>, shown: &Shown, field: Period
     let y = Rows::lit(display, field).first;
     match shown.drawn(run, [x, y], field, display.lights(0, x, y, field)?)? {
         Drawn::View(moment) => Some(moment.pose),
-        Drawn::Between { .. } | Drawn::AdvancedMotion(..) | Drawn::Faces(_) => None,
+        Drawn::Between { .. } | Drawn::ShiftedRaster(..) | Drawn::Faces(_) => None,
     }
 }

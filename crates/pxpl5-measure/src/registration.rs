@@ -18,7 +18,7 @@ pub(crate) struct Evaluator {
     head: Arc<HeadViews>,
     /// The scene's primitives. Empty if the experiment evaluates errors at a fixed distance.
     contents: Contents,
-    /// Distance of the assumed content on rays that hit nothing, in metres.
+    /// Distance at which content is assumed on rays that hit nothing, in metres.
     distance_m: f64,
 }
 
@@ -44,8 +44,8 @@ impl Evaluator {
         met.unwrap_or_else(|| Content::fixed(position + direction * self.distance_m))
     }
 
-    /// Returns the nearest scene point at a picture position over several display memories. The lowest memory wins a
-    /// tie.
+    /// Returns the nearest scene point at a picture position over several display memories. If two memories have
+    /// content at the same distance, the lower memory is used.
     ///
     /// If no memory has content there, the result is a point at `distance_m`.
     fn nearest(&self, faces: &FacesSeen, place: DVec2) -> Content {
@@ -66,7 +66,7 @@ impl Evaluator {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
             Drawn::Faces(faces) => self.nearest(faces, place),
-            Drawn::AdvancedMotion(moment, shift) => self.met(moment, place - *shift),
+            Drawn::ShiftedRaster(moment, shift) => self.met(moment, place - *shift),
             // Find by iteration the content that interpolation moves to this position.
             Drawn::Between { from, to, part, on_screen } => {
                 let between = between(from, to, *part);
@@ -96,7 +96,8 @@ impl Evaluator {
         self.error_between(place, content, at, at)
     }
 
-    /// Returns the error of content, with the head's pose at one time and the moving objects at another time.
+    /// Returns the pixel error of content at a screen position, with the head's pose at one time and the moving objects
+    /// at another time.
     pub(crate) fn error_between(
         &self,
         place: DVec2,
@@ -112,7 +113,7 @@ impl Evaluator {
     }
 }
 
-/// Content at a screen position, when a picture with depth is seen from another pose.
+/// Content at a screen position, after a picture with depth was moved to another pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Warped {
     /// The visible content, with its position in the picture.
@@ -156,16 +157,18 @@ impl Evaluator {
         (way.is_finite() && way > 0.0).then(|| Content::fixed(now.position + ahead * way))
     }
 
-    /// Returns the pose and time for which a pixel was drawn. A pixel between two views gets interpolated values.
+    /// Returns the pose and time for which a pixel was drawn. A pixel that is interpolated between two views gets an
+    /// interpolated pose and time.
     pub(crate) fn moment(&self, drawn: &Drawn) -> Moment {
         match drawn {
-            Drawn::View(moment) | Drawn::AdvancedMotion(moment, _) => *moment,
+            Drawn::View(moment) | Drawn::ShiftedRaster(moment, _) => *moment,
             Drawn::Between { from, to, part, .. } => between(from, to, *part),
             Drawn::Faces(faces) => faces.memories[0].0,
         }
     }
 
-    /// Returns the distance that content moves across the screen between two times, in pixels.
+    /// Returns the smear of content: the distance that the content moves across the screen between two times, in
+    /// pixels.
     ///
     /// Returns `None` if the content is behind the eye.
     pub(crate) fn way_px(&self, content: &Content, from: Time, to: Time) -> Option<f64> {
@@ -223,7 +226,7 @@ impl<'a> Registration<'a> {
     }
 }
 
-/// Returns the position of a pixel's middle.
+/// Returns the position of a pixel's middle in the picture, in pixels.
 pub(crate) fn middle(x: u32, y: u32) -> DVec2 {
     DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
 }

@@ -24,7 +24,7 @@ use tracking::predict::{PredictorConfig, Training};
 /// All numbers of one experiment, as written to JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// Name and version of this record's layout.
+    /// Name and version of the layout of this report.
     pub schema: String,
     /// Version of the program that wrote the report.
     pub version: String,
@@ -69,9 +69,9 @@ pub struct Report {
     pub window: Option<ResultWindow>,
     /// Number of complete pictures in the result window. The statistics are computed over these pictures.
     pub pictures: usize,
-    /// Latency in display periods. For NTSC, a period is one field of 1001/60000 s.
+    /// Latency of the pictures in display periods. For NTSC, a period is one field of 1001/60000 s.
     pub latency_fields: DefinedStatistics,
-    /// The same latency in milliseconds of simulated time.
+    /// Latency of the pictures in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
     /// Parts of the latency in milliseconds. The parts add up to the time from the sample of the pose until the picture
     /// is lit.
@@ -86,7 +86,8 @@ pub struct Report {
     /// Number of complete new pictures per second within the result window. `None` if fewer than two pictures were
     /// shown.
     pub updates_hz: Option<f64>,
-    /// Number of pictures due in the result window, by result. `None` if no picture was due.
+    /// Number of pictures that were due in the result window, counted by result (shown, late, incomplete or missed).
+    /// `None` if no picture was due.
     pub due: Option<DuePictures>,
     /// Definition of a picture due: the time when it is due, the time by which it must be shown, and the pictures that
     /// count.
@@ -103,7 +104,7 @@ pub struct Report {
     pub first_late_regions: Vec<LateRegion>,
     /// Counters of the first display since the start of the run.
     pub display_counters: Vec<Counter>,
-    /// Results that concern the head. `None` for a run without a tracker.
+    /// Results that concern the head: prediction, latency and pixel errors. `None` for a run without a tracker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadReport>,
     /// Smear, and results of a device that moves pictures.
@@ -114,7 +115,8 @@ pub struct Report {
     /// Results of an address recalculation display. `None` for any other display.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Head-mounted display before the viewer's eyes. A display with faces around the head has its own optics instead.
+    /// Head-mounted display before the viewer's eyes. A display with cube faces around the head uses other optics
+    /// instead, which belong to its own settings.
     pub hmd: HmdConfig,
     /// Share of time in which each kind of board was busy. `None` if the machine has not run.
     pub utilisation: Option<Utilisation>,
@@ -203,7 +205,7 @@ fn faults(record: &Record) -> impl Iterator<Item = String> {
 }
 
 impl Report {
-    /// Name and version of the record's layout.
+    /// Name and version of the layout of this report.
     pub const SCHEMA: &'static str = "pxpl5-report/2";
 
     /// Computes the report of an outcome.
@@ -300,10 +302,10 @@ impl Report {
     }
 }
 
-/// Computes the trace hash of a text without storing the text: one record at time zero with the fact 9 and the text's
+/// Computes the hash of a text, as the trace hash of one record at time zero with the fact number 9 and the text's
 /// bytes.
 ///
-/// The text of a long run would be large.
+/// The text is not stored, because the text of a long run would be large.
 struct HashedText(u64);
 
 impl Default for HashedText {
@@ -327,7 +329,7 @@ mod tests {
     use pxpl5_renderer::Layout;
     use pxpl5_wire::{Body, swap_request};
 
-    /// A program requests the invalid buffer 2 of a double-buffered frame buffer, `asks` times.
+    /// Runs a program that requests the invalid buffer 2 of a double-buffered frame buffer `asks` times.
     #[test]
     fn displays_say_what_they_could_not_use_and_nothing_else() {
         for asks in [0, 1, 3] {

@@ -19,7 +19,8 @@ pub(crate) fn direction(view: &HmdView, place: DVec2) -> DVec3 {
 pub(crate) enum Move {
     /// The whole picture is shifted by this offset, in pixels.
     Shift(DVec2),
-    /// The view is rotated, from the axes of the head now to the axes of the head for which the picture was drawn.
+    /// The view is rotated. The rotation converts directions from the head's newest axes to the head's axes for which
+    /// the picture was drawn.
     Turn(DQuat),
 }
 
@@ -35,8 +36,8 @@ impl Move {
         }
     }
 
-    /// Returns the picture position that is seen at a screen position. `None` if this position lies behind the
-    /// picture's eye.
+    /// Returns the picture position that is seen at a screen position. `None` if this position lies behind the eye for
+    /// which the picture was drawn.
     pub(crate) fn source(&self, view: &HmdView, place: DVec2) -> Option<DVec2> {
         match self {
             Self::Shift(shift) => Some(place - *shift),
@@ -45,7 +46,7 @@ impl Move {
     }
 }
 
-/// Writes some pixels of a row, each copied from a position of the source picture.
+/// Writes some pixels of a row. Each pixel is copied from a position of the source picture.
 ///
 /// Pixels without a source become black. Returns the number of these pixels.
 pub(crate) fn fill_row(

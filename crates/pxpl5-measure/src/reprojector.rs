@@ -4,27 +4,28 @@ use crate::rows::Rows;
 use pxpl5_run::{Cause, Estimator, Every, HeadViews, Reprojection};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
-use pxpl5_wire::display::{Display, Scan};
+use pxpl5_wire::display::{Display, ScanOrder};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// The newest pose for one part of a scan.
+/// The newest pose of the head for one part of a scan (field, strip or line).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NewestPose {
-    /// The pose, predicted for the middle of the time in which the part is lit.
+    /// Pose of the head, predicted for the middle of the time in which the part of the scan is lit.
     pub(crate) pose: Pose,
-    /// Time at which the tracker measured the report behind the pose. `None` before the first report.
+    /// Time at which the tracker measured the newest report from which the pose was computed. `None` before the first
+    /// report.
     pub(crate) measured_at: Option<Time>,
 }
 
-/// Takes the newest pose for each part of a scan: a field, a strip or a line.
+/// A source of the newest head pose for each part of a scan: a field, a strip or a line.
 pub(crate) struct Reprojector {
     pub(crate) setting: Reprojection,
     estimator: Estimator,
     head: Arc<HeadViews>,
-    /// Poses of the latest field, by the index of the part.
+    /// Newest poses for the parts of the latest field, by the index of the part (field, strip or line).
     poses: BTreeMap<u32, NewestPose>,
 }
 
@@ -67,12 +68,12 @@ impl Reprojector {
     }
 }
 
-/// Returns the index of the part of a scan that contains a pixel.
+/// Returns the index of the part of a scan (field, strip or line) that contains a pixel.
 fn part(display: &dyn Display, every: Every, [x, y]: [u32; 2]) -> u32 {
     let along = match display.light().scan {
-        Scan::Down | Scan::Up => y,
-        Scan::Right | Scan::Left => x,
-        Scan::Global => return 0,
+        ScanOrder::Down | ScanOrder::Up => y,
+        ScanOrder::Right | ScanOrder::Left => x,
+        ScanOrder::Global => return 0,
     };
     match every {
         Every::Field => 0,
@@ -81,18 +82,18 @@ fn part(display: &dyn Display, every: Every, [x, y]: [u32; 2]) -> u32 {
     }
 }
 
-/// Returns the times at which the first and the last pixel of a part are lit. `None` if no pixel is lit.
+/// Returns the times at which the first and the last pixel of a part of a scan are lit. `None` if no pixel is lit.
 fn lit(display: &dyn Display, every: Every, part: u32, field: PeriodNumber) -> Option<(Time, Time)> {
     let surface = display.surfaces().first()?;
     let size = [surface.width, surface.height];
     let scan = display.light().scan;
     // First and last line of the part, counted in the direction of the scan.
     let [from, to] = match every {
-        Every::Strip if scan != Scan::Global => [part * Every::STRIP, (part + 1) * Every::STRIP - 1],
-        Every::Line if scan != Scan::Global => [part; 2],
+        Every::Strip if scan != ScanOrder::Global => [part * Every::STRIP, (part + 1) * Every::STRIP - 1],
+        Every::Line if scan != ScanOrder::Global => [part; 2],
         _ => [0, u32::MAX],
     };
-    let sideways = matches!(scan, Scan::Right | Scan::Left);
+    let sideways = matches!(scan, ScanOrder::Right | ScanOrder::Left);
     let whole = [0, u32::MAX];
     let [xs, ys] = if sideways { [[from, to], whole] } else { [whole, [from, to]] };
     let rows = Rows::lit(display, field);

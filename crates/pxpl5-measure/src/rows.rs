@@ -3,7 +3,7 @@
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
 
-/// The first row that a display period lights, and the distance to the next row.
+/// The rows that a display period lights: the first row, and the distance from each row to the next row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Rows {
     pub(crate) first: u32,

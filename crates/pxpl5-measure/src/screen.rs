@@ -5,7 +5,7 @@ use pxpl5_run::{FinalResults, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// Contents of a run's first surface over time. The contents cover only arrivals that were added and not discarded.
+/// Contents of a run's first surface over time, from the arrivals of regions that were added and not discarded.
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
@@ -13,11 +13,12 @@ pub(crate) struct Screen {
     swaps: Vec<(PeriodNumber, u64)>,
 }
 
-/// Arrivals of regions in one buffer, with one division of the screen into regions. The arrivals are sorted by region
+/// Arrivals of regions in one buffer, for one division of the screen into regions. The arrivals are sorted by region
 /// and time.
 #[derive(Debug)]
 struct Cut {
-    /// Copy target of the first arrival. The region and the picture in this target are ignored.
+    /// Copy target of the first arrival, which identifies the buffer and the division of the screen. The region and the
+    /// picture in this target are ignored.
     of: CopyTarget,
     regions: Vec<Vec<(Time, PictureNumber)>>,
 }
@@ -27,7 +28,7 @@ impl Cut {
         (target.buffer, target.lines, target.grid)
     }
 
-    /// Returns the newest arrival in a pixel's region up to the instant `at`.
+    /// Returns the newest arrival, up to the instant `at`, of the region that contains a pixel.
     fn newest(&self, x: u32, y: u32, at: Time) -> Option<(Time, CopyTarget)> {
         let row = match self.of.lines {
             Lines::Frame => y,
@@ -42,7 +43,8 @@ impl Cut {
 }
 
 impl Screen {
-    /// Adds the arrivals since the last call, and replaces the swaps by the swaps that the run still has in memory.
+    /// Adds the arrivals of regions since the last call. Replaces the list of swaps by the swaps that the run still has
+    /// in memory.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let arrived = run.arrivals.iter().filter(|arrival| arrival.surface == SurfaceId(0));
         arrived.for_each(|arrival| self.arrive(arrival));
@@ -62,7 +64,7 @@ impl Screen {
         }
     }
 
-    /// Discards arrivals whose pixels had been overwritten by later arrivals at `instant`.
+    /// Discards the arrivals of regions whose pixels had been overwritten by later arrivals at `instant`.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         for region in self.cuts.iter_mut().flat_map(|cut| &mut cut.regions) {
             let there = region.partition_point(|arrived| arrived.0 <= instant);
@@ -70,7 +72,7 @@ impl Screen {
         }
     }
 
-    /// Returns the targets of all arrivals that have not been discarded.
+    /// Returns the copy targets (buffer, region and picture) of all arrivals that have not been discarded.
     pub(crate) fn targets(&self) -> impl Iterator<Item = CopyTarget> {
         self.cuts.iter().flat_map(|cut| {
             let regions = (0..).map(RegionId).zip(&cut.regions);

@@ -19,7 +19,7 @@ pub(crate) enum Seen {
     Nothing,
     /// The pixel belongs to a picture that was not complete in time.
     Incomplete,
-    /// The pixel belongs to a complete picture that was shown before the window.
+    /// The pixel belongs to a complete picture that was shown before the result window.
     Before,
     /// The pixel belongs to a picture shown within the result window, complete and in time.
     Complete(Drawn),
@@ -33,9 +33,9 @@ pub(crate) struct Shown {
     /// Pictures that were complete in time, each with the first period that showed it. `None` for pictures during the
     /// warm-up.
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
-    /// Number of pictures added so far.
+    /// Number of pictures of the run that were added so far.
     pictures: usize,
-    /// The result window. Pictures outside the result window are not evaluated.
+    /// The result window. The pixels of pictures outside the result window are not evaluated.
     ///
     /// `None` for pipelines without due pictures. All their pictures are evaluated, each until the next picture covers
     /// it.
@@ -73,7 +73,7 @@ impl Shown {
         shown
     }
 
-    /// Adds the pictures, arrivals and views of the run that can no longer change.
+    /// Adds the pictures, the arrivals of regions and the views of the run that can no longer change.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>, head: &HeadViews) {
         self.screen.take(run);
         self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));
@@ -113,7 +113,7 @@ impl Shown {
         self.screen.targets().count() + self.views.len() + self.complete.len() + self.moments.len() + of_faces
     }
 
-    /// Returns the older views that are visible at `instant` or may become visible later.
+    /// Returns the views before the newest view that are visible at `instant` or may become visible later.
     ///
     /// For display memories, these views are all views that no later view covers.
     fn still_seen(&self, run: &FinalResults<'_>, instant: Time) -> BTreeSet<ViewNumber> {
@@ -177,7 +177,8 @@ impl Shown {
         run.pipeline.source(run.record, target, &self.views, run.aim)
     }
 
-    /// Returns the source of a pixel that is lit at `at`, or `None` before the first arrival.
+    /// Returns the view or views from which a pixel was drawn that is lit at `at`. Returns `None` before the first
+    /// region has arrived.
     pub(crate) fn drawn(
         &self,
         run: &FinalResults<'_>,

@@ -1,16 +1,17 @@
 //! Latency from a step (translation) of the head until the content of each display memory is lit.
 
-use address_recalculation::{AddressRecalculationPipeline, Scan};
+use address_recalculation::{AddressRecalculationPipeline, FaceScan};
 use pxpl5_run::{FaceHistory, FinalResults, Samples, ShownUpdate, Statistics};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 
-/// Names of the parts of the latency of a step, in the order of time.
+/// Names of the parts of the latency after a step (translation) of the head, in the order of time.
 const PARTS: [&str; 4] = ["before_due", "draw", "age", "scan"];
 
-/// A streaming observer of the latencies of a step of the head.
+/// A streaming observer of the latencies from a step (translation) of the head until the content of each display memory
+/// is lit.
 ///
-/// The observer adds one latency for each memory and each display period after the memory's first update.
+/// The observer adds one latency for each display memory and each display period after the memory's first update.
 #[derive(Debug, Default)]
 pub(crate) struct StepSum {
     next: PeriodNumber,
@@ -20,7 +21,8 @@ pub(crate) struct StepSum {
 /// Latencies of the content of one display memory, in milliseconds.
 #[derive(Debug, Default)]
 struct OfMemory {
-    /// The period that first shows the newest update, and the instant at which the update's latency begins.
+    /// The display period that first shows the display memory's newest update, and the instant at which the latency of
+    /// this update begins.
     begin: Option<(PeriodNumber, Time)>,
     total: Samples,
     parts: [f64; PARTS.len()],
@@ -29,7 +31,8 @@ struct OfMemory {
 /// Latencies from a step (translation) of the head until the content of one display memory is lit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Steps {
-    /// Latency over all periods since the first update, in milliseconds. `None` before the first update.
+    /// Latency over all display periods since the display memory's first update, in milliseconds. `None` before the
+    /// first update.
     pub(crate) latency_ms: Option<Statistics>,
     /// Means of the parts of the latency, in milliseconds.
     pub(crate) parts_ms: Vec<(&'static str, f64)>,
@@ -56,15 +59,15 @@ impl StepSum {
         self.next = run.until;
     }
 
-    /// Returns the results of all memories, starting with the memory that is drawn most often.
+    /// Returns the results of all display memories, starting with the memory that is drawn most often.
     pub(crate) fn result(self) -> Vec<Steps> {
         self.memories.into_iter().map(OfMemory::result).collect()
     }
 }
 
 impl OfMemory {
-    /// Adds the latency of the memory's content at the middle of a field.
-    fn push(&mut self, run: &FinalResults<'_>, scan: &Scan, shown: &ShownUpdate, field: PeriodNumber) {
+    /// Adds the latency of a display memory's content to the results, measured when the middle of a field is lit.
+    fn push(&mut self, run: &FinalResults<'_>, scan: &FaceScan, shown: &ShownUpdate, field: PeriodNumber) {
         let due = shown.note.due_at;
         // The measurement is looked up once for each update, because a long run may discard the view of an update that
         // is shown for many fields.
@@ -93,7 +96,7 @@ impl OfMemory {
     }
 }
 
-/// Returns the instant at which the pose for a memory's picture was measured. `None` without a tracked head.
+/// Returns the instant at which the pose for a display memory's picture was measured. `None` without a tracked head.
 fn measured_at(run: &FinalResults<'_>, shown: &ShownUpdate) -> Option<Time> {
     let sampled = run.head?.sampled();
     sampled.iter().find(|sampled| sampled.number == shown.note.view)?.measured_at
@@ -101,7 +104,7 @@ fn measured_at(run: &FinalResults<'_>, shown: &ShownUpdate) -> Option<Time> {
 
 /// Returns the time between two instants in milliseconds.
 ///
-/// The result is negative if a view uses a report that arrived after its memory was due.
+/// The result is negative if a view uses a tracker report that arrived after the view's display memory was due.
 fn between_ms(from: Time, to: Time) -> f64 {
     (to.0 as f64 - from.0 as f64) * 1e-9
 }

@@ -16,7 +16,7 @@ pub(crate) struct Step {
     pub(crate) board: Option<Board>,
     pub(crate) from: Time,
     pub(crate) to: Time,
-    /// Text that describes the work that the picture waited for.
+    /// Description of the work that the picture waited for, as text.
     pub(crate) what: String,
 }
 
@@ -41,8 +41,9 @@ struct StageWork {
 /// cycles. A region's transfer takes 780 us (TR94).
 const NEAR: Span = Span::from_us(20);
 
-/// A display port counts as busy if it was free for less than 1/`SLACK` of the time of a region's transfer (assumed).
-/// Without this rule, the token would count as the cause whenever port and token become free at nearly the same time.
+/// A display port counts as busy if it was free for less than 1/`SLACK` of the time that a region's transfer takes
+/// (assumed). Without this rule, the token would count as the cause whenever port and token become free at nearly the
+/// same time.
 const SLACK: u64 = 4;
 
 /// Number of earlier arrivals among which the cause of a wait is searched: several pictures of 40 regions (assumed).
@@ -51,7 +52,8 @@ const ARRIVALS_SEARCHED: usize = 512;
 /// Largest number of steps for one picture. Time beyond these steps belongs to [`Resource::Other`].
 const MOST_STEPS: usize = 20_000;
 
-/// The work of a run, sorted by end time, from the earliest work that the followed pictures can have waited for.
+/// The work of a run, sorted by end time. The list begins with the earliest work that the followed pictures can have
+/// waited for.
 pub(crate) struct Trail<'a> {
     record: &'a Record,
     message: Span,
@@ -79,7 +81,7 @@ enum At {
     Drawn(usize),
     /// At the end of a stage on a board, or within it.
     Stage(usize),
-    /// At the start of the latency.
+    /// At the start of the latency, where the path ends.
     Begin,
 }
 
@@ -91,7 +93,7 @@ struct Way {
 }
 
 impl Way {
-    /// Assigns the time from `from` to the current position (`cursor`) to a resource.
+    /// Assigns the time from `from` to the current position (`cursor`) to a resource, as a new step of the path.
     fn charge(&mut self, resource: Resource, board: Option<Board>, from: Time, what: impl FnOnce() -> String) {
         let from = from.max(self.floor);
         if from >= self.cursor {
@@ -146,7 +148,7 @@ impl<'a> Trail<'a> {
         trail
     }
 
-    /// Joins the start and the end of each stage on each board.
+    /// Collects the stages of each board. Each stage is joined from the record of its start and the record of its end.
     fn take_marks(&mut self, earliest: Time) {
         let mut open: BTreeMap<(NodeId, PictureNumber, Option<SurfaceId>, Stage), Time> = BTreeMap::new();
         let mut ends: BTreeMap<(PictureNumber, Option<SurfaceId>), Time> = BTreeMap::new();
@@ -218,12 +220,12 @@ impl<'a> Trail<'a> {
         way.charge(Resource::Retrace, Some(Board::Display(0)), from, || "retrace".to_owned());
     }
 
-    /// Returns the number of regions that had arrived by an instant.
+    /// Returns the number of regions that had arrived at displays by an instant.
     fn arrivals_by(&self, at: Time) -> usize {
         self.arrivals.partition_point(|arrival| arrival.last_part_at <= at)
     }
 
-    /// Assigns the time of a region's transfer to a display. Returns the work whose end let the transfer begin.
+    /// Assigns the time of a region's transfer to resources. Returns the earlier work whose end let the transfer begin.
     fn before_arrival(&self, way: &mut Way, place: usize) -> At {
         let arrival = self.arrivals[place];
         let begin = arrival.begins_at(self.message);
@@ -279,14 +281,16 @@ impl<'a> Trail<'a> {
         self.to_arrival(way, arrived)
     }
 
-    /// Continues at an earlier arrival. The time between the two positions is assigned to messages.
+    /// Continues at an earlier arrival of a region. The time between the two positions is assigned to
+    /// [`Resource::Messages`].
     fn to_arrival(&self, way: &mut Way, place: Option<usize>) -> At {
         let Some(place) = place else { return At::Begin };
         way.messages(self.arrivals[place].last_part_at);
         At::Arrival(place)
     }
 
-    /// Assigns the time of a region's transfer. Time beyond the minimum for the pixels is a wait for ring channels.
+    /// Assigns the time of a region's transfer to resources. Time beyond the minimum for the pixels is a wait for ring
+    /// channels.
     fn charge_copy(&self, way: &mut Way, arrival: &Arrival, drawn: Option<usize>) {
         let begin = arrival.begins_at(self.message);
         let board = Some(self.record.ports().board(arrival.target.frame_buffer));
@@ -325,7 +329,8 @@ impl<'a> Trail<'a> {
         self.arrivals[first..end].iter().rposition(|arrival| is_wanted(arrival)).map(|found| first + found)
     }
 
-    /// Assigns the time of a region's commands. Returns the work whose end let these commands begin.
+    /// Assigns the time of a region's commands to resources. Returns the earlier work whose end let these commands
+    /// begin.
     ///
     /// The returned work is the previous region on the same renderer, or the start of RENDER.
     fn before_drawn(&self, way: &mut Way, place: usize) -> At {
@@ -397,7 +402,8 @@ impl<'a> Trail<'a> {
         self.stages.iter().filter(is_of).collect()
     }
 
-    /// Continues at the last TRANSFORM of a surface. RENDER began when the last graphics processor had ended TRANSFORM.
+    /// Continues at the last TRANSFORM of a surface. The last TRANSFORM counts, because RENDER begins when all graphics
+    /// processors have ended TRANSFORM.
     fn to_transform(&self, way: &mut Way, picture: PictureNumber, surface: Option<SurfaceId>) -> At {
         let is_of = |work: &StageWork| {
             work.stage == Stage::Transform
@@ -413,7 +419,7 @@ impl<'a> Trail<'a> {
         At::Stage(found)
     }
 
-    /// Assigns the time of a stage. Returns the work whose end let the stage begin.
+    /// Assigns the time of a stage to resources. Returns the earlier work whose end let the stage begin.
     fn before_stage(&self, way: &mut Way, place: usize) -> At {
         let work = self.stages[place];
         let board = self.record.ports().board(work.node);

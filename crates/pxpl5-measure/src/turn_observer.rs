@@ -24,7 +24,8 @@ pub(crate) struct RotationLatencySum {
     parts: Vec<Samples>,
 }
 
-/// Results of a [`RotationLatencySum`]. Empty without a tracker, or if the display is not an address recalculation pipeline.
+/// Rotation latencies that a [`RotationLatencySum`] has collected. Empty without a tracker, or if the display is not an
+/// address recalculation pipeline.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns {
     pub(crate) latency_ms: Option<Statistics>,

@@ -14,20 +14,20 @@ pub struct Utilisation {
     pub of_ms: f64,
     /// Share of time for which the host's CPU was busy.
     pub host: f64,
-    /// Shares of the graphics processors, including the master.
+    /// Shares of time for which the graphics processors were busy, including the master.
     pub gps: GpUtilisation,
-    /// Shares of the renderers' controllers.
+    /// Shares of time for which the renderers' controllers were busy.
     pub renderers: RendererUtilisation,
-    /// Share of the ring's channels, and the ring's data rate.
+    /// Share of time for which the ring's channels were occupied, and the ring's data rate.
     pub ring: RingUtilisation,
-    /// Shares of the ring ports of displays, in the order of their boards.
+    /// Shares of time for which the ring ports of displays were busy, in the order of the displays.
     pub ports: PortUtilisation,
 }
 
 /// Shares of time for which the boards of one kind were busy, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shares {
-    /// Mean over all boards.
+    /// Mean share over all boards.
     pub mean: f64,
     /// Share of the busiest board.
     pub max: f64,
@@ -38,8 +38,8 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// Returns the shares of `time` that the spans take, one span for each board. Returns `None` without boards or
-    /// time.
+    /// Returns the shares of `time` for which boards were busy, from the busy span of each board. Returns `None`
+    /// without boards or time.
     #[must_use]
     pub fn of(spans: impl IntoIterator<Item = Span>, time: Time) -> Option<Self> {
         let shares: Vec<f64> = spans.into_iter().map(|span| share(span, time)).collect();
@@ -69,11 +69,11 @@ pub struct GpUtilisation {
 /// Shares of time of the renderers' controllers, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RendererUtilisation {
-    /// Share of time in which the controller executed commands.
+    /// Share of time in which a renderer's controller executed commands.
     pub executing: Shares,
-    /// Mean share of time in which a copy command held the controller.
+    /// Mean share of time in which a copy command occupied a renderer's controller.
     pub copying: f64,
-    /// Mean share of time in which the controller waited for commands.
+    /// Mean share of time in which a renderer's controller waited for commands.
     pub waiting: f64,
 }
 
@@ -82,47 +82,47 @@ pub struct RendererUtilisation {
 pub struct RingUtilisation {
     /// Share of time in which a channel was occupied, including overhead and stalls.
     pub channels: Shares,
-    /// Number of message words per second, without overhead.
+    /// Number of words per second that the ring carried in messages, without overhead.
     pub words_per_second: f64,
-    /// Number of words per second that all channels could carry.
+    /// Number of words per second that all channels of the ring together could carry.
     pub capacity: f64,
 }
 
 /// Shares of time for which the ring ports of displays were busy, 0 to 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PortUtilisation {
-    /// Statistics over all ports.
+    /// Mean and maximum of the busy shares over all ports.
     pub busy: Shares,
-    /// Share of each port.
+    /// Share of time for which each port was busy.
     pub each: Vec<PortShare>,
 }
 
 /// Share of time for which one port was busy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PortShare {
-    /// Title of the surface behind the port, or the display's name with the port's index.
+    /// Title of the surface whose pixels the port receives, or the display's name with the port's index.
     pub port: String,
     /// Share of time in which messages arrived, 0 to 1.
     pub busy: f64,
 }
 
 impl Utilisation {
-    /// Returns the shares of a finished run. Returns `None` for a machine that has not run.
+    /// Returns the busy shares of the boards over a finished run. Returns `None` for a machine that has not run.
     #[must_use]
     pub fn of(record: &Record) -> Option<Self> {
         Self::until(record, record.elapsed(), record.processors_used())
     }
 
-    /// Returns the shares of a run up to now. Returns `None` at time zero.
+    /// Returns the busy shares of the boards from the start of a run up to now. Returns `None` at time zero.
     ///
-    /// A message on the ring counts when it ends.
+    /// The time of a message on the ring is added when the message ends.
     #[must_use]
     pub fn so_far(run: &Stepper) -> Option<Self> {
         Self::until(run.record(), run.now(), &run.machine().processors_used(run.now()))
     }
 
-    /// Returns the shares from the start of the machine to an instant. `used` is the CPU time of the host and of each
-    /// graphics processor up to this instant.
+    /// Returns the busy shares of the boards from the start of the machine to an instant. `used` is the CPU time of the
+    /// host and of each graphics processor up to this instant.
     fn until(record: &Record, time: Time, used: &[GpUse]) -> Option<Self> {
         let (host, gps) = used.split_first()?;
         let mean = |spans: &mut dyn Iterator<Item = Span>| mean_share(spans, time);

@@ -345,7 +345,7 @@ fn an_ideal_machine_that_is_reprojected_at_every_line_is_the_ideal_but_for_what_
 fn a_panel_that_is_global_takes_one_pose_a_period() {
     let config = PanelConfig { scan: 1, ..PanelConfig::PAPERS };
     let display = config.build(&[pxpl5_wire::NodeId(1)]).expect("it can be built");
-    assert_eq!(display.light().scan, pxpl5_wire::display::Scan::Global);
+    assert_eq!(display.light().scan, pxpl5_wire::display::ScanOrder::Global);
     let outcome = on_panel(config, 1.0);
     for every in [Every::Field, Every::Strip, Every::Line] {
         let eye = EyeReport::shown(&outcome, device(Warp::Rotation, every)).and_then(|eye| eye.reprojection);

@@ -59,7 +59,7 @@ pub(crate) fn reals1<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyR
     Ok(array.call_method1("astype", ("float64",))?.extract()?)
 }
 
-/// Returns a value as a NumPy array of any numeric type.
+/// Converts a value to a NumPy array, and checks that the elements are numbers of any type.
 fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let numpy = value.py().import("numpy")?;
     let array = numpy.call_method1("asarray", (value,)).map_err(|error| {
@@ -75,12 +75,13 @@ fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Py
     }
 }
 
-/// Returns the letter of NumPy for the kind of an array's elements, such as `f` for real numbers.
+/// Returns the letter with which NumPy names the kind of an array's elements, such as `f` for real numbers.
 fn kind(array: &Bound<'_, PyAny>) -> PyResult<char> {
     array.getattr("dtype")?.getattr("kind")?.extract()
 }
 
-/// Returns an array with two dimensions. An empty array of any shape becomes an array without rows.
+/// Checks that an array has two dimensions and the given number of columns. An empty array of one dimension becomes an
+/// array without rows.
 fn as_rows<'py>(name: &str, array: &Bound<'py, PyAny>, columns: usize) -> PyResult<Bound<'py, PyAny>> {
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
     match shape[..] {
@@ -112,7 +113,7 @@ impl<'py> FromPyObject<'_, 'py> for Count {
 }
 
 impl Count {
-    /// Returns the number as `u32`. A greater number becomes the greatest `u32`, which no picture or slice has.
+    /// Returns the number as `u32`. A greater number becomes the greatest `u32`, an index that no picture or slice has.
     pub(crate) fn small(self) -> u32 {
         u32::try_from(self.0).unwrap_or(u32::MAX)
     }

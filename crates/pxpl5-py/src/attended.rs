@@ -1,5 +1,5 @@
-//! Execution of long work on a separate thread without the interpreter's lock. Meanwhile the calling thread reports
-//! progress and reacts to Ctrl-C.
+//! Execution of long work on a separate thread without the interpreter's lock. During the work, the calling thread
+//! reports progress and reacts to Ctrl-C.
 
 use crate::errors::failed_run;
 use pyo3::prelude::*;
@@ -43,10 +43,10 @@ impl Progress {
 pub(crate) const LOOK: Duration = Duration::from_millis(50);
 
 /// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps.
-/// The callback is called at most twenty times a second, and once at the end.
+/// The callback is called at most twenty times a second, and only when the progress has changed.
 ///
 /// Ctrl-C or an exception of the callback asks the work to stop. If `waits` is true, the exception is raised after the
-/// work has stopped. If `waits` is false, the exception is raised at once, and the result of the work is discarded.
+/// work has stopped. If `waits` is false, the exception is raised immediately, and the result of the work is discarded.
 ///
 /// # Errors
 ///

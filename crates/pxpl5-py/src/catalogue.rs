@@ -9,15 +9,15 @@ use pythonize::pythonize;
 use serde_json::json;
 use std::collections::BTreeMap;
 
-/// Converts a serializable value of the library to a Python object. A number that was not measured becomes None, as in
-/// JSON.
+/// Converts a serializable value of the library to a Python object. A number that was not measured becomes None,
+/// because JSON has null for such a number.
 pub(crate) fn python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
     // JSON has no NaN: a number without a finite value becomes null.
     let value = serde_json::to_value(value).map_err(wrong_setting)?;
     Ok(pythonize(py, &value)?)
 }
 
-/// Returns a number from Python. An integer stays an integer.
+/// Converts a Python number to the value of a setting. An integer stays an integer.
 ///
 /// # Errors
 ///
@@ -39,9 +39,10 @@ pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
     PRESETS.iter().map(|preset| (preset.name, preset.about)).collect()
 }
 
-/// Returns the boards and parameters of a built-in machine after ``changes``, which maps paths of parameters to values.
-/// The result has ``n_gps``, ``n_renderers``, ``warnings`` and a list of parameters. Each parameter is a dictionary
-/// with path, value, unit, provenance (where the number comes from), low, high, source and read_only.
+/// Returns the boards and parameters of a built-in machine in which some parameters are changed. ``changes`` maps the
+/// paths of these parameters to their new values. The result has ``n_gps``, ``n_renderers``, ``warnings`` and a list of
+/// parameters. Each parameter is a dictionary with path, value, unit, provenance (where the number comes from), low,
+/// high, source and read_only.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid preset, path or value.
 #[pyfunction]

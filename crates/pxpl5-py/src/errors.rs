@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use std::fmt::Display;
 
-/// Returns the exception called `name` of `pxpl5._errors`, with the message of an error.
+/// Returns the exception with the class name `name` from `pxpl5._errors`. The exception has the message of an error.
 pub(crate) fn raised(name: &str, error: &impl Display) -> PyErr {
     Python::attach(|py| {
         let class = py.import("pxpl5._errors").and_then(|module| module.getattr(name));

@@ -15,7 +15,7 @@ use pxpl5::device::PixelWorker;
 use pxpl5::firmware::Shading;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
-    Experiment as Native, ExperimentError, Host, Keep, PeriodNumber, Pixels, Plan, PolicyPipeline, RegionPolicy,
+    Experiment as Native, ExperimentError, Host, Keep, Level, PeriodNumber, Pixels, Plan, PolicyPipeline, RegionPolicy,
     Results, SurfaceId, Workstation, levels, registry, what_if,
 };
 use pyo3::prelude::*;
@@ -33,8 +33,8 @@ pub(crate) struct Experiment {
 
 #[pymethods]
 impl Experiment {
-    /// Creates an experiment from settings. If ``scene``, ``motion`` or ``policy`` is given, it replaces the scene,
-    /// motion or policy in the settings.
+    /// Creates an experiment from settings. If ``scene``, ``motion`` or ``policy`` is given, this argument replaces the
+    /// scene, motion or policy in the settings.
     ///
     /// Raises :class:`pxpl5.SettingError` for the first invalid or missing setting, and for a scene that cannot be
     /// loaded.
@@ -75,7 +75,7 @@ impl Experiment {
 
     /// Returns a hash of all settings and inputs on which the trace of the run depends.
     ///
-    /// Raises any exception of a Python function that the experiment calls.
+    /// Raises any exception that a Python function of the experiment raises, such as the function of a motion.
     fn config_hash(&self, py: Python<'_>) -> PyResult<String> {
         let hash = py.detach(|| self.native.config_hash().to_string());
         self.functions.check()?;
@@ -83,7 +83,7 @@ impl Experiment {
     }
 
     /// Returns warnings about results that no source supports. The warnings concern parameters outside their plausible
-    /// range, and work at the cycle level that no code executes.
+    /// range, and runs at the cycle level in which some times do not come from executed code.
     fn warnings(&self) -> Vec<String> {
         self.native.warnings()
     }
@@ -132,7 +132,7 @@ impl Experiment {
 
     /// Returns an iterator over the pictures of a run, one for each of ``fields`` display periods from ``first`` on. A
     /// picture shows the screen at the end of its period. ``surface`` is the number of a surface, or None for all
-    /// surfaces side by side. The experiment is run again for this, with pixels.
+    /// surfaces side by side. The experiment runs again with pixels to compute the pictures.
     ///
     /// Raises :class:`pxpl5.SettingError` for a surface or a number of fields that does not exist.
     fn frames(&self, surface: Option<u16>, first: u64, fields: u64) -> PyResult<Frames> {
@@ -165,8 +165,8 @@ impl Experiment {
         self.native.length()
     }
 
-    /// Returns the effect of 10 % more of each resource of the machine, as dictionaries. The experiment is run again
-    /// for each resource, unless formulas give the pipeline's times.
+    /// Returns the effect of 10 % more of each resource of the machine, as dictionaries. The experiment runs again for
+    /// each resource, unless formulas give the times of the pipeline.
     ///
     /// Raises the same exceptions as :meth:`run`.
     fn what_if<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -180,17 +180,25 @@ impl Experiment {
     }
 
     /// Returns the measured quantities by name, at the experiment's own level of modelling, which may be the analytic
-    /// level. The value is None for a quantity that the run does not have.
+    /// level. The value is None for a quantity that the run does not define, such as the latency of a run without
+    /// complete pictures.
     ///
     /// Raises the same exceptions as :meth:`run`.
     fn measure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let native = self.native.clone().pixels(pxpl5::Pixels::Off).host(Workstation::with_threads(1));
-        let result = py.detach(|| match self.plan.level {
-            pxpl5::Level::Analytic => levels::summarise(&registry(), &native).map(Results::of_closed_form),
-            _ => native.run().map(Results::of_run),
+        let (native, functions) = (self.native.clone().pixels(Pixels::Off), self.functions.clone());
+        let is_analytic = self.plan.level == Level::Analytic;
+        // Formulas do not check for a stop, so Ctrl-C does not wait for their result.
+        let result = attended(py, None, !is_analytic, move |watch| {
+            let workstation = Workstation::with_threads(1);
+            if !is_analytic {
+                return run(&native, workstation, functions, watch).map(Results::of_run);
+            }
+            let host = StoppableHost { workstation, watch, functions };
+            let summary = levels::summarise(&registry(), &native.host(host)).map_err(Box::new);
+            summary.map(Results::of_closed_form)
         });
         self.functions.check()?;
-        let results = result.map_err(|error| exception(py, error, &self.plan.measure))?;
+        let results = result?.map_err(|error| exception(py, *error, &self.plan.measure))?;
         let measured = PyDict::new(py);
         for measure in &self.plan.measure {
             measured.set_item(measure.name(), measure.of(&results))?;
@@ -200,7 +208,7 @@ impl Experiment {
 }
 
 impl Experiment {
-    /// Returns the experiment on a host that Python can stop, and the flag that stops the host.
+    /// Returns the experiment with a host computer that Python can stop, and the flag with which Python stops the run.
     fn on_host(&self, workstation: Workstation) -> (Native, Arc<Progress>) {
         let watch = Arc::new(Progress::default());
         let host = StoppableHost { workstation, watch: Arc::clone(&watch), functions: self.functions.clone() };
@@ -217,7 +225,8 @@ impl Experiment {
     }
 }
 
-/// Greatest number of fields of a run that checks for Ctrl-C in every field.
+/// Greatest number of fields of a run that pauses in every field, so that progress is reported and Ctrl-C takes effect
+/// soon. A longer run does not pause.
 const LOOKED_AT: u64 = 20_000;
 
 fn run(

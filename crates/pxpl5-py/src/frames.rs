@@ -7,25 +7,25 @@ use crate::picture::Picture;
 use crate::stepper::wait;
 use image::RgbImage;
 use pxpl5::ExperimentError;
-use pxpl5::views::{Film, FilmError};
+use pxpl5::views::{Film, PictureError};
 use pyo3::prelude::*;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Greatest number of pictures that are computed before Python takes them.
+/// Greatest number of computed pictures that wait until Python reads them.
 const WAITING: usize = 4;
 
 /// An iterator over the pictures of a run, one for each display period. A separate thread runs the experiment.
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Frames {
-    pictures: Mutex<Option<Receiver<Result<RgbImage, FilmError>>>>,
+    pictures: Mutex<Option<Receiver<Result<RgbImage, PictureError>>>>,
     progress: Arc<Progress>,
     checks: PythonFunctions,
 }
 
 impl Frames {
-    /// Starts the run of a film.
+    /// Starts a thread that runs the experiment of a film and sends the pictures to this iterator.
     pub(crate) fn start(film: Film, progress: Arc<Progress>, checks: PythonFunctions) -> PyResult<Self> {
         let (sender, pictures) = sync_channel(WAITING);
         let thread = std::thread::Builder::new().name("pxpl5-frames".to_owned()).stack_size(STACK_BYTES);
@@ -54,7 +54,10 @@ impl Frames {
         };
         let mut pictures = pictures;
         loop {
-            match py.detach(|| next(&mut pictures)) {
+            let found = py.detach(|| next(&mut pictures));
+            // Ctrl-C drops the receiver, which ends the run. A caller such as `list` checks for Ctrl-C nowhere else.
+            py.check_signals().inspect_err(|_| self.progress.stop())?;
+            match found {
                 Ok(Ok(picture)) => {
                     // A motion or a policy that has raised has no pictures.
                     self.checks.check().inspect_err(|_| self.progress.stop())?;
@@ -65,8 +68,7 @@ impl Frames {
                     self.checks.check()?;
                     return Err(exception(error));
                 }
-                // Ctrl-C drops the receiver. The run ends when it has the next picture to send.
-                Err(RecvTimeoutError::Timeout) => py.check_signals().inspect_err(|_| self.progress.stop())?,
+                Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => {
                     self.checks.check()?;
                     return Ok(None);
@@ -103,9 +105,9 @@ pub(crate) fn film_bytes(
 }
 
 /// Converts an error of a film to an exception.
-fn exception(error: FilmError) -> PyErr {
+fn exception(error: PictureError) -> PyErr {
     match error {
-        FilmError::Run(_) | FilmError::Experiment(ExperimentError::Run { .. }) => failed_run(error),
+        PictureError::Run(_) | PictureError::Experiment(ExperimentError::Run { .. }) => failed_run(error),
         error => wrong_setting(error),
     }
 }

@@ -14,13 +14,13 @@ pub(crate) struct PythonFunctions {
 }
 
 impl PythonFunctions {
-    /// Raises the exception that a function has raised, if there is one.
+    /// Raises the exception that one of the Python functions has raised during the run, if there is one.
     pub(crate) fn check(&self) -> PyResult<()> {
         self.motion.iter().try_for_each(|called| called.check())?;
         self.policy.iter().try_for_each(|asked| asked.check())
     }
 
-    /// Returns true if a function has raised an exception that is not yet reported.
+    /// Returns true if one of the Python functions has raised an exception that is not yet reported.
     pub(crate) fn has_raised(&self) -> bool {
         self.motion.as_ref().is_some_and(|called| called.has_raised())
             || self.policy.as_ref().is_some_and(|asked| asked.has_raised())

@@ -2,19 +2,21 @@
 
 use crate::attended::attended;
 use crate::catalogue::python;
-use crate::errors::{failed_run, wrong_setting};
+use crate::errors::{failed_run, failed_sweep, wrong_setting};
 use crate::settings::Settings;
-use pxpl5::compare::CompareQuery;
+use pxpl5::Statistics;
+use pxpl5::compare::{CONFIDENCE, CompareQuery, MAX_SEEDS, Precision, UntilPrecise};
 use pxpl5::figures::{Bench, FIGURES, FigureRow, run_all_with};
 use pxpl5::lab::diff::Changed;
 use pxpl5::levels::{LevelQuery, LevelRecord, compare_with};
 use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery, Values};
 use pxpl5::readings::run as rank;
 use pxpl5::rig::{PASSES, Rig};
-use pxpl5::tracking::rig::{Latency, Side};
-use pxpl5::{Goal, Level, TestScene};
+use pxpl5::tracking::rig::Side;
+use pxpl5::{Goal, Level, StudyError, TestScene};
 use pyo3::prelude::*;
 use serde_json::json;
+use std::path::PathBuf;
 
 /// Returns the level of modelling called `name`, or raises an exception for an unknown name.
 fn level(name: &str) -> PyResult<Level> {
@@ -49,13 +51,13 @@ pub(crate) fn figure<'py>(
     let measured =
         attended(py, progress, false, move |_| Bench::new(level).measure(figure.id).map_err(|e| e.to_string()))?;
     let measured = measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?;
-    python(py, &row(&FigureRow::new(figure, measured)))
+    python(py, &row(&figure.row(measured)))
 }
 
 fn row(row: &FigureRow) -> serde_json::Value {
     let mut value = serde_json::to_value(row).unwrap_or_default();
     if let Some(object) = value.as_object_mut() {
-        object.insert("misses".to_owned(), row.misses().into());
+        object.insert("misses".to_owned(), (!row.is_met).into());
         let [low, high] = row.interval.map_or([None, None], |[low, high]| [Some(low), Some(high)]);
         object.insert("low".to_owned(), low.into());
         object.insert("high".to_owned(), high.into());
@@ -82,32 +84,59 @@ pub(crate) fn figures<'py>(
     python(py, &rows)
 }
 
-/// Runs all pipelines with the same settings and compares them. Returns a dictionary whose `pipelines` has one row for
-/// each pipeline.
+/// Runs all pipelines with the same settings and compares the results. Returns a dictionary whose `pipelines` has one
+/// row for each pipeline.
 ///
-/// Raises :class:`pxpl5.SettingError` for an invalid setting.
+/// ``confidence`` is that of all intervals. With ``until_precision``, such as 10% or 0.2px, a row gets up to
+/// ``max_seeds`` seeds. Finished rows are stored in ``folder``. If ``resume`` is true, the rows in the folder are kept.
+///
+/// Raises :class:`pxpl5.SettingError` for an invalid setting, and :class:`pxpl5.SweepError` if the folder cannot be
+/// used, is in use, or contains another comparison.
 #[pyfunction]
-#[pyo3(signature = (settings, only, seeds, limits, progress = None))]
+#[pyo3(signature = (settings, only, seeds, *, limits = false, causes = false, predictors = false, confidence = None, until_precision = None, max_seeds = None, folder = None, resume = false, progress = None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn compare<'py>(
     py: Python<'py>,
     settings: &Settings,
     only: Vec<String>,
     seeds: Vec<u64>,
     limits: bool,
+    causes: bool,
+    predictors: bool,
+    confidence: Option<f64>,
+    until_precision: Option<&str>,
+    max_seeds: Option<usize>,
+    folder: Option<PathBuf>,
+    resume: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let mut query = CompareQuery {
-        shared: settings.file.clone(),
-        only,
-        seeds,
-        limits,
-        pictures: false,
-        confidence: pxpl5::compare::CONFIDENCE,
-        until: None,
-    };
+    let width: Option<Precision> = until_precision
+        .map(str::parse)
+        .transpose()
+        .map_err(|error: pxpl5::SettingError| wrong_setting(format!("until_precision: {error}")))?;
+    let until = width.map(|width| UntilPrecise { width, max_seeds: max_seeds.unwrap_or(MAX_SEEDS) });
+    let shared = settings.file.clone();
+    let confidence = confidence.unwrap_or(CONFIDENCE);
+    let mut query =
+        CompareQuery { shared, only, seeds, limits, causes, predictors, pictures: false, confidence, until };
     query.set_length().map_err(wrong_setting)?;
-    let comparison = attended(py, progress, false, move |watch| query.run(|done, of| watch.report(done, of)))?;
-    python(py, &comparison.map_err(wrong_setting)?)
+    // With a folder, Ctrl-C waits until all runs have stopped, so that the comparison can be resumed at once. A search
+    // for the largest number of triangles cannot be stopped.
+    let waits = folder.is_some() && !limits;
+    let comparison = attended(py, progress, waits, move |watch| {
+        let store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?;
+        query.run_stoppable(store.as_ref(), &watch.stop_flag(), |done, of| watch.report(done, of), |_| {})
+    })?;
+    python(py, &comparison.map_err(wrong_study)?)
+}
+
+/// Returns the exception for an error of a comparison.
+fn wrong_study(error: StudyError) -> PyErr {
+    use StudyError::{File, OtherSettings, Unfinished};
+    match error {
+        File(_) | OtherSettings { .. } | Unfinished { .. } => failed_sweep(error),
+        error => wrong_setting(error),
+    }
 }
 
 /// Finds the largest number of triangles that a pipeline draws in time. Returns a dictionary with triangles,
@@ -115,7 +144,9 @@ pub(crate) fn compare<'py>(
 ///
 /// ``test_scene`` is full-screen, typical or None. If ``thinned`` is true, triangles of the settings' own scene are
 /// removed instead of using a test scene. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
-/// ``fields`` is the length of each run.
+/// ``first_miss`` is the smallest tried number that misses the goal. ``island`` is the largest tried number above
+/// first_miss that reaches the goal. From ``unbroken_from`` on, all numbers up to ``triangles`` were tried. ``fields``
+/// is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
@@ -168,8 +199,10 @@ pub(crate) fn limit<'py>(
 /// Finds the values of a setting with which an experiment reaches a goal. Returns a dictionary with over, goal, values,
 /// fields, least, most, reached, tried, missed_at and because.
 ///
-/// ``low`` and ``high`` are the ends of the range that is searched. Without them the range of the setting's sources is
-/// searched. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal. ``fields`` is the length of each run.
+/// ``low`` and ``high`` are the ends of the range that is searched. Without these two arguments, the search covers the
+/// range that the sources of the setting allow. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
+/// ``missed_at`` is a value that misses the goal, and ``because`` names the resource that limits the experiment with
+/// this value. ``fields`` is the length of each run.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting or range.
 #[pyfunction]
@@ -217,11 +250,11 @@ pub(crate) fn limit_over<'py>(
     python(py, &found)
 }
 
-/// Estimated number of values that a search over a setting tries: five values, and seven of a bisection. More values
-/// move the end of the progress bar.
+/// Estimated number of values that a search over a setting tries: five values, and seven of a bisection. If a search
+/// tries more values, the end of the progress bar moves.
 const VALUES: u64 = 12;
 
-/// Whole numbers below this limit are exact as real numbers.
+/// Limit below which every whole number is exact as a real number.
 const MAX_WHOLE: f64 = 1e15;
 
 /// Compares two reports, each as JSON text. Returns a dictionary with same_trace, settings, results and equal.
@@ -268,13 +301,13 @@ pub(crate) fn rig<'py>(
         rig.measure(&plan.machine, plan.pipeline.clone()).map_err(|error| error.to_string())
     })?;
     let measured = measured.map_err(wrong_setting)?;
-    let latency = |latency: &Latency| {
+    let latency = |latency: &Statistics| {
         json!({
             "n": latency.n,
-            "mean_ms": latency.mean_s * 1e3,
-            "sd_ms": latency.deviation_s * 1e3,
-            "min_ms": latency.least_s * 1e3,
-            "max_ms": latency.greatest_s * 1e3,
+            "mean_ms": latency.mean * 1e3,
+            "sd_ms": latency.sd * 1e3,
+            "min_ms": latency.min * 1e3,
+            "max_ms": latency.max * 1e3,
         })
     };
     let side = |side: &Side| {
@@ -302,8 +335,8 @@ pub(crate) fn rig<'py>(
 const LEVELS: &str = include_str!("../../pxpl5-cli/src/levels.json");
 
 /// Compares the levels of modelling by error and speed. Without ``experiments`` the result is the measurement that is
-/// recorded in the repository. Otherwise the errors are measured anew over this number of random experiments, and with
-/// ``speeds`` also the speeds. Returns the record as a dictionary.
+/// recorded in the repository. With ``experiments``, the errors are measured anew over this number of random
+/// experiments. If ``speeds`` is true, the simulation speeds are measured too. Returns the record as a dictionary.
 ///
 /// Raises :class:`pxpl5.RunError` if an experiment fails.
 #[pyfunction]
@@ -329,7 +362,9 @@ pub(crate) fn levels<'py>(
 
 /// Ranks the interpretations of the papers' open questions by their fit to the figures of Rendering Control. The best
 /// ``best`` interpretations are also simulated with events. ``seeds`` and ``frames`` are the size of the fly-throughs.
-/// Returns a dictionary with analytic, transaction, left_out, as_good and rounding_percent.
+/// Returns a dictionary with analytic, transaction, left_out, as_good and rounding_percent. ``left_out`` predicts each
+/// figure by the interpretation that fits all other figures best. ``as_good`` is the number of interpretations with the
+/// same mean error as the best, within the rounding of the printed digits.
 ///
 /// Raises :class:`pxpl5.RunError` if a figure cannot be simulated.
 #[pyfunction]

@@ -1,4 +1,4 @@
-//! The native part of the Python package `pxpl5`. It makes the Rust library `pxpl5` available to Python.
+//! The native part of the Python package `pxpl5`. This crate makes the Rust library `pxpl5` available to Python.
 //!
 //! ```text
 //!   python/pxpl5/*.py   what users import: keywords, docstrings, notebooks, progress, Dask

@@ -30,11 +30,11 @@ pub(crate) struct Motion {
     origin: Origin,
 }
 
-/// The origin of a motion, from which the module `pickle` makes the motion again.
+/// The origin of a motion, from which the Python module `pickle` rebuilds the motion.
 enum Origin {
     /// A name, which also contains all numbers of the motion.
     Name,
-    /// The text of a recording, with the columns that its reader was given and the behaviour after the last sample.
+    /// The text of a recording, with the user's names of the columns and the behaviour after the last sample.
     Text { text: Vec<u8>, columns: BTreeMap<String, String>, end: Option<String> },
     /// A Python function.
     Callable,
@@ -56,9 +56,9 @@ impl Motion {
     }
 }
 
-/// Returns the motion of a recording that `Motion.__reduce__` has taken apart.
+/// Rebuilds the motion of a recording from the parts that `Motion.__reduce__` returned, for the module `pickle`.
 ///
-/// Raises :class:`pxpl5.SettingError` as :meth:`pxpl5.Motion.recording`.
+/// Raises :class:`pxpl5.SettingError` in the same cases as :meth:`pxpl5.Motion.recording`.
 #[pyfunction]
 pub(crate) fn motion_of_text(
     text: Vec<u8>,
@@ -72,8 +72,8 @@ pub(crate) fn motion_of_text(
 #[pymethods]
 impl Motion {
     /// Creates a motion from its name: ``still``, ``pan:DEG_PER_S``, ``slide:M_PER_S``, ``sine:DEG:HZ``, ``pendulum``,
-    /// ``synthetic:SEED``, or the path of a recording. A motion that walks through the scene needs the scene, so its
-    /// name must be given to the experiment instead.
+    /// ``synthetic:SEED``, or the path of a recording. A motion that walks through the scene needs the scene. The name
+    /// of such a motion must be given to the experiment instead.
     ///
     /// Raises :class:`pxpl5.SettingError` with the expected and the found text.
     #[new]
@@ -162,7 +162,7 @@ impl Motion {
 
     /// Returns the function and the arguments that make an equal motion, for the module ``pickle``.
     ///
-    /// A motion of a Python function can be stored if its function can.
+    /// A motion that a Python function computes can be pickled if ``pickle`` can store this function.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let restore = |name: &str| py.import("pxpl5._pickle")?.getattr(name);
         match (&self.origin, &self.called) {
@@ -230,10 +230,11 @@ impl CallableMotion {
     }
 }
 
-/// Greatest time of a pose in seconds. A time of a run in picoseconds has 64 bits.
+/// Greatest time of a pose in seconds, limited because times in picoseconds have 64 bits.
 const MAX_TIME_S: f64 = 1.8e7;
 
-/// Largest difference between 1 and the length of a quaternion from Python. The value allows rounding to a few digits.
+/// Largest allowed difference between 1 and the length of a quaternion from Python. Quaternions may therefore be
+/// rounded to a few digits.
 const UNIT: f64 = 1e-3;
 
 impl fmt::Debug for CallableMotion {
@@ -265,7 +266,7 @@ impl Moving for CallableMotion {
 }
 
 /// Number of samples of a Python motion that go into the hash of the experiment. The samples are an eighth of a second
-/// apart and stand for the function.
+/// apart. In the hash, the samples represent the function, whose code cannot be hashed.
 const SAMPLES: u64 = 512;
 const SAMPLE_PS: u64 = 125_000_000_000;
 

@@ -33,8 +33,8 @@ impl Outcome {
         Self { outcome: Mutex::new(Some(outcome)), results: OnceLock::new(), measures: measures.to_vec() }
     }
 
-    /// Returns the results, which are computed at the first call. If the scene is too heavy to be drawn in time, the
-    /// computation also searches for a suitable load. This can take some time.
+    /// Returns the results, which are computed at the first call. If the scene is too heavy for the machine, the
+    /// computation also searches for a number of triangles that can be drawn in time. This search can take some time.
     fn results(&self, py: Python<'_>) -> PyResult<&Results> {
         py.detach(|| {
             if self.results.get().is_none() {
@@ -53,7 +53,8 @@ impl Outcome {
         run.ok_or_else(|| wrong_setting("the analytic level has no events"))
     }
 
-    /// Returns a value of the outcome that `at` reads. The report is not computed for this.
+    /// Returns the value that the function `at` reads from the outcome of the run. The function does not compute the
+    /// report of the run.
     fn look<T: Send>(&self, py: Python<'_>, at: impl Fn(&pxpl5::Outcome) -> T + Send + Sync) -> PyResult<T> {
         let looked = py.detach(|| {
             let outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
@@ -65,7 +66,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the identifier of a surface, given its label (`left`, `right`) or its number.
+    /// Returns the identifier of the surface with a label (`left`, `right`) or a number.
     fn surface(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceId> {
         let (outcome, _) = self.run(py)?;
         let all: Vec<(SurfaceId, &str)> =
@@ -148,7 +149,7 @@ impl Outcome {
         serde_json::to_string_pretty(self.run(py)?.1).map_err(wrong_setting)
     }
 
-    /// Returns the value of a measured quantity by its name, or None if the run does not have the quantity.
+    /// Returns the value of a measured quantity by its name, or None if the run does not define the quantity.
     fn quantity(&self, py: Python<'_>, name: &str) -> PyResult<Option<f64>> {
         let measure = Measure::named(name).map_err(wrong_setting)?;
         Ok(measure.of(self.results(py)?))
@@ -173,8 +174,8 @@ impl Outcome {
         Ok(is_empty.then(|| "no picture was complete in time; the run has no latency".to_owned()))
     }
 
-    /// Returns the six cube faces that an eye's display memory shows at the end, unfolded into a cross of 4 x 3 faces.
-    /// Returns None for a display without such memories.
+    /// Returns the six cube faces that an eye's display memory shows at the end of the run, unfolded into a cross of 4
+    /// x 3 faces. Returns None for a display without such memories.
     ///
     /// Raises :class:`pxpl5.SettingError` for an eye or a memory that does not exist.
     fn face(&self, py: Python<'_>, eye: &str, memory: usize) -> PyResult<Option<Picture>> {
@@ -196,7 +197,7 @@ impl Outcome {
         Picture::of(py, picture, self.texts(py)?).map(Some)
     }
 
-    /// Returns all measured quantities by name. The value is None for a quantity that the run does not have.
+    /// Returns all measured quantities by name. The value is None for a quantity that the run does not define.
     fn quantities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
         for measure in QUANTITIES.iter().filter_map(|quantity| Measure::named(quantity.name).ok()) {
@@ -297,7 +298,7 @@ impl Outcome {
     }
 
     /// Returns the picture that a viewer has seen on a surface at the end of a field. Returns None if the field is not
-    /// finished, or if its record is no longer kept.
+    /// finished, or if the record of the field was discarded.
     fn seen(&self, py: Python<'_>, surface: &str, field: u64) -> PyResult<Option<Picture>> {
         let id = self.surface(py, surface)?;
         let (outcome, _) = self.run(py)?;
@@ -329,7 +330,8 @@ impl Outcome {
         Ok(planes.map(|planes| PyArray3::from_owned_array(py, planes)))
     }
 
-    /// Returns the fields of a pixel's memory: name, first bit and width in bits of each.
+    /// Returns the parts of a pixel's memory, such as colour and depth. Each part has a name, a first bit and a width
+    /// in bits.
     fn pixel_memory_fields(&self, py: Python<'_>) -> PyResult<Vec<(String, u32, u32)>> {
         let layout: Layout = self.run(py)?.0.pipeline().layout();
         Ok(layout.ranges().into_iter().map(|range| (range.name, range.first, range.width)).collect())
@@ -379,7 +381,7 @@ impl Outcome {
     }
 }
 
-/// Returns column `i` of the table of pictures, with its values from `rows`.
+/// Returns column `i` of the table of pictures. The values of the column come from `rows`.
 fn column_of(i: usize, column: &pxpl5::views::results::Column, rows: &[Vec<Option<u64>>]) -> Column {
     let values = rows.iter().map(|row| row[i].map(u64::cast_signed)).collect();
     Column::whole(&column.name, &column.definition, values)

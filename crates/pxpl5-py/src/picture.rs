@@ -129,9 +129,9 @@ impl Picture {
     }
 }
 
-/// Returns the picture that `Picture.__reduce__` has taken apart.
+/// Rebuilds a picture from the parts that `Picture.__reduce__` returned, for the module `pickle`.
 ///
-/// Raises :class:`pxpl5.SettingError` as :class:`pxpl5.Picture`.
+/// Raises :class:`pxpl5.SettingError` in the same cases as :class:`pxpl5.Picture`.
 #[pyfunction]
 pub(crate) fn picture_of_parts(
     py: Python<'_>,
@@ -141,9 +141,9 @@ pub(crate) fn picture_of_parts(
     Ok(Picture { texts, ..Picture::new(py, pixels)? })
 }
 
-/// Returns the picture of a PNG file's bytes. Texts in the file are left out.
+/// Decodes the bytes of a PNG file and returns the picture. The picture does not get the texts of the file.
 ///
-/// Raises :class:`pxpl5.SettingError` for bytes that are no PNG.
+/// Raises :class:`pxpl5.SettingError` for bytes that are not a PNG file.
 #[pyfunction]
 pub(crate) fn picture_of_png(py: Python<'_>, bytes: &[u8]) -> PyResult<Picture> {
     let picture = py.detach(|| image::load_from_memory_with_format(bytes, image::ImageFormat::Png));

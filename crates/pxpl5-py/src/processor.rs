@@ -40,7 +40,8 @@ impl Program {
         self.program.base
     }
 
-    /// Returns the bytes of the program from address :attr:`base` on. Gaps between its parts are included.
+    /// Returns the bytes of the program from address :attr:`base` on. Gaps between the parts of the program are
+    /// included.
     #[getter]
     fn bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &self.program.bytes)
@@ -84,7 +85,7 @@ pub(crate) struct Processor {
 }
 
 impl Processor {
-    /// Returns the address of a place, which is a label of the program or already an address.
+    /// Returns the address that `place` denotes. `place` is a label of the program or an address.
     fn place(&self, place: &Bound<'_, PyAny>) -> PyResult<u32> {
         let Ok(name) = place.extract::<String>() else { return place.extract() };
         self.program.symbol(&name).ok_or_else(|| {
@@ -102,9 +103,9 @@ const MOST_MEMORY: usize = 1 << 30;
 
 #[pymethods]
 impl Processor {
-    /// Creates a processor with a program. ``memory`` is the size of its memory in bytes: 8 MiB by default, as on a
-    /// board, and at most 1 GiB. The processor starts at ``entry``, a label or an address. The default is the label
-    /// ``start``.
+    /// Creates a processor with a program. ``memory`` is the size of the processor's memory in bytes: 8 MiB by default,
+    /// as on a board, and at most 1 GiB. The processor starts at ``entry``, a label or an address. The default is the
+    /// label ``start``.
     ///
     /// Raises :class:`pxpl5.SettingError` for a program that does not fit into memory, and for an unknown label.
     #[new]
@@ -211,7 +212,8 @@ impl Processor {
     }
 
     /// Returns a profile of the clocks as a dictionary: instructions, issue, bus_requests, page_misses,
-    /// instruction_misses, data_misses, and the clocks by label.
+    /// instruction_misses, data_misses, clocks and by_label. The dictionary by_label has the clocks of the code after
+    /// each label.
     fn profile<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let profile = self.cpu.profile();
         let all = PyDict::new(py);

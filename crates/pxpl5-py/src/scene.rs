@@ -159,13 +159,13 @@ impl Scene {
     /// Returns a simplified scene with at most ``primitives`` triangles and spheres, 1 or more. The shape of the scene
     /// stays similar.
     ///
-    /// Raises :class:`pxpl5.SettingError` if the scene has fewer primitives than this.
+    /// Raises :class:`pxpl5.SettingError` if the scene has fewer than ``primitives`` primitives.
     fn decimated(&self, py: Python<'_>, primitives: Count) -> PyResult<Self> {
         py.detach(|| self.scene.decimated(primitives.size())).map(Self::of).map_err(wrong_setting)
     }
 
-    /// Returns the scene with back-face culling: triangles that face away from the eye are not drawn. A scene of closed
-    /// surfaces looks the same.
+    /// Returns the scene with back-face culling: triangles that face away from the eye are not drawn. The picture of a
+    /// scene of closed surfaces does not change.
     fn culled(&self) -> Self {
         Self::of(scene::Scene::clone(&self.scene).culled())
     }
@@ -212,7 +212,7 @@ impl Scene {
     }
 }
 
-/// Returns an array of shape (rows, N) from rows of N values each.
+/// Returns a NumPy array of shape (rows, N) from rows of N values each.
 fn table<'py, T: numpy::Element + Copy + Default, const N: usize>(
     py: Python<'py>,
     rows: impl ExactSizeIterator<Item = [T; N]>,
@@ -323,7 +323,7 @@ fn ball_around(positions: &[Vec3], balls: &[(Vec3, f32)]) -> (Vec3, f32) {
     (middle, all.map(|(centre, radius)| centre.distance(middle) + radius).fold(0.0, f32::max))
 }
 
-/// Moves the centre of the scene to the origin, and scales the scene to the radius that model files get.
+/// Moves the centre of the scene to the origin, and scales the scene to the radius to which model files are scaled.
 fn fit_into_view(positions: &mut [Vec3], balls: &mut [(Vec3, f32)]) {
     let (middle, radius) = ball_around(positions, balls);
     if radius <= 0.0 || !radius.is_finite() {
@@ -337,7 +337,7 @@ fn fit_into_view(positions: &mut [Vec3], balls: &mut [(Vec3, f32)]) {
     }
 }
 
-/// The parts of a scene besides its arrays, as the module `pickle` stores them.
+/// The parts of a scene that are not arrays, in the form that the module `pickle` stores.
 #[derive(Serialize, Deserialize)]
 struct Rest {
     name: String,
@@ -351,7 +351,8 @@ struct Rest {
     warnings: Vec<String>,
 }
 
-/// A structure of a scene. Ranges are pairs of the first index and the index after the last index.
+/// A structure of a scene, as `pickle` stores the structure. A range is a pair of the first index and the index after
+/// the last index.
 #[derive(Serialize, Deserialize)]
 struct StructureState {
     name: String,
@@ -427,9 +428,9 @@ impl StructureState {
     }
 }
 
-/// Returns the scene that `Scene.__reduce__` has taken apart.
+/// Rebuilds a scene from the parts that `Scene.__reduce__` returned, for the module `pickle`.
 ///
-/// Raises :class:`pxpl5.SettingError` for parts that no scene has.
+/// Raises :class:`pxpl5.SettingError` for parts that are not the parts of a valid scene.
 #[pyfunction]
 pub(crate) fn scene_of_parts(arrays: &Bound<'_, PyDict>, rest: &Bound<'_, PyAny>) -> PyResult<Scene> {
     let array = |name: &str| arrays.get_item(name)?.ok_or_else(|| wrong_setting(format!("a scene: {name} is missing")));

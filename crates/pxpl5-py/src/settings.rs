@@ -5,8 +5,8 @@ use pxpl5::{ExperimentFile, Plan};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Settings of an experiment by path, as in an experiment file. The settings are checked together only when an
-/// experiment is created from them.
+/// Settings of an experiment by path, as in an experiment file. The combination of all settings is checked only when an
+/// experiment is created from the settings.
 #[pyclass(skip_from_py_object, module = "pxpl5._native")]
 #[derive(Clone)]
 pub(crate) struct Settings {
@@ -22,7 +22,7 @@ impl Settings {
     }
 
     /// Adds the settings of an experiment file (TOML) to the present settings. File names in the file are relative to
-    /// its folder.
+    /// the folder of the file.
     ///
     /// Raises :class:`pxpl5.SettingError` with the file, the line, and the expected and the found text.
     fn load(&mut self, path: PathBuf) -> PyResult<()> {
@@ -33,7 +33,7 @@ impl Settings {
     /// Adds settings from the text of an experiment file to the present settings. ``name`` stands for the text in error
     /// messages.
     ///
-    /// Raises :class:`pxpl5.SettingError` as :meth:`load`.
+    /// Raises :class:`pxpl5.SettingError` in the same cases as :meth:`load`.
     fn parse(&mut self, text: &str, name: &str) -> PyResult<()> {
         self.file = self.file.clone().and_parse(text, name).map_err(wrong_setting)?;
         Ok(())
@@ -52,7 +52,7 @@ impl Settings {
         self.file.place_of(path).is_some()
     }
 
-    /// Returns true if the settings define a sweep, which means several values for some settings.
+    /// Returns true if the settings define a sweep, in which some settings have several values.
     #[getter]
     fn is_sweep(&self) -> bool {
         self.file.is_sweep()

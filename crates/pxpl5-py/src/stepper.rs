@@ -17,13 +17,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Work for the thread of the machine. The machine is gone after [`Stepper::finish`].
+/// Work for the thread of the machine. After [`Stepper::finish`], the job gets `None` in place of the machine.
 type Job = Box<dyn FnOnce(&mut Option<Native>) + Send>;
 
 /// A thread that owns a machine and executes jobs on it, one after the other.
 pub(crate) struct MachineThread {
     jobs: Mutex<Sender<Job>>,
-    /// True to end a long job early.
+    /// Flag that another thread sets to true to end a long job early.
     stop: Arc<AtomicBool>,
 }
 
@@ -54,7 +54,7 @@ impl MachineThread {
         Ok(begun.map(|()| Self { jobs: Mutex::new(jobs), stop }))
     }
 
-    /// Executes a job on the machine and returns its result.
+    /// Executes a job on the thread of the machine and returns the result of the job.
     fn ask<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -71,7 +71,7 @@ impl MachineThread {
         wait(py, result, &self.stop)
     }
 
-    /// Executes a job on a machine that has not finished.
+    /// Executes a job on the machine, or raises an exception if the run has finished.
     fn look<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -81,14 +81,15 @@ impl MachineThread {
         found.ok_or_else(|| failed_run("the run is finished: expected a stepper before finish()"))
     }
 
-    /// Runs to the end and returns the result.
+    /// Runs the machine to the end of the experiment and returns the outcome.
     pub(crate) fn finish(&self, py: Python<'_>) -> PyResult<Result<pxpl5::Outcome, Box<ExperimentError>>> {
         let found = self.ask(py, |stepper, _| stepper.take().map(|stepper| stepper.finish().map_err(Box::new)))?;
         found.ok_or_else(|| failed_run("the run is finished: expected a stepper before finish()"))
     }
 }
 
-/// Waits for a result without the interpreter's lock. Ctrl-C sets `stop` and raises `KeyboardInterrupt`.
+/// Waits for the result of another thread without the interpreter's lock. Ctrl-C sets `stop` and raises
+/// `KeyboardInterrupt`.
 pub(crate) fn wait<T: Send>(py: Python<'_>, mut results: Receiver<T>, stop: &AtomicBool) -> PyResult<T> {
     loop {
         match py.detach(|| recv(&mut results)) {
@@ -108,7 +109,7 @@ fn recv<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
     results.recv_timeout(LOOK)
 }
 
-/// Runs to an instant in steps of one field, so that `stop` takes effect soon.
+/// Runs the machine to an instant in steps of one field, so that the flag `stop` takes effect soon.
 fn run_to(stepper: &mut Native, time: Time, stop: &AtomicBool) -> Pause {
     loop {
         let next = stepper.record().tick(stepper.period().next());
@@ -146,7 +147,7 @@ fn board_named(name: &str) -> PyResult<Board> {
 #[pyclass(frozen, module = "pxpl5._native")]
 pub(crate) struct Stepper {
     pub(crate) thread: MachineThread,
-    /// Functions of Python that the run calls.
+    /// Python functions that the run calls, such as the function of the head's motion.
     pub(crate) checks: PythonFunctions,
     pub(crate) measures: Vec<pxpl5::Measure>,
 }
@@ -262,8 +263,8 @@ impl Stepper {
         python(py, &all)
     }
 
-    /// Returns the picture that the viewer of a surface sees now, with the beam at its place. Returns None if no pixels
-    /// are computed, or if the surface does not exist.
+    /// Returns the picture that the viewer of a surface sees now, with the beam at its present position. Returns None
+    /// if no pixels are computed, or if the surface does not exist.
     fn picture(&self, py: Python<'_>, surface: &str) -> PyResult<Option<Picture>> {
         let name = surface.to_owned();
         let picture = self.thread.look(py, move |stepper, _| {
@@ -291,7 +292,7 @@ impl Stepper {
         self.thread.look(py, |stepper, _| stepper.so_far().pictures().iter().filter(|times| times.is_shown()).count())
     }
 
-    /// Runs to the end and returns the outcome, which equals the outcome of a run without steps.
+    /// Runs to the end of the experiment and returns the outcome, which equals the outcome of a run without steps.
     ///
     /// Raises the same exceptions as :meth:`Experiment.run`.
     fn finish(&self, py: Python<'_>) -> PyResult<crate::outcome::Outcome> {

@@ -89,7 +89,7 @@ impl Store {
         Ok(Self { sweep: Arc::clone(&sweep.sweep), store: Some(store) })
     }
 
-    /// Returns the indices of the points that have no row yet, in order.
+    /// Returns the indices of the points that have no row yet, in ascending order.
     fn missing(&mut self) -> PyResult<Vec<u64>> {
         let points = self.sweep.space().points();
         let store = self.open_store()?;
@@ -116,7 +116,7 @@ impl Store {
     /// Simulates all points that have no row yet, on ``threads`` threads of this computer. Ctrl-C ends the points in
     /// progress, which get no row. The rows of finished points are in the folder.
     ///
-    /// Raises :class:`pxpl5.SweepError` and KeyboardInterrupt.
+    /// Raises :class:`pxpl5.SweepError` if a row cannot be stored, and KeyboardInterrupt after Ctrl-C.
     #[pyo3(signature = (threads, progress = None))]
     fn run(&mut self, py: Python<'_>, threads: usize, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let mut store = self.store.take().ok_or_else(|| failed_sweep("the store is closed"))?;
@@ -125,7 +125,7 @@ impl Store {
             let of = sweep.space().points();
             let mut done = store.finished(Shard::ALL);
             let options = RunOptions { shard: Shard::ALL, threads };
-            let result = run_stoppable(&sweep, &mut store, options, &watch.stop_flag(), |_| {
+            let result = run_stoppable(&*sweep, &mut store, options, &watch.stop_flag(), |_| {
                 done += 1;
                 watch.report(done, of);
             });

@@ -9,7 +9,7 @@ use arrow_schema::{DataType, Field, Schema};
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::{PyCapsule, PyDict, PyList, PyTuple};
+use pyo3::types::{PyCapsule, PyDict, PyList, PyTuple, PyType};
 use pythonize::pythonize;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
@@ -63,7 +63,7 @@ impl Table {
     }
 
     /// Creates a table from JSON objects, one row for each object. Each key becomes a column, in the order in which
-    /// keys first occur. A nested key gets its parent's name and a point before its own name. Lists become JSON text.
+    /// keys first occur. A nested key `b` within `a` becomes the column `a.b`. Lists become JSON text.
     pub(crate) fn of_rows(rows: &[Map<String, Value>], about: &HashMap<String, String>) -> PyResult<Self> {
         let flat: Vec<Map<String, Value>> = rows.iter().map(flattened).collect();
         let mut names: Vec<&str> = Vec::new();
@@ -83,7 +83,7 @@ impl Table {
     }
 }
 
-/// Returns the object without nesting. A nested key becomes its parent's name, a point and its own name.
+/// Returns a JSON object without nested objects. A nested key `b` within `a` becomes the key `a.b`.
 fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
     let mut flat = Map::new();
     for (key, value) in row {
@@ -100,7 +100,7 @@ fn flattened(row: &Map<String, Value>) -> Map<String, Value> {
 }
 
 /// Returns the column of values for one key. If all values are truth values, integers or numbers, the column has this
-/// type, otherwise it has text.
+/// type. Otherwise the values become text.
 fn column_of(name: &str, rows: &[Map<String, Value>], about: &str) -> Column {
     let known: Vec<Option<&Value>> = rows.iter().map(|row| row.get(name).filter(|value| !value.is_null())).collect();
     let all = |is: fn(&Value) -> bool| known.iter().flatten().all(|value| is(value));
@@ -132,26 +132,45 @@ pub(crate) fn table_of_rows(json: &str, about: HashMap<String, String>) -> PyRes
     Table::of_rows(&rows, &about)
 }
 
-/// Returns the table that `Table.__reduce__` has taken apart: name, description, type and values of each column.
+/// Rebuilds a table from the parts that `Table.__reduce__` returned: name, description, type and values of each column.
+/// The module `pickle` needs this function.
 ///
-/// Raises :class:`pxpl5.SettingError` for an unknown type.
+/// Raises :class:`pxpl5.SettingError` for columns that `Table.__reduce__` does not make.
 #[pyfunction]
-pub(crate) fn table_of_columns(columns: Vec<(String, String, String, Bound<'_, PyAny>)>) -> PyResult<Table> {
+pub(crate) fn table_of_columns(columns: &Bound<'_, PyAny>) -> PyResult<Table> {
+    let columns: Vec<(String, String, String, Bound<'_, PyAny>)> = columns.extract().map_err(|_| {
+        wrong_setting(
+            "a table: expected a list of columns, each with name, description, type and values, found another",
+        )
+    })?;
     let columns = columns.into_iter().map(|(name, about, kind, values)| {
-        let values: ArrayRef = match kind.as_str() {
-            "Int64" => Arc::new(Int64Array::from(values.extract::<Vec<Option<i64>>>()?)),
-            "Float64" => Arc::new(Float64Array::from(values.extract::<Vec<Option<f64>>>()?)),
-            "Boolean" => Arc::new(BooleanArray::from(values.extract::<Vec<Option<bool>>>()?)),
-            "Utf8" => Arc::new(StringArray::from(values.extract::<Vec<Option<String>>>()?)),
-            _ => {
-                return Err(wrong_setting(format!(
-                    "column {name}: expected the type Int64, Float64, Boolean or Utf8, found {kind}"
-                )));
-            }
-        };
+        let values = typed(&name, &kind, &values)?;
         Ok(Column { name, about, values })
     });
-    Table::of(columns.collect::<PyResult<_>>()?)
+    let columns: Vec<Column> = columns.collect::<PyResult<_>>()?;
+    let rows = columns.first().map_or(0, |column| column.values.len());
+    match columns.iter().find(|column| column.values.len() != rows) {
+        Some(Column { name, values, .. }) => {
+            Err(wrong_setting(format!("column {name}: expected {rows} values, found {}", values.len())))
+        }
+        None => Table::of(columns),
+    }
+}
+
+/// Returns values of Python as a column of one type.
+fn typed(name: &str, kind: &str, values: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
+    let values: PyResult<ArrayRef> = match kind {
+        "Int64" => values.extract().map(|values: Vec<Option<i64>>| Arc::new(Int64Array::from(values)) as ArrayRef),
+        "Float64" => values.extract().map(|values: Vec<Option<f64>>| Arc::new(Float64Array::from(values)) as ArrayRef),
+        "Boolean" => values.extract().map(|values: Vec<Option<bool>>| Arc::new(BooleanArray::from(values)) as ArrayRef),
+        "Utf8" => values.extract().map(|values: Vec<Option<String>>| Arc::new(StringArray::from(values)) as ArrayRef),
+        _ => {
+            return Err(wrong_setting(format!(
+                "column {name}: expected the type Int64, Float64, Boolean or Utf8, found {kind}"
+            )));
+        }
+    };
+    values.map_err(|error| wrong_setting(format!("column {name}: expected a list of values of {kind} ({error})")))
 }
 
 #[pymethods]
@@ -169,6 +188,12 @@ impl Table {
         PyCapsule::new_with_value(py, FFI_ArrowArrayStream::new(Box::new(batches)), c"arrow_array_stream")
     }
 
+    /// Returns the class with the type of its rows, for type checkers: ``Table[dict[str, float]]``.
+    #[classmethod]
+    fn __class_getitem__<'py>(cls: &Bound<'py, PyType>, rows: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        cls.py().import("types")?.getattr("GenericAlias")?.call1((cls, rows))
+    }
+
     /// Returns the number of rows.
     fn __len__(&self) -> usize {
         self.batch.num_rows()
@@ -181,7 +206,7 @@ impl Table {
     }
 
     /// Returns the description of each column with its unit, by the column's name. The description is empty if the name
-    /// is sufficient.
+    /// of the column is sufficient.
     #[getter]
     fn definitions(&self) -> HashMap<String, String> {
         let schema = self.batch.schema();
@@ -191,7 +216,8 @@ impl Table {
 
     /// Returns the values of a column by its name. Numbers are returned as a NumPy array of shape (rows,), int64 or
     /// float64. If a number is missing, the array is float64 with NaN. Text and truth values are returned as a list
-    /// with None for missing values. The numbers are copied, unlike with Arrow's own readers.
+    /// with None for missing values. The numbers are copied, whereas readers of the Arrow stream share the memory of
+    /// the table.
     ///
     /// Raises KeyError with the existing names.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
@@ -247,7 +273,7 @@ impl Table {
     /// Creates a table from dictionaries, one for each row. Keys of nested dictionaries are joined with a point. Lists
     /// become JSON text. ``definitions`` maps names of columns to descriptions.
     ///
-    /// Raises :class:`pxpl5.SettingError` for a row that is no dictionary, or a value that no column can have.
+    /// Raises :class:`pxpl5.SettingError` for a row that is not a dictionary, or a value that no column can have.
     #[staticmethod]
     #[pyo3(signature = (rows, definitions = None))]
     fn from_rows<'py>(

@@ -26,8 +26,9 @@ pub(crate) fn volume_keys() -> Vec<String> {
     VolumeSettings::paper().keys()
 }
 
-/// Returns the published values of the SpatialGL paper beside the values of the model. The result is a dictionary with
-/// figures and shown.
+/// Compares the published values of the SpatialGL paper with the values of the model. Returns a dictionary. ``figures``
+/// has a row for each value, and ``shown`` has the paper's statements without numbers and the measurements that test
+/// them.
 ///
 /// Raises :class:`pxpl5.SettingError` for a scene that cannot be drawn.
 #[pyfunction]
@@ -103,14 +104,15 @@ impl Volume {
         Picture::of(py, picture, Vec::new())
     }
 
-    /// Returns one picture with small versions of all slices, row by row.
+    /// Returns one picture with small versions of all slices, arranged in rows.
     fn sheet(&self, py: Python<'_>) -> PyResult<Picture> {
         let picture = py.detach(|| sheet(&self.volume));
         Picture::of(py, picture, Vec::new())
     }
 
-    /// Returns the view of an eye during one turn of the display, from a distance of four radii. The azimuth grows from
-    /// +z to +x. Azimuth and elevation are in degrees, and the picture is ``size`` pixels wide and high.
+    /// Returns the view of an eye during one turn of the display, from a distance of four radii of the display. The
+    /// azimuth grows from +z to +x. Azimuth and elevation are in degrees, and the picture is ``size`` pixels wide and
+    /// high.
     ///
     /// Raises :class:`pxpl5.SettingError` if the eye can see nothing of the display.
     #[pyo3(signature = (azimuth_deg = 40.0, elevation_deg = 25.0, *, size = Count(512)), text_signature = "($self, azimuth_deg=40.0, elevation_deg=25.0, *, size=512)")]

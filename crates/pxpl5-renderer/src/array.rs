@@ -12,7 +12,8 @@ pub type Plane = [u64; PIXELS / 64];
 
 pub const EMPTY_PLANE: Plane = [0; PIXELS / 64];
 
-/// A 128 x 128 array of one-bit processors with 208 bits of memory each.
+/// A 128 x 128 array of one-bit processors with 208 bits of memory each. A pixel's bit in the *Enable* register allows
+/// or forbids writes to the memory of this pixel.
 ///
 /// All implementations give the same result after every instruction: the same bits of pixel memory and of Enable, and
 /// the same [`Executed`].
@@ -24,10 +25,12 @@ pub trait PixelArray {
     /// The illegal instruction and the rest of the list are not executed. Faults are counted.
     fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault>;
 
-    /// Executes the commands of a list that touch the region, and returns the regions whose pixels were copied.
+    /// Executes the commands of a list that touch the region, and returns the regions whose pixels the list copies to
+    /// frame buffers.
     ///
     /// A fault ends the execution, as on the hardware. Pixels drawn before the fault stay. The final pixel memory is
-    /// the same as after [`Self::execute`], but Enable can differ. `room` is a buffer for words.
+    /// the same as after [`Self::execute`], but the Enable register can differ. `room` is scratch space for the words
+    /// of the commands.
     fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
         commands.append_visible(room);
@@ -46,17 +49,17 @@ pub trait PixelArray {
     /// Panics if `bit` is 208 or more.
     fn set_plane(&mut self, bit: usize, plane: &Plane);
 
-    /// Returns the Enable register of all pixels.
+    /// Returns the Enable register: one bit for each pixel, which allows writes to the pixel's memory.
     fn enable(&self) -> Plane;
 
-    /// Overwrites the Enable register of all pixels.
+    /// Overwrites the Enable register: one bit for each pixel, which allows writes to the pixel's memory.
     fn set_enable(&mut self, plane: &Plane);
 
-    /// Returns the colours of the upper left `width` x `height` pixels (at most 128 x 128) of the selected context. The
-    /// colours have the format 0x00RRGGBB and are ordered row by row.
+    /// Returns the colours of the upper left `width` x `height` pixels (at most 128 x 128), in the format 0x00RRGGBB
+    /// and row by row. The colours come from the selected context, the part of pixel memory that holds one region.
     fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]>;
 
-    /// Sets pixel memory, Enable, backing store, selected region and the count of faults to zero.
+    /// Sets pixel memory, the Enable register, the backing store, the selected region and the count of faults to zero.
     fn reset(&mut self);
 
     /// Returns the number of faults since the last reset.
@@ -86,7 +89,7 @@ pub struct OutputRegion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position}: {kind}")]
 pub struct ArrayFault {
-    /// Index in the list of the instruction's first word.
+    /// Index, in the list of words, of the first word of the instruction.
     pub position: usize,
     pub kind: FaultKind,
 }
@@ -98,20 +101,21 @@ pub enum FaultKind {
     /// The words do not encode an instruction.
     #[error("{0}")]
     Illegal(DecodeErrorKind),
-    /// A field extends beyond the end of pixel memory. The field's address is relative to the selected context.
+    /// A field extends beyond the end of pixel memory. The field's address is relative to the selected context, the
+    /// part of pixel memory that holds one region.
     #[error("{} bits at {base} + {} reach beyond pixel memory", .operand.width, .operand.address)]
     FieldOutOfRange {
         /// The field as encoded in the instruction: address relative to the context's first bit, and width in bits.
         operand: Operand,
-        /// First bit of the selected context in pixel memory.
+        /// First bit, in pixel memory, of the selected context (the part that holds one region).
         base: u8,
     },
     /// An operand overlaps the destination, and the instruction does not allow this overlap.
     #[error("the operand at bit {operand} overlaps the destination at bit {destination}")]
     Overlap {
-        /// First bit of the destination.
+        /// First bit, in pixel memory, of the field that receives the result.
         destination: u8,
-        /// First bit of the operand.
+        /// First bit, in pixel memory, of the operand's field.
         operand: u8,
     },
 }

@@ -39,12 +39,12 @@ pub struct BitSerial {
     clock: u64,
     faults: u64,
     skipping: bool,
-    /// Buffer for the current run of instructions. It is reused to avoid allocations.
+    /// Buffer for a run of consecutive instructions. The array reuses the buffer to avoid allocations.
     run: InstructionRun,
 }
 
 impl BitSerial {
-    /// Creates an array of zeros. `layout` is used only by [`PixelArray::read_colour`], to find the colour.
+    /// Creates an array of zeros. Only [`PixelArray::read_colour`] uses `layout`, to find the field of the colour.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
@@ -70,8 +70,8 @@ impl BitSerial {
     /// Turns on the skipping mode, which leaves out work that changes no bit.
     ///
     /// Disabled pixels move no planes. If the signs at the corners of a tile determine the sign in the whole tile, the
-    /// adders do not run. Clocks, faults and all bits stay the same. The default mode takes ten times as long as the
-    /// skipping mode.
+    /// adders are not simulated. Clocks, faults and all bits stay the same. The default mode takes ten times as long as
+    /// the skipping mode.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }
@@ -169,7 +169,7 @@ impl BitSerial {
         Ok(())
     }
 
-    /// Returns the values of a field in the upper left `width` x `height` pixels, row by row.
+    /// Returns the values of the field `field` in the upper left `width` x `height` pixels, row by row.
     fn colour(&self, field: FieldBits, width: u32, height: u32) -> Arc<[Word]> {
         let size = REGION_SIZE as usize;
         let mut values = vec![0; size * size];

@@ -26,11 +26,11 @@ pub enum RendererEvent {
         /// Time at which the message's first word is on the channel.
         first_word_at: Time,
     },
-    /// The controller starts the next copy command.
+    /// The controller starts the next copy command, which copies a region to a frame buffer.
     CopyBegins,
-    /// The colours of the region being copied are now complete in the backing store.
+    /// The colours of the region that the renderer copies are now complete in the backing store.
     Stored,
-    /// The ring has delivered the last pixel of the region being copied. The event has phase `Arrive`.
+    /// The ring has delivered the last pixel of the region that the renderer copies. The event has phase `Arrive`.
     Sent,
 }
 
@@ -82,28 +82,30 @@ pub struct Renderer {
     caches_empty_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
-    /// Copy whose region is being sent to a frame buffer. `None` if no region is being sent.
+    /// Copy command whose region is being sent to a frame buffer. `None` if no region is being sent.
     copying: Option<CopyOrder>,
     /// Copies through the backing store whose regions are still in pixel memory. The transfer of the first of these
     /// regions to the backing store can be in progress.
     unstored: VecDeque<PendingCopy>,
     storing: bool,
-    /// Copies whose regions are in the backing store. Each copy waits for an earlier transfer, or for the command that
-    /// releases it.
+    /// Copies whose regions are in the backing store. Each copy waits for the end of an earlier transfer to a frame
+    /// buffer, or for the command that releases the region.
     stored: VecDeque<PendingCopy>,
-    /// Command lists received so far. The lists are kept only while the FIFO is watched.
+    /// Command lists received so far. `None` until [`Renderer::watch_fifo`] is called.
     sent: Option<SentLists>,
     /// Regions whose copy commands have started since the last call of `drain_drawn`.
     drawn: Vec<DrawnRegion>,
     stats: RendererStats,
+    /// True if a region has waited for room in the backing store.
+    waited_for_room: bool,
 }
 
-/// A region that a renderer has drawn, with the times of its commands.
+/// A region that a renderer has drawn, with the times of the region's commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnRegion {
-    /// Display, buffer and place for which the region is drawn.
+    /// Frame buffer and place for which the region is drawn.
     pub target: CopyTarget,
-    /// Number of words that transfer the region's pixels to the frame buffer.
+    /// Number of words of the message that transfers the region's pixels to the frame buffer.
     pub words: u32,
     /// Time at which the controller finished its work on the previous region.
     pub begun_at: Time,
@@ -111,20 +113,22 @@ pub struct DrawnRegion {
     pub finished_at: Time,
     /// Start time of the copy command. This time is later than `finished_at` if the copy command arrived later.
     pub copy_at: Time,
-    /// Execution time of the commands since `begun_at`. For the rest of the time, the controller waited for commands.
+    /// Time since `begun_at` in which the controller executed commands. For the rest of the time, the controller waited
+    /// for commands.
     pub executed: Span,
 }
 
-/// Command lists sent to a region context since the last clear of this context.
+/// Command lists sent to a region context (the part of pixel memory that holds one region) since the last clear of this
+/// context.
 #[derive(Clone, Debug, Default)]
 struct ContextLog {
     cleared: bool,
-    /// Command lists, shared with the pixel jobs of copied regions.
+    /// Command lists of the context. Copied regions also use these lists to compute their pixels later.
     lists: Arc<Vec<CommandContent>>,
 }
 
 impl ContextLog {
-    /// Removes all lists. Pixel jobs of copied regions keep their own reference to the lists.
+    /// Removes all lists from the log. Computations of copied regions keep their own reference to the lists.
     fn clear(&mut self) {
         self.cleared = true;
         match Arc::get_mut(&mut self.lists) {
@@ -135,7 +139,7 @@ impl ContextLog {
     }
 }
 
-/// A copy command in the FIFO, and the source of its region's pixels.
+/// A received copy command, and the object that computes the pixels of its region.
 #[derive(Debug)]
 struct PendingCopy {
     order: CopyOrder,
@@ -169,6 +173,7 @@ impl Renderer {
             sent: None,
             drawn: Vec::new(),
             stats,
+            waited_for_room: false,
         }
     }
 
@@ -196,7 +201,7 @@ impl Renderer {
         self.report(progress, context);
     }
 
-    /// Records a message for [`Self::array_at`] if the FIFO is watched.
+    /// Records a received message for [`Self::array_at`], if [`Self::watch_fifo`] was called.
     fn note(&mut self, message: &Message, now: Time) {
         let first_word = self.stats.words;
         self.stats.words += u64::from(message.words);
@@ -320,7 +325,12 @@ impl Renderer {
             .chain(&self.copying)
             .map(|order| u64::from(order.content.words()))
             .sum();
-        if self.storing || held + blocks > self.timing.backing_regions() {
+        if self.storing {
+            return;
+        }
+        // This comparison is the only use of the capacity, so a larger store changes nothing if it never fails.
+        if held + blocks > self.timing.backing_regions() {
+            self.waited_for_room = true;
             return;
         }
         self.storing = true;
@@ -384,13 +394,20 @@ impl Renderer {
         self.store_next(context);
     }
 
+    /// Returns true if a finished region has waited for room in the backing store. Otherwise the board works the same
+    /// with a larger backing store.
+    #[must_use]
+    pub const fn waited_for_room(&self) -> bool {
+        self.waited_for_room
+    }
+
     /// Returns the board's counters.
     #[must_use]
     pub const fn stats(&self) -> RendererStats {
         self.stats
     }
 
-    /// Returns the time spent executing commands so far, without copies.
+    /// Returns the time that the board has spent so far to execute commands, without copies.
     #[must_use]
     pub const fn busy(&self) -> Span {
         self.fifo.busy()
@@ -416,7 +433,8 @@ impl Renderer {
     /// Returns pixel memory in its state after all received command lists. In each region context, lists before the
     /// last clear have no effect.
     ///
-    /// Returns `None` if no context has received lists that change pixels, for example when pixels are off.
+    /// Returns `None` if no context has received lists that change pixels. This is the case, for example, if the
+    /// computation of pixels is off.
     #[must_use]
     pub fn pixel_memory(&self) -> Option<Lanes> {
         if self.logs.iter().all(|log| log.lists.is_empty()) {
@@ -432,8 +450,8 @@ impl Renderer {
         Some(array)
     }
 
-    /// Turns off two optimizations. From this call on, no region is cached, and commands that touch no pixel are
-    /// executed as well.
+    /// Turns off two optimizations of the simulation. From this call on, pixels of regions without primitives are
+    /// computed instead of cached, and commands that touch no pixel are executed as well.
     pub const fn draw_every_region(&mut self) {
         self.caches_empty_regions = false;
     }
@@ -463,8 +481,8 @@ impl Renderer {
     /// Returns the pixel array with the effects of all commands that have started by `now`. `now` must not be before
     /// the last event.
     ///
-    /// A command takes effect when it starts. Returns `None` if the FIFO is not [watched](Renderer::watch_fifo), or if
-    /// no command has changed a pixel.
+    /// A command takes effect when it starts. Returns `None` if [`Renderer::watch_fifo`] was not called, or if no
+    /// command has changed a pixel.
     #[must_use]
     pub fn array_at(&self, now: Time) -> Option<Lanes> {
         let started = self.fifo.passed(now)?.started;
@@ -473,8 +491,8 @@ impl Renderer {
 
     /// Returns the changes of the number of words in the FIFO since the last call. The changes are not sorted by time.
     ///
-    /// A positive change is a command that has arrived completely. A negative change is a command that starts. A time
-    /// in the future is a prediction from the input that has arrived so far.
+    /// A positive change is the number of words of a command that has arrived completely. A negative change belongs to
+    /// a command that starts. A time in the future is a prediction from the input that has arrived so far.
     pub fn take_fifo_changes(&mut self) -> Vec<(Time, i64)> {
         self.fifo.take_changes()
     }

@@ -1,13 +1,13 @@
 //! Commands: fixed-length programs of array instructions, which the graphics processors send.
 //!
-//! A command holds typed operands. Its program follows from the operands and the [`Layout`]. The first instruction of a
-//! drawing command is *enable all*, whose label is the command's kind. The array ignores the label. [`Command::decode`]
-//! and the fast pixel array recognize the command by the label.
+//! A command holds typed operands. The command's program follows from the operands and the [`Layout`]. The first
+//! instruction of a drawing command is *enable all*, whose label is the command's kind. The array ignores the label.
+//! [`Command::decode`] and the fast pixel array recognize the command by the label.
 //!
 //! # Formats
 //!
-//! - Edge: a pixel is inside if the expression is `>= 0` at this pixel. The sender adjusts `c` so that pixels exactly
-//!   on the edge follow the tie rule.
+//! - Edge: a pixel is inside if the expression is `>= 0` at this pixel. The sender adjusts the constant coefficient of
+//!   the expression so that pixels exactly on the edge follow the tie rule.
 //! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is
 //!   **strictly less** than the stored depth. A layout with a narrower Z stores and compares the upper bits of the
 //!   depth.
@@ -46,11 +46,12 @@ use crate::isa::{ArrayInstruction, DecodeError, DecodeErrorKind, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// The kind of a command. Its numeric value is the opcode in [`pxpl5_wire::CommandRun`].
+/// The kind of a command. The numeric value of the kind is the opcode in [`pxpl5_wire::CommandRun`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum CommandKind {
-    /// Selects the context and the region of the following commands (see [`SelectRegion`]).
+    /// Selects the region of the following commands, and the context (part of pixel memory) that holds it (see
+    /// [`SelectRegion`]).
     SelectRegion = 1,
     /// Clears colour and Z (see [`Clear`]).
     Clear = 2,
@@ -136,7 +137,7 @@ impl CommandKind {
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
     pub kind: CommandKind,
-    /// Name of the layout, from `ContextPlan::name`.
+    /// Name of the layout that lacks the field, from `ContextPlan::name`.
     pub layout: &'static str,
     /// The missing field, or the required number of scratch bits, as text.
     pub missing: &'static str,
@@ -145,7 +146,7 @@ pub struct Unsupported {
 /// A command with its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// Selects the context and the region of the following commands.
+    /// Selects the region of the following commands, and the context (part of pixel memory) that holds it.
     SelectRegion(SelectRegion),
     /// Clears colour and Z.
     Clear(Clear),
@@ -247,7 +248,7 @@ impl Command {
         }
     }
 
-    /// Returns a command of this kind whose operands are zero.
+    /// Returns a command of this kind in which all operands are zero.
     pub(crate) fn blank(kind: CommandKind) -> Self {
         match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::default()),
@@ -264,8 +265,8 @@ impl Command {
         }
     }
 
-    /// Extracts the operands from the program of a command. Other parts of the program can still differ, so the caller
-    /// must compare the whole program.
+    /// Extracts the operands from the program of a command. The other parts of the program are not checked, so the
+    /// caller must compare the whole program.
     fn from_program(kind: CommandKind, program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
         Some(match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::read(program, layout)?),
@@ -283,7 +284,8 @@ impl Command {
     }
 }
 
-/// Returns the error for valid instructions that differ from the program of a command. `label` identifies the command.
+/// Returns the error for valid instructions that differ from the program of a command. `label` is the number of this
+/// command's kind.
 fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
     DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
 }

@@ -1,4 +1,5 @@
-//! Conformance suite for pixel arrays. After every list, two arrays must be equal in every bit.
+//! Conformance suite for pixel arrays. Two arrays execute the same lists of instructions and must be equal in every bit
+//! after each list.
 //!
 //! [`crate::BitSerial`] is the reference model. A test of another array calls [`instructions`] and [`commands`] once.
 //! The test also calls [`random_round`] with the round numbers 0, 1, 2 and so on. A failing round can be repeated with
@@ -14,7 +15,7 @@ use crate::layout::Layout;
 use pxpl5_wire::{Linear, Quadratic, Word};
 use std::fmt;
 
-/// A difference between two arrays after both have executed the same list.
+/// A difference between two arrays that have executed the same list of instructions.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("after {after}: {difference}")]
 pub struct Mismatch {
@@ -24,7 +25,8 @@ pub struct Mismatch {
     pub difference: String,
 }
 
-/// Executes a list on both arrays, then compares the results of the arrays, Enable, and all 208 bits of all pixels.
+/// Executes a list of instructions on both arrays, then compares the results of the arrays, the Enable registers, and
+/// all 208 bits of all pixels.
 ///
 /// # Errors
 /// Returns the first [`Mismatch`].
@@ -195,7 +197,8 @@ fn corner_expressions() -> Vec<ArrayInstruction> {
     out
 }
 
-/// Returns a coefficient with upper bits beyond the 48 bits of a quadratic's value, and with its lowest bit set.
+/// Returns a coefficient that tests overflow: some of its bits lie above the 48 bits of a quadratic expression's value.
+/// The lowest bit is also set.
 const fn beyond_48_bits(v: i32) -> i64 {
     (v as i64) << 17 | 1
 }
@@ -216,7 +219,8 @@ fn uses(expression: Expression) -> Vec<ArrayInstruction> {
     usages.into_iter().map(|usage| ArrayInstruction::Evaluate { expression, usage }).collect()
 }
 
-/// Widths in bits of the destination and the two operands: equal, narrower, wider, one bit, and the largest.
+/// Widths in bits of the destination and the two operands of tested instructions: equal, narrower, wider, one bit, and
+/// the largest.
 const WIDTHS: [[u8; 3]; 7] = [[8, 8, 8], [5, 12, 9], [20, 7, 11], [1, 1, 1], [64, 64, 64], [64, 3, 33], [2, 40, 1]];
 
 fn corner_fields() -> Vec<ArrayInstruction> {

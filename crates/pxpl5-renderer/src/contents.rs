@@ -1,9 +1,9 @@
-//! Effects of a command list on pixel memory, as far as they follow from the kinds of its commands.
+//! Effects of a command list on pixel memory, as far as the kinds of the commands determine the effects.
 
 use crate::command::CommandKind;
 use pxpl5_wire::CommandRun;
 
-/// Largest number of region contexts in pixel memory.
+/// Largest number of region contexts (parts of pixel memory that each hold one region).
 pub const MAX_CONTEXTS: usize = 8;
 
 /// Returns true if a command list can change pixels. Such a list contains a command that neither selects nor copies a
@@ -13,10 +13,10 @@ pub(crate) fn changes_pixels(runs: &[CommandRun]) -> bool {
     runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))
 }
 
-/// Returns the number of words before the clear command, if a command list begins with the clearing of its context.
-/// Returns `None` for other lists.
+/// Returns the number of words before the clear command of a list, if the list clears its region context before other
+/// work. Returns `None` for other lists.
 ///
-/// When such a list has started, all earlier drawing in the context is erased.
+/// Once the clear command has started, all earlier drawing in this part of pixel memory is erased.
 pub(crate) fn words_before_clear(runs: &[CommandRun]) -> Option<u64> {
     let mut words = 0;
     for run in runs {

@@ -1,4 +1,5 @@
-//! The controller of the array: selected context and region, stored coefficients, and checks of operands.
+//! The controller of the array: it selects the context (part of pixel memory) and the region, stores coefficients, and
+//! checks operands.
 
 use crate::array::{ArrayFault, FaultKind};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, MEMORY_BITS, Operand, QUADRATIC_BITS};
@@ -31,7 +32,7 @@ pub(crate) struct Controller {
     quadratic: Quadratic,
 }
 
-/// An expression with the array's upper left pixel as origin.
+/// An expression whose origin is the array's upper left pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LocalExpression {
     Linear(Linear),
@@ -69,29 +70,30 @@ impl Controller {
         }
     }
 
-    /// Returns the picture's column and row at the array's upper left pixel.
+    /// Returns the column and row, within the picture, of the array's upper left pixel.
     pub(crate) fn origin(&self) -> [i32; 2] {
         [self.left.into(), self.top.into()]
     }
 
-    /// Returns the same linear expression with the array's upper left pixel as origin.
+    /// Returns the same linear expression with another origin: the array's upper left pixel instead of the picture's.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }
 
-    /// Stores the last linear coefficients of a command that was executed as a whole, for reuse by a later instruction.
+    /// Stores the last linear coefficients of a command that the array has executed in one step. A later instruction
+    /// can then reuse the coefficients.
     pub(crate) fn hold(&mut self, linear: Linear) {
         self.linear = linear;
     }
 
-    /// Stores the last quadratic coefficients of a command that was executed as a whole, for reuse by a later
-    /// instruction.
+    /// Stores the last quadratic coefficients of a command that the array has executed in one step. A later instruction
+    /// can then reuse the coefficients.
     pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
         self.quadratic = quadratic;
     }
 
-    /// Returns the stored quadratic expression with the array's upper left pixel as origin.
+    /// Returns the stored quadratic expression, with the array's upper left pixel as origin.
     pub(crate) fn localise_quadratic(&self) -> Quadratic {
         let q = self.quadratic;
         let x = i64::from(self.left);
@@ -104,7 +106,8 @@ impl Controller {
         }
     }
 
-    /// Returns the bits of pixel memory to which an operand refers in the selected context.
+    /// Returns the bits of pixel memory to which an operand refers in the selected context (the part of pixel memory
+    /// that holds one region).
     ///
     /// # Errors
     /// Returns [`FaultKind::FieldOutOfRange`] if the field ends beyond pixel memory.
@@ -122,7 +125,8 @@ impl Controller {
         }
     }
 
-    /// Checks all operands of an instruction against pixel memory and against each other, in the selected context.
+    /// Checks all operands of an instruction. Each field must lie in pixel memory, and the fields may overlap only as
+    /// the instruction allows.
     pub(crate) fn check(&self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
         // Shifts can work in place. Products and roots must not overlap their operands.
         match *instruction {

@@ -15,21 +15,21 @@
 use pxpl5_sim::{Span, Time};
 use std::collections::VecDeque;
 
-/// Consecutive commands of equal length and execution time.
+/// Consecutive commands with an equal number of words and equal execution time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CommandBatch {
     pub(crate) words_each: u32,
     pub(crate) count: u32,
-    /// Execution time of one command. `None` for blocking commands.
+    /// Execution time of one command. `None` for blocking commands, which end when a copy ends.
     pub(crate) span_each: Option<Span>,
 }
 
-/// Future times that are computed when words arrive or when a copy ends.
+/// Future times of the FIFO, which are computed when words arrive or when a copy ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
     /// Time at which the last word of the arriving message enters the FIFO. `None` while this time is unknown.
     pub(crate) accepted: Option<Time>,
-    /// Time at which a blocking command starts.
+    /// Time at which a blocking command (the copy of a region) starts.
     pub(crate) blocks: Option<Time>,
 }
 
@@ -45,8 +45,8 @@ struct HeldCommand {
 /// An interval is at least as long as the transfer of a command's words over the channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Index of the first word that fits into the FIFO when the first of these commands starts. Words are counted from
-    /// 0 since the start of the run.
+    /// Index of the first word that fits into the FIFO when the first command of this sequence starts. Words are
+    /// counted from 0 since the start of the run.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -55,8 +55,8 @@ struct Departure {
 }
 
 impl Departure {
-    /// Returns the index of the command whose start makes room for the word with index `word`. If no start of these
-    /// commands makes room for this word, the function returns the last index.
+    /// Returns the index, within this sequence, of the command whose start makes room for the word with index `word`.
+    /// If no command of the sequence makes room for this word, the function returns the last index.
     ///
     /// `word` must be at least `made_room_for`.
     const fn last_for(&self, word: u64) -> u64 {
@@ -67,7 +67,7 @@ impl Departure {
         if place < self.count { place } else { self.count - 1 }
     }
 
-    /// Returns the same sequence without its first `commands` commands.
+    /// Returns this sequence of commands without its first `commands` commands.
     fn behind(self, commands: u64) -> Self {
         Self {
             made_room_for: self.made_room_for + commands * self.words_each,
@@ -83,12 +83,13 @@ impl Departure {
 struct StartTimes(VecDeque<Departure>);
 
 impl StartTimes {
-    /// Returns the time at which the words with indices `first` to `last` have all entered. The result is at least
+    /// Returns the time at which all words with indices `first` to `last` have entered the FIFO. The result is at least
     /// `soonest`.
     ///
     /// Each word waits until the FIFO has room for it, and then takes one word time on the channel. `first` must not
-    /// decrease from call to call. For commands that start at equal intervals, only the last command that makes room
-    /// matters. The reason is that an interval is at least as long as the transfer of a command's words.
+    /// decrease from call to call. Of each sequence of commands that start at equal intervals, only the last command
+    /// that makes room matters. The reason is that an interval is at least as long as the transfer of a command's
+    /// words.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -103,7 +104,7 @@ impl StartTimes {
         complete
     }
 
-    /// Removes the commands that made room only for words before `first`.
+    /// Removes the commands whose starts made room only for words before `first`.
     #[inline]
     fn discard_before(&mut self, first: u64) {
         while self.0.get(1).is_some_and(|next| next.made_room_for <= first) {
@@ -120,7 +121,7 @@ impl StartTimes {
 pub(crate) struct InputFifo {
     depth: u64,
     word: Span,
-    /// Commands of the arriving message whose arrival times are not known yet.
+    /// Commands of the arriving message, until the arrival times of these commands are known.
     in_transit: VecDeque<CommandBatch>,
     transit_known: bool,
     last_word_at: Time,
@@ -128,57 +129,58 @@ pub(crate) struct InputFifo {
     left: StartTimes,
     words_left: u64,
     waiting: VecDeque<HeldCommand>,
-    /// Time from which the controller is free. `None` while a blocking command runs.
+    /// Time from which the controller is free. `None` while a blocking command (the copy of a region) runs.
     free_at: Option<Time>,
     busy: Span,
-    /// Total time for which blocking commands have occupied the controller.
+    /// Total time for which blocking commands (copies of regions) have occupied the controller.
     blocked: Span,
     last_block: Block,
     /// Start and end of the last interval in which the controller waited for commands.
     last_wait: (Time, Time),
-    /// Record of arriving and leaving words, kept only while the FIFO is watched.
+    /// Record of arriving and leaving words. `None` if no caller has asked for this record.
     watched: Option<Watched>,
 }
 
-/// Longest execution time of a command that counts as the selection of the region to copy. A longer command draws the
-/// region. The limit matters if the controller waited before the command. A selection takes 6 clocks of 40 MHz, which
-/// are 150 ns.
+/// Longest execution time of commands that count as the selection of the region to copy. Commands that take longer
+/// count as drawing. If the controller waits before the selection, the drawing of the region ends at the start of this
+/// wait. A selection takes 6 clocks of 40 MHz, which are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
-/// Times of the last blocking command and of the commands before it.
+/// Times of the last blocking command (copy of a region) and of the commands before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Block {
-    /// Time at which the previous blocking command ended. From this time on, the controller could execute the commands
-    /// before this command. The next field, `finished_at`, is the end time of the last of these commands. The selection
-    /// of the region to copy does not count if the controller waited for it.
+    /// End time of the previous blocking command. From this time on, the controller could execute the commands between
+    /// the two blocking commands.
     pub(crate) begun_at: Time,
+    /// End time of the last command before this blocking command. If the controller waited for the selection of the
+    /// region to copy, the selection does not count.
     pub(crate) finished_at: Time,
-    /// Start time of the blocking command.
+    /// Start time of this blocking command.
     pub(crate) start: Time,
     /// Execution time of the commands between the previous blocking command and this command.
     pub(crate) executed: Span,
-    /// Execution time of all commands before this command. The next field, `resumed_at`, is the time at which the
-    /// previous blocking command ended.
+    /// Execution time of all commands before this command, since the start of the run.
     busy: Span,
+    /// Time of the latest end of a blocking command.
     resumed_at: Time,
 }
 
-/// Record of the words that enter and leave a watched FIFO. Its times can lie in the future.
+/// Record of the words that enter and leave the FIFO. The times of the record can lie in the future.
 #[derive(Debug, Default)]
 struct Watched {
-    /// Changes of the FIFO's content since the last [`InputFifo::take_changes`]: a time, and the number of words that
-    /// enter (positive) or leave (negative).
+    /// Changes of the number of words in the FIFO since the last [`InputFifo::take_changes`]. Each entry has a time,
+    /// and the number of words that enter (positive) or leave (negative).
     changes: Vec<(Time, i64)>,
     entered: Course,
     left: Course,
 }
 
-/// A sum that only increases, as a function of time. The record begins at the last call of `discard_before`.
+/// A growing number of words as a function of simulated time. The record begins at the last call of `discard_before`.
 #[derive(Debug, Default)]
 struct Course {
-    /// Times at which the sum increases, in ascending order, each with the new sum.
+    /// Times at which the number of words grows, in ascending order. Each time has the new number of words.
     steps: VecDeque<(Time, u64)>,
-    /// The sum before the first entry of `steps`.
+    /// The number of words before the first entry of `steps`.
     before: u64,
     after: u64,
 }
@@ -231,7 +233,7 @@ impl InputFifo {
         }
     }
 
-    /// Adds commands, in order, to the message that the next call of [`Self::message`] announces.
+    /// Adds commands to the message that the next call of [`Self::message`] announces. Commands must be added in order.
     pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
     }
@@ -245,7 +247,7 @@ impl InputFifo {
         self.advance()
     }
 
-    /// Ends the running blocking command at time `now`.
+    /// Ends the running blocking command (the copy of a region) at time `now`.
     pub(crate) fn resume(&mut self, now: Time) -> Progress {
         self.free_at = Some(now);
         self.blocked += now.since(self.last_block.start);
@@ -259,7 +261,7 @@ impl InputFifo {
     }
 
     /// Returns the total execution time until `now`, without blocking commands. `now` must not be before the last
-    /// event. The result assumes that all received but unfinished commands run without a gap from `now` on.
+    /// event. The function assumes that all received but unfinished commands run without a gap from `now` on.
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
         Span(self.busy.0.saturating_sub(ahead))
@@ -271,7 +273,8 @@ impl InputFifo {
         self.blocked + Span(goes_on.unwrap_or(0))
     }
 
-    /// Returns the last blocking command. Its times are valid once it has started.
+    /// Returns the last blocking command (copy of a region). The times of the result are valid once this command has
+    /// started.
     pub(crate) const fn last_block(&self) -> Block {
         self.last_block
     }
@@ -280,14 +283,14 @@ impl InputFifo {
         self.watched.get_or_insert_default();
     }
 
-    /// Returns the numbers of words that have entered and left by `now`, or `None` if the FIFO is not watched. `now`
-    /// must not be before the last event.
+    /// Returns the numbers of words that have entered and left the FIFO by `now`. Returns `None` if these numbers are
+    /// not recorded. `now` must not be before the last event.
     pub(crate) fn passed(&self, now: Time) -> Option<WordsPassed> {
         let watched = self.watched.as_ref()?;
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
     }
 
-    /// Removes the parts of the record for times before `now`.
+    /// Removes the entries of the word record for times before `now`.
     pub(crate) fn discard_before(&mut self, now: Time) {
         if let Some(Watched { entered, left, .. }) = &mut self.watched {
             entered.discard_before(now);
@@ -300,12 +303,12 @@ impl InputFifo {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
 
-    /// Returns true while a non-blocking command runs, according to the commands received so far.
+    /// Returns true while a non-blocking command runs. The function uses only the commands received so far.
     pub(crate) fn is_executing(&self, now: Time) -> bool {
         self.free_at.is_some_and(|free_at| free_at > now)
     }
 
-    /// Returns true while a blocking command runs.
+    /// Returns true while a blocking command (the copy of a region) runs.
     pub(crate) const fn is_blocked(&self) -> bool {
         self.free_at.is_none()
     }
@@ -347,13 +350,13 @@ impl InputFifo {
         progress
     }
 
-    /// Computes all commands of a batch at once. The results equal the results of [`InputFifo::arrival`] and
-    /// [`InputFifo::start`], called for each command.
+    /// Computes the times of all commands of a batch in one step. The results equal the results of
+    /// [`InputFifo::arrival`] and [`InputFifo::start`], called for each command.
     ///
     /// The FIFO must not be watched. Each command must fit in the FIFO, must not block, and must take at least as long
-    /// as the transfer of its words. Each command after the first then starts at the end of the previous command. At
-    /// this time its last word has arrived, because its first word found room at the latest at the start of the
-    /// previous command.
+    /// as the transfer of its words. Under these conditions, each command after the first starts at the end of the
+    /// previous command. The reason is that the command's first word finds room at the latest at the start of the
+    /// previous command. The last word has therefore arrived when the previous command ends.
     fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,
@@ -390,8 +393,8 @@ impl InputFifo {
         }
     }
 
-    /// Returns the time at which the next `words` words have all entered. Returns `None` while this time depends on the
-    /// end of a blocking command.
+    /// Returns the time at which the next `words` words have all entered the FIFO. Returns `None` while this time
+    /// depends on the end of a blocking command (copy of a region).
     fn arrival(&mut self, words: u32) -> Option<Time> {
         let first = self.words_in;
         let last = self.words_in + u64::from(words) - 1;
@@ -402,7 +405,8 @@ impl InputFifo {
         (last - self.depth < self.words_left).then(|| self.left.entered(first, last, complete, self.word))
     }
 
-    /// Starts the waiting commands until one blocks. Returns the start time of the blocking command, if there is one.
+    /// Starts the waiting commands in order, up to and including the first blocking command (copy of a region). Returns
+    /// the start time of the blocking command, if there is one.
     fn start_waiting(&mut self) -> Option<Time> {
         while let Some(free_at) = self.free_at {
             let command = self.waiting.pop_front()?;
@@ -414,8 +418,8 @@ impl InputFifo {
         None
     }
 
-    /// Starts a command that has arrived completely. While a blocking command runs, the function puts the command into
-    /// the queue. Returns the start time if the command blocks.
+    /// Starts a command that has arrived completely. If a blocking command runs, the function puts the new command into
+    /// the queue instead. Returns the start time if the new command blocks.
     fn start_or_wait(&mut self, command: HeldCommand) -> Option<Time> {
         match self.free_at {
             Some(free_at) => self.start(command, free_at),
@@ -472,7 +476,7 @@ mod tests {
 
     const WORD: Span = Span(50_000);
 
-    /// A reference model of the rules, which handles one word at a time.
+    /// A reference model of the FIFO's rules, which handles one word at a time.
     struct ReferenceFifo {
         depth: usize,
         held: VecDeque<Time>,

@@ -2,7 +2,7 @@
 //!
 //! No list of the machine's instructions is public. F89, TR94 and LK publish only the principles. Bit-serial
 //! instructions arrive in ring messages. An Enable register masks pixels. A tree evaluates linear and quadratic
-//! expressions for all pixels at once. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
+//! expressions in all pixels together. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
 //! background. Mnemonics, encodings and operand rules below are **assumed**. These instructions are the smallest set
 //! that can execute the published program of a triangle and the shading at the end of a frame.
 //!
@@ -88,9 +88,9 @@ pub enum Expression {
     Linear(Linear),
     /// A quadratic expression with its coefficients.
     Quadratic(Quadratic),
-    /// Repetition of the most recent linear expression. The evaluator has kept its coefficients.
+    /// Repetition of the most recent linear expression. The evaluator uses its stored coefficients.
     LinearAgain,
-    /// Repetition of the most recent quadratic expression. The evaluator has kept its coefficients.
+    /// Repetition of the most recent quadratic expression. The evaluator uses its stored coefficients.
     QuadraticAgain,
 }
 
@@ -116,16 +116,16 @@ impl Expression {
 pub enum ExpressionUse {
     /// Disables pixels where the expression is negative.
     DisableNegative,
-    /// Stores the bits of the expression from bit `shift` on in a field.
+    /// Stores the bits of the expression in a field. The low `shift` bits of the expression are left out.
     Load {
-        /// Field that receives the bits.
+        /// Field that receives the bits of the expression.
         field: Operand,
         /// Number of low bits of the expression that are left out.
         shift: u8,
     },
-    /// Adds the bits of the expression from bit `shift` on to a field.
+    /// Adds the bits of the expression to a field. The low `shift` bits of the expression are left out.
     Add {
-        /// Field to which the bits are added.
+        /// Field to which the bits of the expression are added.
         field: Operand,
         /// Number of low bits of the expression that are left out.
         shift: u8,
@@ -133,7 +133,7 @@ pub enum ExpressionUse {
     /// Disables pixels unless the bits of the expression from bit `shift` on are less than the field. Both numbers are
     /// unsigned.
     DisableNotLess {
-        /// Field with which the bits are compared.
+        /// Field with which the bits of the expression are compared.
         field: Operand,
         /// Number of low bits of the expression that are left out.
         shift: u8,
@@ -141,7 +141,7 @@ pub enum ExpressionUse {
     /// Computes the expression minus `subtrahend << left_shift`, and stores the bits of this difference from bit
     /// `shift` on.
     LoadMinus {
-        /// Field that receives the bits.
+        /// Field that receives the bits of the difference.
         field: Operand,
         /// Number of low bits of the difference that are left out.
         shift: u8,
@@ -193,22 +193,24 @@ pub enum Test {
 pub enum ArrayInstruction {
     /// Enables every pixel: E := 1.
     EnableAll {
-        /// A number that the array ignores. In a command, it is the opcode of the command's kind.
+        /// A number that the array ignores. If the instruction is the first of a command, the number is the opcode of
+        /// the command's kind.
         label: u8,
     },
     /// Disables every pixel: E := 0.
     EnableNone,
-    /// Inverts Enable in every pixel: E := not E.
+    /// Inverts the Enable register in every pixel: E := not E.
     EnableInvert,
-    /// Loads Enable from a field of one bit.
+    /// Loads the Enable register from a field of one bit.
     EnableLoad(Operand),
-    /// Stores Enable in a field of one bit, in every pixel.
+    /// Stores the Enable register in a field of one bit, in every pixel.
     EnableStore(Operand),
-    /// Combines Enable with a field of one bit: E := E AND field.
+    /// Combines the Enable register with a field of one bit: E := E AND field.
     EnableAnd(Operand),
-    /// Selects the context and the region for the following instructions.
+    /// Selects the region for the following instructions, and the context (part of pixel memory) that holds it.
     Select {
-        /// First bit of the context in pixel memory. This number is added to the addresses of relative operands.
+        /// First bit of the context (the part of pixel memory that holds the region). This number is added to the
+        /// addresses of relative operands.
         context_base: u8,
         /// Screen x of the array's left column.
         left: u16,
@@ -219,7 +221,7 @@ pub enum ArrayInstruction {
     Evaluate {
         /// Expression to evaluate, with new coefficients or with the coefficients of an earlier expression.
         expression: Expression,
-        /// Operation that each pixel performs with the bits.
+        /// Operation that each pixel performs with the bits of the expression.
         usage: ExpressionUse,
     },
     /// Computes destination := source >> by. A shift by 0 copies the source.
@@ -304,14 +306,14 @@ pub enum ArrayInstruction {
     },
     /// Stores 32 bits of every pixel in a block of the backing store. The array continues during the transfer.
     StoreBlock {
-        /// Field of 32 bits of pixel memory.
+        /// Field of 32 bits of pixel memory whose content is stored.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,
     },
     /// Loads 32 bits of every pixel from a block of the backing store. The array continues during the transfer.
     LoadBlock {
-        /// Field of 32 bits of pixel memory.
+        /// Field of 32 bits of pixel memory that receives the content of the block.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,

@@ -19,11 +19,11 @@ pub struct ArrayPool {
 /// Working memory of one thread that computes pixels.
 struct ArrayAndWords {
     array: Lanes,
-    /// Buffer for the words of command lists. It is reused to avoid allocations.
+    /// Buffer for the words of command lists. The thread reuses the buffer to avoid allocations.
     words: Vec<Word>,
 }
 
-/// Cache key of a region without primitives. The key has all data that affect the pixels.
+/// Cache key of a region without primitives. The key contains all data that affect the pixels of the region.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct EmptyRegion {
     /// Words of all commands of the region except copy commands.
@@ -80,13 +80,13 @@ impl ArrayPool {
     }
 }
 
-/// A pending computation of a region's pixels, with all command lists sent to a region context since the last clear of
-/// this context.
+/// A computation of a region's pixels that has not run yet. The job holds all command lists sent to a region context
+/// (part of pixel memory) since the last clear of this context.
 #[derive(Debug)]
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
     pub(crate) lists: Arc<Vec<CommandContent>>,
-    /// True if the first list overwrites the whole content of the array.
+    /// True if the first command list overwrites the whole content of the array.
     pub(crate) cleared: bool,
     /// True if two optimizations are on. The first leaves out commands that touch no pixel, and the second caches
     /// regions without primitives.
@@ -114,7 +114,8 @@ impl PixelJob {
         })
     }
 
-    /// Returns the cache key of a region whose commands are `words`. None of these commands draws a primitive.
+    /// Returns the cache key of a region whose commands are `words`. The caller must ensure that none of these commands
+    /// draws a primitive.
     ///
     /// Returns `None` if some words are not a command, or if depths are copied too.
     fn as_empty_region(&self, words: &[Word]) -> Option<EmptyRegion> {
@@ -131,13 +132,13 @@ impl PixelJob {
         (self.content == CopyContent::Colour).then_some(region)
     }
 
-    /// Returns the number of columns and rows of the region. Each can be less than the array's 128.
+    /// Returns the number of columns and rows of the region. Each number can be less than the array's 128.
     fn size(&self) -> [u32; 2] {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         [width, height]
     }
 
-    /// Executes `words` and then the remaining lists, and returns the region's pixels.
+    /// Executes `words`, then the command lists in `lists`, and returns the region's pixels.
     fn draw(&self, array: &mut Lanes, words: &mut Vec<Word>, lists: Iter<'_, CommandContent>) -> Arc<[Word]> {
         // If the context was not cleared, pixels without drawing are black.
         if !self.cleared {
@@ -160,8 +161,8 @@ impl PixelJob {
         self.content.of(colours, || self.depths(array))
     }
 
-    /// Executes words, and returns the pixels of the last output to this job's target. A fault ends the list, as on the
-    /// hardware. Pixels drawn before the fault stay.
+    /// Executes words, and returns the pixels of the last output to the frame buffer of this job. A fault ends the
+    /// list, as on the hardware. Pixels drawn before the fault stay.
     fn execute(&self, array: &mut Lanes, words: &[Word]) -> Option<OutputRegion> {
         self.copied(array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs))
     }
@@ -225,7 +226,8 @@ mod tests {
         }
     }
 
-    /// Returns the pixels of a region for picture number `picture`, cleared with a colour.
+    /// Returns the pixels of a region after a clear command with the given colour. `picture` is the picture number of
+    /// the region.
     fn cleared(pool: &Arc<ArrayPool>, colour: Word, picture: u64) -> Arc<[Word]> {
         let target = CopyTarget {
             frame_buffer: NodeId(9),

@@ -1,5 +1,5 @@
-//! Fast pixel array that computes with whole numbers instead of single bits. Its results equal [`crate::BitSerial`] bit
-//! for bit.
+//! Fast pixel array that computes with whole numbers instead of single bits. The results of the array equal
+//! [`crate::BitSerial`] bit for bit.
 
 mod bounds;
 mod columns;
@@ -40,7 +40,8 @@ pub struct Lanes {
     templates: Templates,
     controller: Controller,
     columns: PixelColumns,
-    /// Columns of the most recently used context. `None` if no context was used.
+    /// Indices of the columns (arrays of words) for the most recently used context, which is a region in pixel memory.
+    /// `None` if no context was used.
     selected: Option<ContextColumns>,
     enable: Enable,
     backing: Vec<Option<Box<[u64]>>>,
@@ -107,7 +108,8 @@ impl Lanes {
 }
 
 impl Lanes {
-    /// Returns the depths of the selected context's upper left `width` x `height` pixels, row by row.
+    /// Returns the depths of the upper left `width` x `height` pixels of the selected context (region in pixel memory),
+    /// row by row.
     ///
     /// A depth has as many bits as the layout's field Z.
     pub(crate) fn read_depth(&self, width: u32, height: u32) -> Arc<[Word]> {
@@ -119,7 +121,7 @@ impl Lanes {
 /// State of the array while it draws a command list.
 struct Drawing<'a> {
     array: &'a mut Lanes,
-    /// Collected words that have not been executed yet.
+    /// Words of commands that were collected, but not executed yet.
     words: &'a mut Vec<Word>,
     /// Regions copied so far. After a fault, this field holds the fault, and no more commands are drawn.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,
@@ -284,7 +286,7 @@ mod tests {
         }
 
         /// Creates triangles that are a few columns wide and at least as many rows high. The triangles can cross the
-        /// region's borders.
+        /// borders of the region.
         fn slim(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
             let mut all = Self::random(layout, random, with_normals);
             for i in 0..LANES {

@@ -1,6 +1,7 @@
 //! Layouts: the division of the 208 bits of pixel memory into fields.
 
 use crate::isa::{MEMORY_BITS, Operand};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
@@ -14,48 +15,24 @@ use std::ops::RangeInclusive;
 pub struct ContextPlan {
     /// Name of the layout in error messages.
     pub name: &'static str,
-    /// Number of regions that share the array.
+    /// Number of contexts. Each context holds one region in pixel memory.
     pub contexts: u8,
-    /// Bits of pixel memory that each context takes.
+    /// Bits of pixel memory that each context (region in the array) takes.
     pub context_bits: u8,
-    /// Field of the colour: 24 bits, 0xRRGGBB.
+    /// Field of the colour in each context: 24 bits, 0xRRGGBB.
     pub colour: Operand,
     /// Field of the depth, 8 to 24 bits. A smaller depth is nearer.
     pub z: Operand,
     /// Field of the normal: x, y and z in this order, 12 bits each, two's complement. `None` if the layout does not
     /// support Phong shading.
     pub normal: Option<Operand>,
-    /// Field for temporary values of spheres and shading.
+    /// Field for temporary values of sphere and shading commands.
     pub scratch: Option<Operand>,
 }
 
 /// A checked division of pixel memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout(ContextPlan);
-
-/// The reason why a plan is not a valid layout.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LayoutError {
-    /// Fields overlap or extend beyond pixel memory. The error text has a drawing of the bit ranges.
-    #[error("layout {name} does not fit {} bits:\n{drawing}", MEMORY_BITS)]
-    DoesNotFit {
-        /// Name of the rejected layout, from [`ContextPlan::name`].
-        name: &'static str,
-        /// Text drawing of the fields, one line for each field.
-        drawing: String,
-    },
-    /// A field has a width that the commands do not support.
-    #[error("{field} has {found} bits, expected {expected}")]
-    Width {
-        /// Name of the field in [`ContextPlan`].
-        field: &'static str,
-        /// Allowed widths in bits, as text.
-        expected: &'static str,
-        /// Actual width in bits.
-        found: u8,
-    },
-}
 
 /// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 of Z and 36 of normal, and 124
 /// bits of scratch.
@@ -69,7 +46,8 @@ const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(84, 124)),
 };
 
-/// Layout of Slats: four regions with 24 bits of colour and 20 of Z each, and 32 bits of common scratch.
+/// Layout of Slats: four regions, each with 24 bits of colour and 20 bits of Z. All regions share 32 bits of scratch
+/// memory.
 const SLATS: ContextPlan = ContextPlan {
     name: "Slats",
     contexts: 4,
@@ -80,8 +58,8 @@ const SLATS: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(176, 32)),
 };
 
-/// Layout of Slats with equal parts: four regions with 24 bits of colour, 24 of Z and 4 unused bits each, without
-/// scratch.
+/// Layout of Slats with equal parts: four regions, each with 24 bits of colour, 24 bits of Z and 4 unused bits. There
+/// is no scratch memory.
 const SLATS_QUARTERS: ContextPlan = ContextPlan {
     name: "Slats in quarters",
     contexts: 4,
@@ -95,25 +73,25 @@ const SLATS_QUARTERS: ContextPlan = ContextPlan {
 impl Layout {
     /// Returns the layout of Rendering Control with Phong shading: one region.
     ///
-    /// The layout has 24 bits of colour, 24 of Z, 36 of normal and 124 of scratch.
+    /// The layout has 24 bits of colour, 24 bits of Z, 36 bits of normal and 124 bits of scratch memory.
     #[must_use]
     pub const fn rendering_control_phong() -> Self {
         Self(RENDERING_CONTROL_PHONG)
     }
 
-    /// Returns the layout of Slats: four regions with 24 bits of colour and 20 of Z each, and 32 bits of common
-    /// scratch.
+    /// Returns the layout of Slats: four regions, each with 24 bits of colour and 20 bits of Z. All regions share 32
+    /// bits of scratch memory.
     ///
-    /// TR94 publishes four contexts in 208 bits. Four equal parts of 52 bits would leave no room for the scratch of a
-    /// sphere (30 bits). A context needs the scratch only while a command runs, so all contexts can share one scratch.
-    /// To make room for the scratch, Z has 4 bits less (assumed).
+    /// TR94 publishes four contexts (regions) in 208 bits. Four equal parts of 52 bits would leave no room for the
+    /// scratch memory of a sphere (30 bits). A context needs the scratch memory only while a command runs, so all
+    /// contexts can share it. To make room for the scratch memory, Z has 4 bits less (assumed).
     #[must_use]
     pub const fn slats() -> Self {
         Self(SLATS)
     }
 
-    /// Returns the layout of Slats with four equal parts of 52 bits: 24 of colour, 24 of Z and 4 unused bits. The
-    /// layout supports triangles, but no spheres.
+    /// Returns the layout of Slats with four equal parts of 52 bits: 24 bits of colour, 24 bits of Z and 4 unused bits.
+    /// The layout supports triangles, but no spheres.
     #[must_use]
     pub const fn slats_quarters() -> Self {
         Self(SLATS_QUARTERS)
@@ -122,16 +100,20 @@ impl Layout {
     /// Creates a layout from a plan.
     ///
     /// # Errors
-    /// Returns [`LayoutError::DoesNotFit`] if fields overlap or extend beyond pixel memory. The text of this error has
-    /// a drawing of the bit ranges. Returns [`LayoutError::Width`] if a field has a wrong width.
-    pub fn new(plan: ContextPlan) -> Result<Self, LayoutError> {
+    /// Returns a [`SettingError`] if a field has a wrong width, or if fields overlap or extend beyond pixel memory. The
+    /// text of the second error draws the bit ranges.
+    pub fn new(plan: ContextPlan) -> Result<Self, SettingError> {
         check_widths(&plan)?;
         let ranges = ranges(&plan);
         let bad = conflicts(&plan, &ranges);
         if bad.iter().all(Option::is_none) {
             return Ok(Self(plan));
         }
-        Err(LayoutError::DoesNotFit { name: plan.name, drawing: draw(&ranges, &bad) })
+        Err(SettingError::combination(format_args!(
+            "layout {} does not fit {MEMORY_BITS} bits:\n{}",
+            plan.name,
+            draw(&ranges, &bad)
+        )))
     }
 
     /// Returns the unchecked plan with the fields of the layout.
@@ -140,7 +122,7 @@ impl Layout {
         &self.0
     }
 
-    /// Returns the first bit of context `context` in pixel memory.
+    /// Returns the first bit of context `context` (a region) in pixel memory.
     #[must_use]
     pub const fn context_base(&self, context: u8) -> u8 {
         context.wrapping_mul(self.0.context_bits)
@@ -165,8 +147,8 @@ impl Layout {
         Some(all.part(index * NORMAL_BITS as u8, NORMAL_BITS as u8).signed())
     }
 
-    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch has only 30 to 35 bits. Returns
-    /// `None` if the scratch is smaller.
+    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch field has only 30 to 35 bits.
+    /// Returns `None` if the scratch field is smaller.
     #[must_use]
     pub fn root_bits(&self) -> Option<u8> {
         match self.0.scratch?.width {
@@ -176,7 +158,7 @@ impl Layout {
         }
     }
 
-    /// Returns the bit ranges of all fields, in the order of the plan.
+    /// Returns the bit ranges of all fields, in the order of the fields in [`ContextPlan`].
     #[must_use]
     pub fn ranges(&self) -> Vec<FieldRange> {
         ranges(&self.0)
@@ -190,7 +172,7 @@ pub struct FieldRange {
     pub name: String,
     /// First bit in pixel memory, 0 to 207.
     pub first: u32,
-    /// Length in bits.
+    /// Length of the range in bits.
     pub width: u32,
 }
 
@@ -200,23 +182,23 @@ impl FieldRange {
     }
 }
 
-fn check_widths(plan: &ContextPlan) -> Result<(), LayoutError> {
+fn check_widths(plan: &ContextPlan) -> Result<(), SettingError> {
     check_width("colour", "24", 24..=24, plan.colour)?;
     check_width("z", "8 to 24", 8..=24, plan.z)?;
     plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
 }
 
-/// Checks a field's width against `allowed`. `expected` is the text of the allowed widths for the error.
+/// Checks the width of a field against `allowed`. `expected` describes the allowed widths in the error text.
 fn check_width(
     field: &'static str,
     expected: &'static str,
     allowed: RangeInclusive<u8>,
     found: Operand,
-) -> Result<(), LayoutError> {
+) -> Result<(), SettingError> {
     if allowed.contains(&found.width) {
         return Ok(());
     }
-    Err(LayoutError::Width { field, expected, found: found.width })
+    Err(SettingError::combination(format_args!("{field} has {} bits, expected {expected}", found.width)))
 }
 
 fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
@@ -240,7 +222,7 @@ fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     out
 }
 
-/// Returns one entry for each range: the text of its error, or `None` if it has no error.
+/// Returns one entry for each bit range of a plan: the text of the range's error, or `None` if the range has no error.
 fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
@@ -251,8 +233,8 @@ fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     out
 }
 
-/// Returns the error text of a range that overlaps an earlier range or extends beyond pixel memory. Returns `None` for
-/// other ranges.
+/// Returns the error text of a bit range that overlaps an earlier range or extends beyond pixel memory. Returns `None`
+/// for other ranges.
 fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
     if range.end() > MEMORY_BITS {
         return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
@@ -265,7 +247,8 @@ const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {
     a.first < b.end() && b.first < a.end()
 }
 
-/// Draws one line for each field: bit range, a bar with one character per four bits, name, and error text.
+/// Returns a text drawing with one line for each field: bit range, a bar with one character for each four bits, name,
+/// and error text.
 fn draw(ranges: &[FieldRange], conflicts: &[Option<String>]) -> String {
     let mut out = String::new();
     for (range, conflict) in ranges.iter().zip(conflicts) {
@@ -368,7 +351,7 @@ mod tests {
     #[test]
     fn a_wrong_width_is_named() {
         let plan = ContextPlan { z: Operand::context(24, 28), ..SLATS };
-        let expected = LayoutError::Width { field: "z", expected: "8 to 24", found: 28 };
-        assert_eq!(Layout::new(plan), Err(expected));
+        let error = Layout::new(plan).expect_err("28 bits");
+        assert_eq!(error.to_string(), "z has 28 bits, expected 8 to 24");
     }
 }

@@ -1,4 +1,4 @@
-//! Renderer of Pixel-Planes 5: a 128 x 128 SIMD array of one-bit processors behind an input FIFO on the ring.
+//! Renderer of Pixel-Planes 5: a 128 x 128 SIMD array of one-bit processors with an input FIFO at the ring.
 //!
 //! ```text
 //!  ring --> port --> input FIFO --> controller --> expression evaluator (trees) --+
@@ -75,7 +75,7 @@ pub use command::{
 pub use contents::MAX_CONTEXTS;
 pub use job::ArrayPool;
 pub use lanes::Lanes;
-pub use layout::{ContextPlan, FieldRange, Layout, LayoutError};
+pub use layout::{ContextPlan, FieldRange, Layout};
 pub use look::RendererSnapshot;
 pub use simd::Vectors;
 pub use timing::RendererTiming;

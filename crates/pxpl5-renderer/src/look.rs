@@ -9,7 +9,8 @@ use std::collections::VecDeque;
 /// A snapshot of a renderer board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RendererSnapshot {
-    /// Number of words in the input FIFO. Only words of complete commands count. `None` if the FIFO is not watched.
+    /// Number of words in the input FIFO. Only words of complete commands count. `None` unless
+    /// [`Renderer::watch_fifo`](crate::Renderer::watch_fifo) was called.
     pub fifo_words: Option<u32>,
     /// Capacity of the FIFO in words.
     pub fifo_depth_words: u32,
@@ -19,10 +20,11 @@ pub struct RendererSnapshot {
     pub copying: Option<CopyOrder>,
     /// True while the controller executes commands other than copies.
     pub executing: bool,
-    /// Region for which the last started commands draw, until its copy command starts. `None` if the FIFO is not
-    /// watched, or if the sender of the commands does not state the region.
+    /// Region for which the commands that started last draw. The value becomes `None` when the region's copy command
+    /// starts. The value is also `None` without [`Renderer::watch_fifo`](crate::Renderer::watch_fifo), or if the sender
+    /// of the commands does not state the region.
     pub drawing: Option<RegionPlace>,
-    /// Number of regions that are in the backing store or wait to be moved into it.
+    /// Number of regions that are in the backing store or wait for their transfer to the backing store.
     pub stored_regions: usize,
     /// Time spent executing commands since the start of the run, without copies. A received command counts immediately,
     /// even before its execution.
@@ -37,7 +39,7 @@ impl RendererSnapshot {
     }
 }
 
-/// Received command lists whose effects are visible in pixel memory, or will be visible later.
+/// Received command lists that still affect pixel memory, or will affect pixel memory later.
 #[derive(Debug, Default)]
 pub(crate) struct SentLists(VecDeque<SentList>);
 
@@ -46,8 +48,8 @@ struct SentList {
     context: usize,
     /// Number of words that were sent before this list, since the start of the run.
     first_word: u64,
-    /// Index of the first word of the clear at the beginning of the list, counted since the start of the run. `None` if
-    /// the list does not begin with a clear.
+    /// Index of the first word of the clear command at the beginning of the list, counted since the start of the run.
+    /// `None` if the list does not begin with a clear command.
     clear: Option<u64>,
     /// Index of the first word of the copy command that ends the region, counted since the start of the run. `None`
     /// until this command is received.
@@ -56,7 +58,7 @@ struct SentList {
 }
 
 impl SentLists {
-    /// Adds the list of a received message. `started` is the number of words in commands that have started.
+    /// Adds the command list of a received message. `started` is the number of words in commands that have started.
     pub(crate) fn add(&mut self, message: &Message, first_word: u64, started: u64) {
         let Body::Commands(list) = &message.body else { return };
         let context = usize::from(list.context) % MAX_CONTEXTS;
@@ -81,14 +83,14 @@ impl SentLists {
         if is_copied { None } else { last.content.place() }
     }
 
-    /// Removes the lists whose pixels are erased because a later clear has started.
+    /// Removes the command lists whose pixels are erased because a later clear command has started.
     fn forget(&mut self, started: u64) {
         let cleared: [u64; MAX_CONTEXTS] = std::array::from_fn(|context| self.cleared_at(context, started));
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }
 
-    /// Returns the index of the first word of a list: the last list of a context whose clear has started. Returns 0 if
-    /// no clear has started.
+    /// Returns the index of the first word of the latest list in a context whose clear command has started. Earlier
+    /// lists of the context no longer affect pixels. Returns 0 if no clear command has started.
     fn cleared_at(&self, context: usize, started: u64) -> u64 {
         let of_context = self.0.iter().filter(|list| list.context == context);
         of_context

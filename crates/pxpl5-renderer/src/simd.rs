@@ -84,7 +84,7 @@ impl Vectors {
     }
 }
 
-/// A vector unit that exists in this processor, according to a check.
+/// A vector unit that this processor has, according to a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PresentVectors(Vectors);
 
@@ -94,7 +94,7 @@ impl PresentVectors {
         Self(if wanted.present() { wanted } else { Vectors::Portable })
     }
 
-    /// Runs the version of the kernel that is compiled for this unit.
+    /// Runs the version of the loop `kernel` that is compiled for this unit.
     #[inline]
     pub(crate) fn run<K: VectorKernel>(self, kernel: K) -> K::Output {
         match self.0 {
@@ -111,7 +111,7 @@ impl PresentVectors {
     }
 }
 
-/// A loop to vectorize. Its `run` must be `#[inline(always)]`. Otherwise, the compiler does not use the unit's
+/// A loop to vectorize. The method `run` must be `#[inline(always)]`. Otherwise, the compiler does not use the unit's
 /// instructions in `run`.
 pub(crate) trait VectorKernel {
     type Output;
@@ -130,11 +130,11 @@ fn avx512<K: VectorKernel>(kernel: K) -> K::Output {
     kernel.run::<x86::Avx512>()
 }
 
-/// A vector of 32-bit integers. Kernels use it because compilers do not vectorize short loops.
+/// A vector of 32-bit integers. Kernels use vectors explicitly, because compilers do not vectorize short loops.
 pub(crate) trait SimdVector: Copy {
     /// Number of integers in a vector. The number is a divisor of 128.
     const LANES: usize;
-    /// One truth value for each lane.
+    /// One truth value for each lane of a vector.
     type Mask: Copy;
 
     fn splat(value: i32) -> Self;
@@ -161,9 +161,9 @@ pub(crate) trait SimdVector: Copy {
     fn or(self, other: Self) -> Self;
     fn and(self, other: Self) -> Self;
     fn xor(self, other: Self) -> Self;
-    /// Shifts each lane right and fills it with zeros. A shift by 32 or more gives 0.
+    /// Shifts each lane right and fills the upper bits with zeros. A shift by 32 or more gives 0.
     fn shift_right(self, by: u32) -> Self;
-    /// Shifts each lane left and fills it with zeros. A shift by 32 or more gives 0.
+    /// Shifts each lane left and fills the lower bits with zeros. A shift by 32 or more gives 0.
     fn shift_left(self, by: u32) -> Self;
     /// Returns true for the lanes where self >= 0 and `new` < `old`. All numbers are signed.
     fn passes(self, new: Self, old: Self) -> Self::Mask;
@@ -375,7 +375,7 @@ mod tests {
         }
     }
 
-    /// Results of a unit's operations by name, and its number of lanes.
+    /// Results of the operations of a vector unit, each with the name of the operation.
     type Done = Vec<(&'static str, Vec<u32>)>;
 
     /// A kernel that applies every operation to integers in all lanes, and to rows of pixels.
@@ -438,7 +438,7 @@ mod tests {
     }
 
     impl Everything {
-        /// Computes the expected results, one integer at a time.
+        /// Computes the expected results of all operations, one integer at a time.
         fn by_numbers(&self, lanes: usize) -> Done {
             let Self { a, b, c, rows } = self;
             let each = |f: &dyn Fn(usize) -> i32| -> Vec<u32> { (0..lanes).map(|k| f(k) as u32).collect() };

@@ -15,7 +15,8 @@ pxpl5_sim::parameters::parameter_table! {
         triangle_clocks: 258, "clocks", Derived, 250..=300 in 0..=MAX, "its program; the 150,000 triangles/s of TR94 are 267 clocks";
         /// Execution time of a triangle with interpolated normals, in each region to which it is sent.
         phong_triangle_clocks: 292, "clocks", Derived, 250..=300 in 0..=MAX, "its program; the 150,000 triangles/s of TR94 are 267 clocks, and a count of bits gives 262 to 292";
-        /// Execution time of a sphere with interpolated colour. In the layout of Slats, its program takes 748 clocks.
+        /// Execution time of a sphere with interpolated colour. In the layout of Slats, the program of the command
+        /// takes 748 clocks.
         sphere_clocks: 810, "clocks", Derived, 318..=810 in 0..=MAX, "its program, with an exact root; a paraboloid takes 318";
         /// Execution time of a sphere with normals.
         phong_sphere_clocks: 504, "clocks", Derived, 268..=504 in 0..=MAX, "its program, with an exact root; a paraboloid takes 268";

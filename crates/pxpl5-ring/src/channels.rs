@@ -17,7 +17,7 @@ pub struct ChannelSnapshot {
     pub destination: NodeId,
     /// Length of the message in words.
     pub words: u32,
-    /// Time at which the arbiter granted the channel.
+    /// Time at which the arbiter granted the channel to the message.
     pub granted: Time,
     /// Time at which the channel becomes free. `None` means that the receiver has a FIFO and has not answered yet.
     pub ends_at: Option<Time>,
@@ -33,9 +33,11 @@ pub(crate) struct MessageInFlight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
-    /// Number of word slots until the message ends. The next field, `message`, holds the message until the receiver
-    /// gets it. Only [`Ring::move_every_word`](crate::Ring::move_every_word) uses these two fields.
+    /// Number of word times until the message ends. Used only after
+    /// [`Ring::move_every_word`](crate::Ring::move_every_word) was called.
     pub(crate) slots_left: u64,
+    /// The message, kept until it is passed to the receiver. Used only after
+    /// [`Ring::move_every_word`](crate::Ring::move_every_word) was called.
     pub(crate) message: Option<Box<Message>>,
 }
 
@@ -43,8 +45,8 @@ pub(crate) struct MessageInFlight {
 #[derive(Clone, Debug)]
 pub(crate) struct RingChannels {
     flights: Vec<Option<MessageInFlight>>,
-    /// Time at which each channel becomes free. For free channels, and before the receiver's answer, the time is
-    /// `UNKNOWN`.
+    /// Time at which each channel becomes free. The time is `UNKNOWN` for free channels, and for messages whose
+    /// receiver has not answered yet.
     ends_at: Vec<Time>,
     /// Known end times of messages with their channels. The earliest end is the last element.
     due: Vec<(Time, usize)>,
@@ -120,8 +122,8 @@ impl RingChannels {
         Some((channel, ended, self.flights[channel].take()?))
     }
 
-    /// Ends one word slot of a channel and returns the channel's message. The caller must return the message to the
-    /// channel by [`RingChannels::put_back`].
+    /// Counts one word time of the message on a channel and returns the message. The caller must return the message to
+    /// the channel by [`RingChannels::put_back`].
     pub(crate) fn take_slot(&mut self, channel: usize) -> Option<MessageInFlight> {
         let flight = self.flights.get_mut(channel)?.take()?;
         Some(MessageInFlight { slots_left: flight.slots_left.saturating_sub(1), ..flight })
@@ -140,7 +142,7 @@ impl RingChannels {
         self.flights.iter().flatten()
     }
 
-    /// Returns the message on a channel if its end is not known yet.
+    /// Returns the message on a channel if the end of this message is not known yet.
     pub(crate) fn unanswered(&self, channel: usize) -> Option<&MessageInFlight> {
         self.flight(channel).filter(|_| self.ends_at[channel] == UNKNOWN)
     }

@@ -54,8 +54,8 @@
 //!
 //! - routing, check words and the layout of the hardware's queues (the overhead of each message stands for their cost)
 //! - the travel time of a stall or an acknowledgement back along the ring
-//! - the hop latency between two messages from different sources to one destination (on rings of more than 16 boards,
-//!   the second message can begin to arrive before the first message has ended)
+//! - the hop latency between two messages from different sources to one destination. On rings of more than 16 boards,
+//!   the second message can therefore begin to arrive before the first message has ended.
 //! - multicast and broken hardware
 //!
 //! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter. The order of the

@@ -1,6 +1,6 @@
 //! Events and outputs of the ring.
 
-use pxpl5_sim::parameters::ParameterError;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 
@@ -90,7 +90,7 @@ pub enum RingOutput {
 pub enum RingError {
     /// A parameter of the timing table is out of range.
     #[error("ring timing: {0}")]
-    Timing(#[from] ParameterError),
+    Timing(#[from] SettingError),
     /// The ring has no ports.
     #[error("a ring needs one port at least, found none")]
     NoNodes,

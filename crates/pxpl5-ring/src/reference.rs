@@ -88,7 +88,8 @@ pub struct SteppedRing<'a, R> {
     n_nodes: u16,
     traffic: &'a [PlannedMessage],
     receivers: R,
-    /// Queue of each source: the indices of the waiting messages, and the time at which the first message became first.
+    /// Queue of each source: the indices of the waiting messages, and the time at which the first message became the
+    /// first of the queue.
     queues: Vec<(VecDeque<usize>, Time)>,
     /// Number of messages that each source is sending on channels.
     sending: Vec<u64>,
@@ -98,7 +99,7 @@ pub struct SteppedRing<'a, R> {
     carried: Vec<Option<CarriedMessage>>,
 }
 
-/// A message on a channel, with its remaining word slots.
+/// A message on a channel, with the number of its remaining word times.
 #[derive(Clone, Copy, Debug)]
 struct ChannelSlots {
     message: usize,

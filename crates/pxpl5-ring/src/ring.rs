@@ -26,9 +26,10 @@ pub struct Ring {
     heads_to_fifos: u32,
     /// Number of sources that send on the greatest possible number of channels, `source_channels`.
     at_limit: usize,
-    /// True if a channel or destination has become free since the last grants. A waiting message may then be granted.
+    /// True if a channel or destination has become free since the last grants. In this case, a waiting message may be
+    /// granted.
     unblocked: bool,
-    /// Times at which an arbitration is scheduled.
+    /// Times at which an arbitration (a pass that grants channels to waiting messages) is scheduled.
     arbitrations: Vec<Time>,
     /// True if every end of a message causes an event, even if no other message waits for the end.
     watched: bool,
@@ -58,7 +59,7 @@ struct DestinationPort {
     elastic: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
-    /// Number of first messages of queues that wait for this destination.
+    /// Number of messages that wait for this destination at the head of a queue.
     heads: u32,
 }
 
@@ -222,8 +223,8 @@ impl Ring {
         Err(RingError::Length { source: message.source, destination: message.destination, words: message.words })
     }
 
-    /// Returns two kinds of waiting messages: messages at the head of their queue without a grant, and messages without
-    /// an answer of their receiver. The messages are sorted by source.
+    /// Returns the messages that wait for a grant at the head of their queue, and the messages that wait for their
+    /// receiver's answer. The messages are sorted by source.
     #[must_use]
     pub fn waiting(&self) -> Vec<WaitingMessage> {
         let heads = self.heads.iter().filter_map(|head| self.waiting_head(*head));
@@ -417,8 +418,8 @@ impl Ring {
     }
 
     /// Puts a message on a channel and outputs its delivery or its announcement. If the receiver accepts every word
-    /// immediately, the end of the message is known at once. Otherwise, the end follows from the receiver's answer.
-    /// With an event for every word, the end follows from the last of these events.
+    /// immediately, the end of the message is known at its grant. Otherwise, the end follows from the receiver's
+    /// answer. With an event for every word, the end follows from the last of these events.
     fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) {
         if self.word_by_word {
             let begins = flight.granted;
@@ -545,7 +546,7 @@ impl QueuedRequest {
 }
 
 impl SourcePort {
-    /// Inserts a message into the queue and returns its index there.
+    /// Inserts a message into the queue and returns the index of the message in the queue.
     fn insert(&mut self, queued: QueuedRequest) -> usize {
         let later = self.queue.iter().rev().take_while(|other| other.order() > queued.order()).count();
         let place = self.queue.len() - later;

@@ -14,11 +14,11 @@ pub struct RingStats {
     pub messages: u64,
     /// Number of words in the ended messages, without the overhead.
     pub words: u64,
-    /// Sum of all messages' times from request to grant.
+    /// Sum of the waiting times of all messages, each from request to grant.
     pub waiting: Span,
-    /// Longest time of a message from its request to its grant.
+    /// Longest waiting time of a message, from request to grant.
     pub longest_wait: Span,
-    /// Sum of the times for which full receivers have stalled messages.
+    /// Sum of the times for which receivers with a full FIFO have stalled messages.
     pub stalled: Span,
 }
 
@@ -27,7 +27,7 @@ pub struct RingStats {
 pub struct Refusals {
     /// Number of refused messages and answers since the ring was made.
     pub count: u64,
-    /// Time of the first refusal and its reason.
+    /// Time and reason of the first refusal.
     pub first: Option<(Time, RingError)>,
 }
 
@@ -70,8 +70,8 @@ pub enum WaitReason {
 }
 
 impl WaitingMessage {
-    /// Returns the port whose board must act before the message can continue. This port is the port that occupies or
-    /// reserves the receiver, or the receiver itself. Returns `None` if the message waits for the ring.
+    /// Returns the port whose board must act before the message can continue. The port belongs to the board that
+    /// occupies or reserves the receiver, or to the receiver. Returns `None` if the message waits for the ring.
     #[must_use]
     pub const fn waits_on(&self) -> Option<NodeId> {
         match self.reason {

@@ -22,8 +22,8 @@ impl Assembled {
         observation.records() + traffic + self.head.as_ref().map_or(0, |head| head.records())
     }
 
-    /// Discards observations before `instant`, and records of the head before `of_head`. No later result needs these
-    /// records.
+    /// Discards observations before `instant`, and records of the head before `of_head`. The caller must ensure that no
+    /// later result needs these records.
     pub(crate) fn discard_before(&mut self, instant: Time, of_head: Time) {
         self.machine.discard_before(instant);
         self.head.iter().for_each(|head| head.discard_before(of_head));

@@ -14,7 +14,8 @@ use crate::preparation::Preparation;
 use crate::scene_views::{hmd_before, poses, views};
 use crate::views::{FrameStarts, ReportTimes};
 use pxpl5_gp::HostTiming;
-use pxpl5_machine::{ConfigError, Machine, MachineConfig};
+use pxpl5_machine::{Machine, MachineConfig};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Time, mix};
 use std::sync::Arc;
 
@@ -110,16 +111,16 @@ fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
 ///
 /// # Errors
 ///
-/// [`ConfigError`] states the expected kind of pipeline and the pipeline found.
-pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), ConfigError> {
+/// [`SettingError`] states the expected kind of pipeline and the pipeline found.
+pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), SettingError> {
     let Some(display) = config.displays.first() else { return Ok(()) };
     let name = display.name();
     let pipeline_name = pipeline.name();
     match (display.shows_cube_faces(), pipeline.draws_faces()) {
-        (true, false) => Err(ConfigError::Board(format!(
+        (true, false) => Err(SettingError::combination(format_args!(
             "display {name} shows six faces around the head: expected a pipeline that draws faces, such as arp-full, found {pipeline_name}"
         ))),
-        (false, true) => Err(ConfigError::Board(format!(
+        (false, true) => Err(SettingError::combination(format_args!(
             "{pipeline_name} draws six faces around the head: expected the display arp, found {name}"
         ))),
         _ => Ok(()),

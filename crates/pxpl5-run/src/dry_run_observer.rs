@@ -29,7 +29,7 @@ pub(crate) struct DryRunObserver {
     intervals: Mean,
     turns: Mean,
     turned_to: PeriodNumber,
-    /// Last picture, whose successor is not known yet.
+    /// Last picture so far. The next picture, which will replace this picture on the screen, is not known yet.
     waiting: Option<PictureTimes>,
 }
 
@@ -94,7 +94,8 @@ impl DryRunObserver {
         }
     }
 
-    /// Returns the pictures, each with the picture that replaces it.
+    /// Returns the pictures whose display times are known, each with the next picture, which replaces the picture on
+    /// the screen.
     ///
     /// For a display with several memories, only the first memory is timed. The first memory holds the structures that
     /// must be drawn most often. The last picture of this memory is returned only when its successor is known.
@@ -123,8 +124,8 @@ impl DryRunObserver {
         view.is_complete |= is_complete;
     }
 
-    /// Finishes all views except the newest view, which the next picture may show too. At the end of the run, finishes
-    /// the newest view too.
+    /// Adds all views to the results of the dry run except the newest view, which the next picture may also show. At
+    /// the end of the run, adds the newest view too.
     fn end_views(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose]) {
         let newest = self.going_on.pop_last();
         let ended = std::mem::take(&mut self.going_on);
@@ -135,8 +136,9 @@ impl DryRunObserver {
         }
     }
 
-    /// Finishes a view. Firmware that computes the display times of its views needs no instants from the dry run. Such
-    /// firmware may show views out of the order of their numbers.
+    /// Adds a view that no later picture shows to the results of the dry run. The results get the instant for which the
+    /// view is drawn, and the prediction interval. Firmware that computes the display times of its views needs no such
+    /// instants. This firmware may also show views out of the order of their numbers.
     fn end_view(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = results.aim.instant(&shown);
@@ -152,8 +154,8 @@ impl DryRunObserver {
         }
     }
 
-    /// Adds the prediction interval of the middle pixel of each field. The interval lasts from the measurement of an
-    /// orientation to the instant for which it was predicted.
+    /// Adds the prediction interval of the middle pixel of each field. The interval lasts from the measurement of the
+    /// head's orientation to the instant for which the orientation was predicted.
     fn take_turns(&mut self, results: &FinalResults<'_>, head: &HeadViews) {
         let display = results.record.display();
         let Some((latched, surface)) = OrientationTiming::of_run(results).zip(display.surfaces().first()) else {
@@ -168,7 +170,8 @@ impl DryRunObserver {
     }
 }
 
-/// Returns the prediction interval of a pixel's orientation, or `None` before the first report.
+/// Returns the prediction interval of the head orientation that a pixel uses. Returns `None` before the first tracker
+/// report.
 fn turned(latched: &OrientationTiming, head: &HeadViews, [x, y]: [u32; 2], field: PeriodNumber) -> Option<Span> {
     let (known, aimed): (Time, Time) = latched.orientation_of_pixel(head, x, y, field)?;
     let measured = head.measured_at(head.report_by(known)?)?;

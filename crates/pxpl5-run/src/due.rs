@@ -15,19 +15,20 @@ use crate::result_window::ResultWindow;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// Smallest number of pictures in a window from which an update rate can be computed.
+/// Smallest number of pictures in a result window from which an update rate can be computed.
 pub(crate) const LEAST_UPDATES: u64 = 2;
 
-/// Numbers of pictures that were due in a window of a run, by result. Each picture has one of four results.
+/// Numbers of pictures that were due in the result window of a run, counted by result. Each picture has one of four
+/// results: shown, late, incomplete or missed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DuePictures {
-    /// First period of the window.
+    /// First display period of the result window.
     pub first_period: PeriodNumber,
-    /// Last period of the window, inclusive.
+    /// Last display period of the result window, inclusive.
     pub last_period: PeriodNumber,
-    /// Number of periods from one due picture to the next.
+    /// Number of display periods from one due picture to the next.
     pub periods_a_picture: u64,
-    /// Number of pictures due: the periods of the window divided by `periods_a_picture`.
+    /// Number of pictures due: the periods of the result window divided by `periods_a_picture`.
     pub due: u64,
     /// Number of due pictures that were complete and in time.
     pub shown: u64,
@@ -37,7 +38,7 @@ pub struct DuePictures {
     pub incomplete: u64,
     /// Number of due pictures that were never begun, or left out.
     pub missed: u64,
-    /// Number of periods of the window in which any picture was shown in time, due or not.
+    /// Number of periods of the result window in which any picture was shown in time, due or not.
     ///
     /// The number exceeds `shown` if the pipeline shows more pictures than are due.
     pub pictures: u64,
@@ -64,7 +65,7 @@ impl DuePictures {
         Some(Self::of_ends(&ends, periods_a_picture, &window))
     }
 
-    /// Counts the pictures that were due in a window.
+    /// Counts the pictures that were due in a result window.
     pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Self {
         let every = periods_a_picture.max(1);
         let ResultWindow { first_period, last_period, .. } = *window;

@@ -2,8 +2,9 @@
 
 use crate::outcome::Outcome;
 use crate::picture_ends::WARM_UP_PICTURES;
-use pxpl5_machine::{ConfigError, RunError};
+use pxpl5_machine::RunError;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use thiserror::Error;
 
 /// An error of an experiment.
@@ -12,7 +13,7 @@ use thiserror::Error;
 pub enum ExperimentError {
     /// The machine or one of its parameters is invalid, or the pipeline cannot run on the machine.
     #[error(transparent)]
-    Config(#[from] ConfigError),
+    Config(#[from] SettingError),
     /// The number of fields is out of range.
     #[error("fields must be {} to {}, found {found}", expected.0, expected.1)]
     Fields {

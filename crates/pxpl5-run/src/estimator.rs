@@ -52,7 +52,8 @@ impl Cause {
 
 pxpl5_sim::parameters::named!(Cause, "cause", Cause::ALL.map(|cause| (cause.name(), cause)));
 
-/// Time span of the reports that a predictor receives before each request with separate reports, in picoseconds.
+/// Length in picoseconds of the series of reports that a new predictor receives for one request, if each request has
+/// its own series ([`Cause::Sampling`]).
 const FED_PS: u64 = 2 * PS_PER_S;
 
 /// An estimator of the head's pose from the reports that are known at an instant.
@@ -62,11 +63,12 @@ pub struct Estimator {
 }
 
 enum Way {
-    /// One predictor receives all reports in order of time.
+    /// One predictor receives all tracker reports in order of time.
     Following(Follower),
-    /// One predictor receives all measurements up to the requested instant.
+    /// One predictor receives all measurements of the tracker up to the requested instant.
     AtOnce(Follower),
-    /// Each request has separate reports. The newest report arrives at the instant of the request.
+    /// For each request, a new predictor receives a separate series of tracker reports. The newest report of the series
+    /// arrives at the instant of the request.
     Fresh(TrackerModel),
 }
 
@@ -77,8 +79,8 @@ impl fmt::Debug for Estimator {
 }
 
 impl Estimator {
-    /// Creates the estimator of the run's host, optionally without one cause of error. [`Cause::ScanOut`] does not
-    /// affect poses, so it changes nothing here.
+    /// Creates an estimator that gives the same poses as the run's host, optionally without one cause of error. The
+    /// cause [`Cause::ScanOut`] does not affect poses and changes nothing here.
     #[must_use]
     pub fn new(views: &Arc<HeadViews>, without: Option<Cause>) -> Self {
         let head = views.head();
@@ -125,10 +127,11 @@ fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     Follower::new(Box::new(arrivals), Box::new(reports()), head.build_predictor())
 }
 
-/// Returns a pose from a separate series of reports. The newest report of the series arrives at `known`.
+/// Returns the pose at `at` without the cause [`Cause::Sampling`], from a separate series of tracker reports. The
+/// newest report of the series arrives at `known`.
 ///
-/// The series reports the head's motion with a shift in time. The shift is the age of the run's newest report at
-/// `known`.
+/// The tracker model reports the head's motion with a shift in time. The shift is the age that the run's newest report
+/// has at `known`.
 fn fresh(views: &HeadViews, tracker: &TrackerModel, known: Time, at: Time) -> Pose {
     let head = views.head();
     // Find the newest report of the run.

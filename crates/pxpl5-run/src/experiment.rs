@@ -31,7 +31,7 @@ pub enum Pixels {
 }
 
 impl Pixels {
-    /// All choices with their names in experiment files.
+    /// All choices of the pixels to compute, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("off", Self::Off), ("lazy", Self::Lazy), ("all", Self::All)];
 }
 
@@ -95,7 +95,8 @@ pub struct Estimates {
     ///
     /// The function returns `None` if no such picture will be shown, or if the formulas give no estimate.
     pub fields_needed: fn(&Experiment) -> Option<u64>,
-    /// Function that estimates how many of the scene's first primitives the pipeline can show in time.
+    /// Function that estimates the number of primitives to which the scene must be decimated so that the pipeline shows
+    /// all pictures in time.
     ///
     /// The function returns `None` if the formulas give no estimate.
     pub triangles_in_time: fn(&Experiment) -> Option<u64>,
@@ -164,15 +165,16 @@ impl Experiment {
         self
     }
 
-    /// Handles simultaneous events in a pseudo-random order derived from a seed. A correct model gives the same results
-    /// in every order.
+    /// Makes the run handle simultaneous events in a pseudo-random order derived from a seed. A correct model gives the
+    /// same results in every order.
     #[must_use]
     pub const fn shuffle_ties(mut self, seed: u64) -> Self {
         self.shuffle = Some(seed);
         self
     }
 
-    /// Records messages, busy channels and FIFO contents. The recording changes no simulated time.
+    /// Makes the run record messages, busy channels of the ring and FIFO contents. The recording changes no simulated
+    /// time.
     #[must_use]
     pub const fn record_traffic(mut self, record: bool) -> Self {
         self.traffic = record;
@@ -211,7 +213,7 @@ impl Experiment {
         self
     }
 
-    /// Makes the host begin a frame only when its tracker reports a pose, so that frames do not queue in the pipeline.
+    /// Makes the host begin a frame only when the tracker reports a pose, so that frames do not queue in the pipeline.
     ///
     /// A latency measurement from outside the machine works in the same way. The setting has no effect without a head,
     /// or if the pipeline's host does not begin frames.
@@ -236,8 +238,8 @@ impl Experiment {
 
     /// Sets the streaming observer of a run with [`Keep::Statistics`].
     ///
-    /// A report about a head needs records that such a run discards, so an observer must process these records during
-    /// the run. A run with [`Keep::Everything`] needs no observer.
+    /// A report about a head needs old records, which such a run discards. An observer must therefore process these
+    /// records during the run. A run with [`Keep::Everything`] needs no observer.
     #[must_use]
     pub const fn observed_by(mut self, sums: Option<ObserverFactory>) -> Self {
         self.sums = sums;
@@ -268,7 +270,8 @@ impl Experiment {
         }
     }
 
-    /// Returns an estimate of how many of the scene's first primitives can be shown in time.
+    /// Returns an estimate of the number of primitives to which the scene must be decimated so that all pictures are
+    /// shown in time.
     ///
     /// The estimate comes from the pipeline's closed form. Returns `None` without a closed form.
     #[must_use]
@@ -291,8 +294,8 @@ impl Experiment {
         &self.hmd
     }
 
-    /// Sets the period of the first display at which the result window begins. The window begins later if the warm-up
-    /// takes longer.
+    /// Sets the period of the first display at which the result window (the periods that are evaluated) begins. The
+    /// window begins later if the warm-up takes longer.
     ///
     /// With this setting, different pipelines are evaluated over the same periods, to within one interval between due
     /// pictures.
@@ -398,7 +401,7 @@ impl Experiment {
         &self.scene
     }
 
-    /// Returns the machine as it was configured, before the pipeline adapted it.
+    /// Returns the configuration of the machine as the caller set it, before the pipeline adapted the configuration.
     #[must_use]
     pub const fn config(&self) -> &MachineConfig {
         &self.config

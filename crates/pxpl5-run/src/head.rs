@@ -3,21 +3,20 @@
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
 use crate::report_schedule::{Arrivals, Coming, Contents};
+use crate::tunings::{Tunings, tuned_once};
 use pxpl5_machine::Parameter;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::Aim;
 use std::fmt;
 use std::sync::Arc;
+use tracking::Pose;
 use tracking::motion::{Motion, Still};
-use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned, tune};
+use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned};
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
-use tracking::{Pose, SettingError};
 
-/// A head motion that several readers share.
+/// A head motion that several parts of a run share.
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
-
-/// Error for a head that cannot be simulated.
-pub type HeadError = SettingError;
 
 /// Origin of the parameters of a predictor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +47,7 @@ pub enum HeadPlace {
 }
 
 impl HeadPlace {
-    /// All meanings with their names in experiment files.
+    /// All meanings of a head motion's poses, with their names in experiment files.
     pub const ALL: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
 }
 
@@ -68,6 +67,8 @@ pub struct Head {
     place: HeadPlace,
     reports: Option<Arc<[TrackerReport]>>,
     unsupported_parameters: Vec<Parameter>,
+    /// Cache of tuned predictors that other heads use too.
+    tunings: Option<Arc<Tunings>>,
 }
 
 impl fmt::Debug for Head {
@@ -85,12 +86,12 @@ impl fmt::Debug for Head {
     }
 }
 
-/// Distances, in metres, at which pixel errors can be evaluated.
+/// Smallest and largest distance, in metres, at which pixel errors can be evaluated.
 const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
-    /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the noise that the tracker really
-    /// has.
+    /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the same noise that the tracker
+    /// model adds.
     ///
     /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), whatever its first pose is. After
     /// [`Head::placed`] with [`HeadPlace::World`], the poses are coordinates of the scene instead.
@@ -100,13 +101,13 @@ impl Head {
     ///
     /// # Errors
     ///
-    /// [`HeadError`] names the setting, the expected values and the value found.
+    /// [`SettingError`] names the setting, the expected values and the value found.
     pub fn new(
         motion: Arc<dyn Motion + Send + Sync>,
         tracker: TrackerConfig,
         predictor: PredictorKind,
         seed: u64,
-    ) -> Result<Self, HeadError> {
+    ) -> Result<Self, SettingError> {
         let predictor = PredictorConfig::for_tracker(predictor, &tracker);
         Ok(Self { numbers: Numbers::ToBeTuned, ..Self::predicted_by(motion, tracker, predictor, seed)? })
     }
@@ -121,7 +122,7 @@ impl Head {
         tracker: TrackerConfig,
         predictor: PredictorConfig,
         seed: u64,
-    ) -> Result<Self, HeadError> {
+    ) -> Result<Self, SettingError> {
         // Check both configurations now, so that later calls cannot fail.
         predictor.build()?;
         let tracker = TrackerModel::new(tracker)?;
@@ -137,7 +138,14 @@ impl Head {
             place: HeadPlace::Scene,
             reports: None,
             unsupported_parameters: Vec::new(),
+            tunings: None,
         })
+    }
+
+    /// Shares the results of tuning with all heads that use the same cache. The cache changes no result.
+    #[must_use]
+    pub fn sharing_tunings(self, tunings: Arc<Tunings>) -> Self {
+        Self { tunings: Some(tunings), ..self }
     }
 
     /// Replaces the motion. Tracker and predictor stay the same.
@@ -146,7 +154,7 @@ impl Head {
         Self { motion, ..self }
     }
 
-    /// Makes a run tune the parameters of the predictor. The search begins at the current parameters.
+    /// Makes a run tune the parameters of the predictor. The tuning search begins at the current parameters.
     #[must_use]
     pub const fn tuned(mut self) -> Self {
         self.numbers = Numbers::ToBeTuned;
@@ -166,13 +174,11 @@ impl Head {
     ///
     /// # Errors
     ///
-    /// Returns [`HeadError`] for a distance that is not within 0.001 to 1,000,000 metres.
-    pub fn evaluated_at(self, metres: f64) -> Result<Self, HeadError> {
+    /// Returns a [`SettingError`] for a distance that is not within 0.001 to 1,000,000 metres.
+    pub fn evaluated_at(self, metres: f64) -> Result<Self, SettingError> {
         let (low, high) = JUDGED_AT_M;
-        if !(low..=high).contains(&metres) {
-            let what = "distance at which errors are evaluated, m";
-            return Err(HeadError::OutOfRange { what, found: metres, low, high });
-        }
+        let what = "distance at which errors are evaluated, m";
+        SettingError::require((low..=high).contains(&metres), what, format_args!("{low} to {high}"), metres)?;
         Ok(Self { evaluate_at_m: Some(metres), ..self })
     }
 
@@ -238,12 +244,13 @@ impl Head {
         Box::new(reports.map(Coming::of).take_while(move |coming| coming.arrives < until))
     }
 
-    /// Returns the contents of all reports.
+    /// Returns the contents of all tracker reports, in order of arrival.
     pub(crate) fn contents(&self) -> Contents {
         self.reports_of(Arc::clone(&self.motion))
     }
 
-    /// Returns the tracker's reports about a motion, or the reports that replace them, in order of arrival.
+    /// Returns the tracker's reports about a motion, in order of arrival. If the caller has replaced the reports,
+    /// returns the given reports instead.
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
@@ -319,16 +326,14 @@ impl Head {
     /// Returns this head with a predictor that is tuned for an interval from a report to the predicted instant. The
     /// interval is in picoseconds.
     pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
-        let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
-        let tuned = tuned.expect("checked by Head::new");
+        let tuned = self.tuning(interval_ps);
         Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training, None), ..self.clone() }
     }
 
     /// Returns this head with the predictor's parameters for orientations tuned for an interval in picoseconds. The
     /// parameters for positions stay the same.
     pub(crate) fn tuned_for_turns(&self, interval_ps: u64) -> Self {
-        let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
-        let Tuned { config: of_turns, training } = tuned.expect("checked by Head::new");
+        let Tuned { config: of_turns, training } = self.tuning(interval_ps);
         // Only the numbers for orientations are taken from the tuned predictor.
         let own = self.predictor;
         let start =
@@ -342,6 +347,14 @@ impl Head {
         // The training for positions stays on record.
         let of_all = if let Numbers::Tuned(of_all, _) = self.numbers { of_all } else { None };
         Self { predictor, numbers: Numbers::Tuned(of_all, training), ..self.clone() }
+    }
+
+    fn tuning(&self, interval_ps: u64) -> Tuned {
+        let (motion, tracker) = (self.motion.as_ref(), &self.tracker);
+        match &self.tunings {
+            Some(tunings) => tunings.tuned(motion, tracker, interval_ps, &self.predictor, self.seed),
+            None => tuned_once(motion, tracker, interval_ps, &self.predictor, self.seed),
+        }
     }
 
     /// Returns the predictor's kind and parameters. In an outcome, the parameters are those that the run used.

@@ -1,4 +1,4 @@
-//! Records of the poses that a pipeline requested, and of the tracker reports that each pose used.
+//! Records of the poses that a pipeline requested, and of the tracker reports from which each pose was computed.
 
 use crate::dry_run::SeenTimes;
 use crate::head::{Head, HeadPlace};
@@ -220,8 +220,8 @@ impl HeadViews {
         Some(self.schedule().after(after)?.arrives)
     }
 
-    /// Converts a pose from the tracker's coordinates to scene coordinates. The start of the tracked motion maps to the
-    /// start of the scene's own motion, or to itself ([`HeadPlace`]).
+    /// Converts a pose from the tracker's coordinates to scene coordinates. For [`HeadPlace::Scene`], the start of the
+    /// tracked motion maps to the start of the scene's own motion. For [`HeadPlace::World`], the pose stays unchanged.
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.start.position);

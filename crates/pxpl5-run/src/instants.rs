@@ -1,16 +1,17 @@
-//! Compact storage of instants by ascending numbers, in two or three bytes each. The instants of 10^7 views take 30 MB
-//! instead of 300 MB.
+//! Compact storage of a list of instants, such as one instant for each view. Each entry takes two or three bytes, so
+//! the instants of 10^7 views take 30 MB instead of 300 MB.
 
 use pxpl5_sim::Time;
 
 /// Number of entries between two points at which decoding can begin. A lookup decodes at most this number of entries.
 const BLOCK: u64 = 256;
 
-/// Compressed instants by ascending numbers.
+/// A compressed list of instants. Each instant has a number, such as the number of a view. The numbers ascend.
 ///
-/// Each entry stores how many numbers were skipped before it, and the difference from the expected instant. The
-/// expected instant is the last instant plus the step before the last step. If two steps alternate, for example the
-/// steps of two fields, or of two and three periods, the difference is 0 and takes one byte.
+/// Each entry stores the number of skipped numbers before this entry, and the difference from the expected instant. A
+/// step is the difference of two successive instants. The expected instant is the last instant plus the step before the
+/// last step. If two steps alternate, for example the steps of two fields, or of two and three periods, the difference
+/// is 0 and takes one byte.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Instants {
     written: Vec<u8>,
@@ -27,7 +28,8 @@ struct Begin {
     next: usize,
 }
 
-/// An entry, with the last two steps before it in picoseconds. The older step comes first.
+/// An entry, with the two steps (differences of successive instants) before this entry in picoseconds. The older step
+/// comes first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct At {
     number: u64,
@@ -36,8 +38,8 @@ struct At {
 }
 
 impl At {
-    /// Returns the expected next instant: the last instant plus the step before the last step. Steps wrap around, so an
-    /// instant may lie before its predecessor.
+    /// Returns the expected next instant: the last instant plus the step before the last step. A step is the difference
+    /// of two successive instants. Steps wrap around, so an instant may lie before its predecessor.
     const fn expected(&self) -> u64 {
         self.instant.wrapping_add(self.steps[0])
     }
@@ -48,7 +50,7 @@ impl At {
 }
 
 impl Instants {
-    /// Adds the instant of a number, which must be greater than all others.
+    /// Adds an instant. Its number must be greater than all numbers in the list.
     pub(crate) fn push(&mut self, number: u64, instant: Time) {
         let at = match self.last {
             None => At { number, instant: instant.0, steps: [0; 2] },

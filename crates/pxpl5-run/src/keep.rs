@@ -25,7 +25,7 @@ pub enum Keep {
 }
 
 impl Keep {
-    /// All choices with their names in experiment files.
+    /// All choices of the observations that a run keeps, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] =
         [("everything", Self::Everything), ("statistics", Self::Statistics), ("recent", Self::Recent)];
 }

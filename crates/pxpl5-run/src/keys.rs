@@ -1,6 +1,7 @@
 //! Keys: the settings of pipelines that experiment files and the command line can change.
 
-use address_recalculation::{ArpError, Lens};
+use address_recalculation::Lens;
+use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -29,7 +30,7 @@ impl fmt::Display for KeyValue {
     }
 }
 
-/// Values that a key allows.
+/// The values that a key (setting of a pipeline) allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyValues {
     /// The key allows true and false.
@@ -47,8 +48,8 @@ impl KeyValues {
     ///
     /// # Errors
     ///
-    /// [`ArpError::Lens`] with the allowed texts.
-    pub fn lens(text: &str) -> Result<KeyValue, ArpError> {
+    /// [`SettingError`] with the allowed texts.
+    pub fn lens(text: &str) -> Result<KeyValue, SettingError> {
         text.parse::<Lens>()?;
         Ok(KeyValue::Text(text.into()))
     }

@@ -1,8 +1,8 @@
 //! Division of a picture's latency into parts. The parts add up to the latency to the picosecond.
 //!
-//! The parts follow the last eye, because the last eye decides when the picture can be shown. Each part begins at the
-//! end of the part before. A stage that overlaps an earlier stage counts only from the end of the earlier stage. Parts
-//! that a pipeline does not have are zero.
+//! The parts are measured on the eye that is drawn last, because this eye decides when the picture can be shown. Each
+//! part begins at the end of the preceding part. A stage that overlaps an earlier stage counts only from the end of the
+//! earlier stage. Parts that a pipeline does not have are zero.
 
 use crate::pipeline::PictureTimes;
 use pxpl5_gp::Stage;
@@ -57,7 +57,7 @@ pub struct LatencyParts {
 }
 
 impl LatencyParts {
-    /// Returns the time at which the first pixel is lit.
+    /// Returns the end of the latency: the time at which the first pixel of the picture is lit.
     #[must_use]
     pub fn end(&self) -> Time {
         self.begin + self.spans.iter().copied().sum::<Span>()
@@ -107,8 +107,8 @@ fn first_light(record: &Record, shown_at: Time) -> Time {
     display.first_light(0, display.period_at(shown_at)).unwrap_or(shown_at)
 }
 
-/// Times of a stereo frame: start of TRANSFORM and end of COPY of each surface, the swap, and the lighting of the first
-/// pixel.
+/// Times of a stereo frame. Each surface has a start of TRANSFORM and an end of COPY. Both surfaces share the swap and
+/// the instant at which the first pixel is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Pair {
     pub(crate) transform_at: [Time; 2],
@@ -117,9 +117,10 @@ pub(crate) struct Pair {
     pub(crate) light_at: Time,
 }
 
-/// Indices of the surface whose TRANSFORM starts a latency, and of the surface whose event ends it.
+/// For each latency, the index of the surface whose TRANSFORM starts the latency, and the index of the surface whose
+/// event ends the latency.
 ///
-/// There are three latencies: of the first surface, of the second surface, and of the pair.
+/// There are three latencies: of the first surface, of the second surface, and of the pair of surfaces.
 pub(crate) const LATENCY_SURFACES: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
 
 /// Function that returns the time of the event that ends a surface's latency.

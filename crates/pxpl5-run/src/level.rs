@@ -2,7 +2,7 @@
 //!
 //! | level | graphics processors | ring | renderers |
 //! |---|---|---|---|
-//! | [`Level::Analytic`] | formulas for the stage rules | time of copies and of clumps | a constant per command |
+//! | [`Level::Analytic`] | formulas for the times of the stages | time of copies and of clumps | a constant per command |
 //! | [`Level::Transaction`] | timing table per primitive | an event per message | timing table per command: the clocks of its program in Rendering Control's layout |
 //! | [`Level::Cycle`] | clocks of the i860 code that runs for every triangle, over the board's memory | as the transaction level | the clocks of every instruction of a command's program in the pipeline's own layout |
 //!
@@ -26,9 +26,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
-    /// Formulas for the stage rules, without simulated events.
+    /// Formulas for the times of the stages, without simulated events.
     Analytic,
-    /// One event per message and command list.
+    /// Each message and each list of commands is one simulated event.
     Transaction,
     /// Like [`Level::Transaction`], but clocks come from executed instructions instead of timing tables.
     Cycle,
@@ -51,8 +51,8 @@ impl Level {
 
 pxpl5_sim::parameters::named!(Level, "level", Level::ALL.map(|level| (level.name(), level)));
 
-/// Returns the machine with renderer clocks computed from instruction lists. Clocks that an experiment has changed
-/// stay.
+/// Returns the machine with renderer clocks computed from instruction lists. Clocks that an experiment has changed keep
+/// the changed values.
 pub(crate) fn with_clocks_of_instructions(machine: &MachineConfig, layout: &Layout) -> MachineConfig {
     let mut machine = machine.clone();
     let timing = &mut machine.renderer;

@@ -49,15 +49,14 @@ mod report_schedule;
 mod reprojection;
 mod result_window;
 mod running;
-mod samples;
 mod says;
 mod scene_views;
 mod so_far;
-mod statistics;
 mod stepper;
 mod stops;
 mod summary;
 mod tally;
+mod tunings;
 mod views;
 mod window;
 
@@ -69,7 +68,7 @@ pub use error::ExperimentError;
 pub use estimator::{Cause, Estimator};
 pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, out_of_range, warning_without_code};
 pub use fingerprint::Fingerprint;
-pub use head::{Head, HeadError, HeadPlace};
+pub use head::{Head, HeadPlace};
 pub use head_views::{HeadViews, SampledPose};
 pub use host::{BareHost, Host};
 pub use keep::Keep;
@@ -85,22 +84,22 @@ pub use pipelines::faces::{
     RotationLatency, SegmentedScene, ShownUpdate,
 };
 pub use pipelines::{
-    Code, FinishedRegions, Frameless, Interpolation, Jitp, PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment,
-    RegionPolicy, RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
+    Code, FinishedRegions, Frameless, Interpolation, Jitp, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy,
+    RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
 };
+pub use pxpl5_sim::{DefinedStatistics, KEPT_SAMPLES, Samples, Statistics, number_or_nan};
 pub use pxpl5_wire::display::{Aim, LightTimes};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
 pub use reprojection::{Every, Reprojection, Warp};
 pub use result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
-pub use samples::{KEPT_SAMPLES, Samples};
 pub use says::{PixelField, bit_of, in_ms, in_us};
 pub use scene_views::views;
 pub use so_far::SoFar;
-pub use statistics::{DefinedStatistics, Statistics, number_or_nan};
 pub use stepper::{Pause, Stepper};
 pub use summary::{Summary, retraces};
 pub use tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
+pub use tunings::Tunings;
 pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 
 /// Compiles and runs the example of the README.

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Results of a run that can no longer change, and that a streaming observer has not received before.
 ///
-/// After a run that keeps everything, one value holds the whole run.
+/// After a run that keeps everything, one value of this type holds all results of the run.
 #[derive(Clone, Copy, Debug)]
 pub struct FinalResults<'a> {
     /// Pipeline that draws the pictures.
@@ -34,11 +34,11 @@ pub struct FinalResults<'a> {
     pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.
     pub arrivals: &'a [Arrival],
-    /// Pictures whose results are final, in the order in which they are shown.
+    /// Pictures whose results can no longer change, in the order in which the pictures are shown.
     pub pictures: &'a [PictureTimes],
     /// The next picture that is shown after all of `pictures`. `None` at the end of the run.
     pub next: Option<&'a PictureTimes>,
-    /// First period whose results are not final. The observer has received every picture that is shown before this
+    /// First period whose results can still change. The observer has received every picture that is shown before this
     /// period, even in part.
     pub until: PeriodNumber,
     /// Largest number of samples of each kind that are kept individually: see

@@ -9,11 +9,11 @@ use crate::observers::FinalResults;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::{ResultWindow, WINDOW_DEFINITION};
-use crate::statistics::Statistics;
 use crate::summary::Summary;
 use crate::tally::{Tally, of_picture};
 use crate::window::{Closed, Window, field_ms};
 use pxpl5_machine::{Observation, ObservedEvent, Record, StageSpan};
+use pxpl5_sim::Statistics;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
 use std::fmt;
@@ -101,8 +101,8 @@ impl Outcome {
         &self.closed.pictures
     }
 
-    /// Returns the window over which latencies, pictures due, errors and rates are computed. Returns `None` if the run
-    /// ended before the window began.
+    /// Returns the result window: the display periods over which latencies, pictures due, errors and rates are
+    /// computed. Returns `None` if the run ended before the result window began.
     #[must_use]
     pub const fn window(&self) -> Option<ResultWindow> {
         self.closed.window
@@ -132,8 +132,8 @@ impl Outcome {
         self.closed.tally.shown
     }
 
-    /// Returns the number of due pictures by result. Returns `None` if the pipeline has no due pictures, or if the run
-    /// ended before the first.
+    /// Returns the number of due pictures, counted by result (shown, late, incomplete or missed). Returns `None` if the
+    /// pipeline has no due pictures, or if the run ended before the first due picture.
     #[must_use]
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
@@ -179,7 +179,7 @@ impl Outcome {
         self.closed.tally.shown_in_a_row >= needed as u64
     }
 
-    /// Returns the state of the machine's boards at the end, and all observations.
+    /// Returns the state of the machine's boards at the end of the run, and all observations of the run.
     #[must_use]
     pub const fn record(&self) -> &Record {
         &self.record
@@ -218,7 +218,7 @@ impl Outcome {
         self.record.observed_events().into_iter()
     }
 
-    /// Returns all stages of all pictures. The times of COPY are measured at the displays.
+    /// Returns the time spans of all stages of all pictures. The times of COPY are measured at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()

@@ -9,8 +9,8 @@ const USUAL: [&str; 7] =
     ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
 
 impl Registry {
-    /// Returns a registry with the pipelines and displays of the papers. The crate pxpl5-analytic adds the analytic
-    /// models.
+    /// Returns a registry with the pipelines and displays of the papers. The crate pxpl5-analytic adds the closed
+    /// forms.
     #[must_use]
     pub fn of_papers() -> Self {
         Self::with(pipelines::entries(), displays::entries())

@@ -60,8 +60,8 @@ impl PictureResults {
         *best = if *best == 0 { code } else { code.min(*best) };
     }
 
-    /// Returns the period of the first picture after [`WARM_UP_PICTURES`]. Returns `None` if no later picture was
-    /// begun.
+    /// Returns the period of the first picture after the first [`WARM_UP_PICTURES`] pictures. Returns `None` if no such
+    /// picture was begun.
     pub(crate) const fn steady_from(&self) -> Option<PeriodNumber> {
         self.steady_from
     }

@@ -9,10 +9,11 @@ use address_recalculation::priority::Cell;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
 use pxpl5_gp::{CodeUse, HostTiming};
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
+use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
@@ -55,7 +56,7 @@ pub struct Setup {
     /// Cells (squares of the floor) in which each structure lies. Empty unless the pipeline cut the scene into cells
     /// ([`Pipeline::cut`]).
     pub cells: Arc<[Vec<Cell>]>,
-    /// Record of the updates that a pipeline with cube faces has requested.
+    /// Record of the updates of display memories that a pipeline with cube faces has requested.
     pub notes: RequestedUpdates,
     /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
     /// middle and the first pixel.
@@ -87,7 +88,8 @@ pub struct PictureTimes {
     pub copied_at: Option<Time>,
     /// Time of the retrace at which the display begins to show the picture.
     ///
-    /// Without a swap, this is the time at which the beam reaches the part of the picture that defines its times.
+    /// Without a swap, this is the time at which the beam reaches a certain part of the picture, which the pipeline
+    /// selects.
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
     pub end: PictureResult,
@@ -101,7 +103,8 @@ impl PictureTimes {
     }
 }
 
-/// A program for a whole machine: how it draws. [`PictureRules`] states what its pictures are.
+/// A program for a whole machine, which defines how the machine draws. [`PictureRules`] defines the times and contents
+/// of the pictures.
 pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns the name of the pipeline on the command line.
     fn name(&self) -> &'static str;
@@ -135,7 +138,7 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         config
     }
 
-    /// Returns true if the pipeline draws faces of a cube around the head. The display must accept cube faces
+    /// Returns true if the pipeline draws faces of a cube around the viewer's head. The display must accept cube faces
     /// ([`DisplayConfig::shows_cube_faces`](pxpl5_wire::display::DisplayConfig::shows_cube_faces)).
     fn draws_faces(&self) -> bool {
         false
@@ -146,8 +149,8 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] for a scene that cannot be cut into segments.
-    fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<SegmentedScene>, ConfigError> {
+    /// Returns a [`SettingError`] for a scene that cannot be cut into segments.
+    fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<SegmentedScene>, SettingError> {
         Ok(None)
     }
 
@@ -163,8 +166,8 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] if the pipeline cannot run on the machine.
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
+    /// Returns a [`SettingError`] if the pipeline cannot run on the machine.
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError>;
 
     /// Returns true if the firmware itself computes the time at which a view will be seen.
     fn knows_when_seen(&self) -> bool {
@@ -226,8 +229,8 @@ pub trait PictureRules {
         1.0
     }
 
-    /// Returns the index of the copy to which an arrival belongs: 0, or 1 for the second copy. Each copy is timed
-    /// separately.
+    /// Returns the index of the copy (stage COPY) to which the arrival of a region belongs: 0, or 1 for the second
+    /// copy. Each copy is timed separately.
     fn copy_part(&self, _arrival: &Arrival) -> u8 {
         0
     }

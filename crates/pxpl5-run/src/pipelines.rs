@@ -10,7 +10,7 @@ mod slats;
 
 pub use frameless::Frameless;
 pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
-pub use region_policy::{PolicyError, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy};
+pub use region_policy::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy};
 pub use rendering_control::{FinishedRegions, RenderingControl};
 pub use slats::{Code, Slats, SlatsLighting};
 
@@ -21,8 +21,9 @@ use crate::registry::PipelineEntry;
 use pphigs::Shading;
 use pxpl5_framebuffer::{NtscDisplay, Video};
 use pxpl5_gp::{Mark, Stage};
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Record, StageSpan};
+use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{PictureNumber, RegionGrid, ViewNumber};
 use std::any::Any;
 
@@ -35,24 +36,23 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
 
 /// Checks that a renderer's backing store has room for a finished region, which takes `blocks` blocks. Without room, no
 /// region could be copied.
-fn region_has_room(record: &Record, blocks: u64) -> Result<(), ConfigError> {
+fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     let renderer = &record.config().renderer;
     if renderer.backing_regions() >= blocks {
         return Ok(());
     }
     let (needed, found) = (blocks.saturating_mul(renderer.kept_bits), renderer.backing_bits);
     let what = format!("{blocks} blocks of {} bits (renderer.kept_bits) for a finished region", renderer.kept_bits);
-    Err(ConfigError::Board(format!(
-        "renderer.backing_bits: expected {needed} at least, room for {what}, found {found}"
-    )))
+    let expected = format!("{needed} at least, room for {what}");
+    Err(SettingError::value("renderer.backing_bits", expected, found))
 }
 
 /// Returns the display of a pipeline that draws interlaced fields of the papers' size. Returns an error for smaller
 /// displays and for other kinds of display.
-fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, ConfigError> {
+fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, SettingError> {
     let display: &NtscDisplay = (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
         let found = record.display().name();
-        ConfigError::Board(format!(
+        SettingError::combination(format_args!(
             "{pipeline} draws single fields of 240 lines between two retraces, so it needs interlace: expected the display ntsc, found {found}"
         ))
     })?;
@@ -61,7 +61,7 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Confi
     let [found_width, found_height] = [display.video().width(), display.video().height()];
     if found_width < width || found_height < height {
         let lines = height / 2;
-        return Err(ConfigError::Board(format!(
+        return Err(SettingError::combination(format_args!(
             "{pipeline} draws {width} x {height} pixels: expected video.visible_pixels from {width} and video.visible_lines from {lines}, \
              found {found_width} and {}",
             found_height / 2

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// fields, the dry run takes all fields.
 const INTERVAL_FIELDS: u64 = 60;
 
-/// Results of the preparation.
+/// Results of the preparation of a run.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Preparation {
     /// Time at which each view is seen. `None` without prediction, or if the firmware computes these times itself.

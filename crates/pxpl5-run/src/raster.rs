@@ -1,7 +1,7 @@
 //! Correction of a picture during its scan, between the frame buffer and the eye.
 
 use crate::reprojection::Reprojection;
-use pxpl5_sim::parameters::TextError;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -20,7 +20,7 @@ pub enum Raster {
 }
 
 impl Raster {
-    /// All corrections without parameters, with their names on the command line.
+    /// All corrections of a display that have no parameters, with their names on the command line.
     pub const ALL: [(&str, Self); 2] = [("plain", Self::Plain), ("vdrt", Self::Vdrt)];
 
     /// Returns the device that moves pictures. VDRT also counts as a device. Returns `None` without a correction.
@@ -35,10 +35,10 @@ impl Raster {
 }
 
 impl FromStr for Raster {
-    type Err = TextError;
+    type Err = SettingError;
 
     /// Parses `plain`, `vdrt`, or a device such as `rotation every line, 100 us`.
-    fn from_str(text: &str) -> Result<Self, TextError> {
+    fn from_str(text: &str) -> Result<Self, SettingError> {
         let named = Self::ALL.iter().find(|(name, _)| *name == text).map(|(_, raster)| *raster);
         named.map_or_else(|| text.parse().map(Self::Reprojected), Ok)
     }

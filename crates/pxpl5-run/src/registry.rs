@@ -6,7 +6,7 @@ use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
 use crate::summary::Summary;
 use pxpl5_machine::{MachineConfig, NamedTable};
-use pxpl5_sim::parameters::{NameError, find_named};
+use pxpl5_sim::parameters::{SettingError, find_named};
 use pxpl5_wire::display::DisplayConfig;
 use serde::Serialize;
 use std::fmt;
@@ -37,10 +37,10 @@ pub enum TestScene {
 }
 
 impl TestScene {
-    /// All kinds of triangles, starting with the largest.
+    /// All kinds of triangles in test scenes, starting with the largest triangles.
     pub const ALL: [Self; 2] = [Self::FullScreen, Self::Typical];
 
-    /// Returns the name on the command line and in tables.
+    /// Returns the name of the kind of triangles on the command line and in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -75,11 +75,11 @@ pub struct ClosedForm {
 /// Description of a pipeline in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct PipelineEntry {
-    /// Name in experiment files and on the command line.
+    /// Name of the entry in experiment files and on the command line.
     pub name: &'static str,
     /// Name of the family. All variants of the pipeline have the same family.
     pub family: &'static str,
-    /// Description in one line, with the publication.
+    /// Description of the pipeline in one line, with the publication.
     pub about: &'static str,
     /// Preset of a machine on which the papers ran the pipeline, or on which the pipeline could have run.
     pub preset: &'static str,
@@ -101,7 +101,7 @@ pub struct PipelineEntry {
 /// Description of a display in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplayEntry {
-    /// Name in experiment files and on the command line.
+    /// Name of the entry in experiment files and on the command line.
     pub name: &'static str,
     /// Function that returns the display's configuration with the values from the papers.
     pub config: fn() -> Box<dyn DisplayConfig>,
@@ -114,11 +114,11 @@ impl fmt::Display for PipelineEntry {
 }
 
 impl FromStr for PipelineEntry {
-    type Err = NameError;
+    type Err = SettingError;
 
-    /// Returns the entry of a built-in pipeline, without an analytic model. [`Registry::pipeline`] also finds other
-    /// pipelines.
-    fn from_str(name: &str) -> Result<Self, NameError> {
+    /// Returns the registry entry of a built-in pipeline, without its closed form. [`Registry::pipeline`] also finds
+    /// other pipelines.
+    fn from_str(name: &str) -> Result<Self, SettingError> {
         Registry::of_papers().pipeline(name).copied()
     }
 }
@@ -130,10 +130,10 @@ impl fmt::Display for DisplayEntry {
 }
 
 impl FromStr for DisplayEntry {
-    type Err = NameError;
+    type Err = SettingError;
 
-    /// Returns the entry of a built-in display. [`Registry::display`] also finds other displays.
-    fn from_str(name: &str) -> Result<Self, NameError> {
+    /// Returns the registry entry of a built-in display. [`Registry::display`] also finds other displays.
+    fn from_str(name: &str) -> Result<Self, SettingError> {
         Registry::of_papers().display(name).copied()
     }
 }
@@ -200,8 +200,8 @@ impl Registry {
     ///
     /// # Errors
     ///
-    /// [`NameError`] with the most similar name if no pipeline has the name.
-    pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, NameError> {
+    /// [`SettingError`] with the most similar name if no pipeline has the name.
+    pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, SettingError> {
         find_named("pipeline", name, self.pipelines.iter().map(|entry| (entry.name, entry)))
     }
 
@@ -209,8 +209,8 @@ impl Registry {
     ///
     /// # Errors
     ///
-    /// [`NameError`] with the valid names if no display has the name.
-    pub fn display(&self, name: &str) -> Result<&DisplayEntry, NameError> {
+    /// [`SettingError`] with the valid names if no display has the name.
+    pub fn display(&self, name: &str) -> Result<&DisplayEntry, SettingError> {
         find_named("display", name, self.displays.iter().map(|entry| (entry.name, entry)))
     }
 

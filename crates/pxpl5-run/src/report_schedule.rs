@@ -26,7 +26,7 @@ impl Coming {
     }
 }
 
-/// Times of the reports of a run.
+/// Arrival and measurement times of the tracker reports of a run.
 ///
 /// Only reports that were requested and not discarded are in memory. The use of memory therefore does not depend on the
 /// length of the run.
@@ -68,12 +68,12 @@ impl ReportSchedule {
         self.known.drain(..earlier);
     }
 
-    /// Returns the number of reports in memory.
+    /// Returns the number of tracker reports whose times are in memory.
     pub(crate) fn held(&self) -> usize {
         self.known.len()
     }
 
-    /// Computes reports until one arrives after an instant.
+    /// Computes the times of further reports until a report arrives after an instant.
     fn read_until_after(&mut self, instant: Time) {
         while self.known.back().is_none_or(|last| last.arrives <= instant) {
             let Some(coming) = self.arrivals.next() else { return };

@@ -1,6 +1,6 @@
 //! A device between frame buffer and eye that moves the last picture to the current pose of the head.
 
-use pxpl5_sim::parameters::TextError;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -44,7 +44,7 @@ pub struct Reprojection {
 }
 
 impl Warp {
-    /// All methods, with their names in experiment files.
+    /// All methods by which a device moves a picture, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("shift", Self::Shift), ("rotation", Self::Rotation), ("depth", Self::Depth)];
 }
 
@@ -59,7 +59,7 @@ impl Every {
     ///
     /// The latency is 2,000 for one pose per field, because a graphics processor begins this long before the retrace
     /// (range 1,000 to 4,000). For one pose per strip the latency is 500, and for one pose per line 100 (range 64 to
-    /// 1,000). In both cases a pipeline beside the scan holds a few lines.
+    /// 1,000). In both cases the device works during the scan and holds only a few lines.
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {
@@ -100,10 +100,10 @@ impl fmt::Display for Reprojection {
 pub(crate) const RASTER_FORMS: &str = "plain, vdrt or a device such as `rotation every line, 100 us`";
 
 impl FromStr for Reprojection {
-    type Err = TextError;
+    type Err = SettingError;
 
     /// Parses a text such as `rotation every line, 100 us`, the form in which a device is written.
-    fn from_str(text: &str) -> Result<Self, TextError> {
+    fn from_str(text: &str) -> Result<Self, SettingError> {
         let parse = || {
             let (way, latency) = text.split_once(", ")?;
             let (by, every) = way.split_once(" every ")?;
@@ -111,6 +111,6 @@ impl FromStr for Reprojection {
             let is_valid = (Self::LATENCY_US.0..=Self::LATENCY_US.1).contains(&latency_us);
             is_valid.then_some(Self { by: by.parse().ok()?, every: every.parse().ok()?, latency_us })
         };
-        parse().ok_or_else(|| TextError::whole(RASTER_FORMS, text))
+        parse().ok_or_else(|| SettingError::text(RASTER_FORMS, text))
     }
 }

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// are still being drawn, and the first pictures were requested too late.
 pub const WARM_UP_PERIODS: u64 = 8;
 
-/// Rule for the window of a run, in words for readers of a report.
+/// Rule for the result window of a run, as text for readers of a report.
 pub const WINDOW_DEFINITION: &str = "latencies, due pictures, errors and rates cover one window; it begins with the 9th period of the \
     display, or with the first period of the fifth picture if that is later, and it ends with the last complete period; if a picture \
     due in the first half of the run was not shown, it begins with the first such picture, because earlier pictures may have profited \
@@ -26,9 +26,9 @@ pub const WINDOW_DEFINITION: &str = "latencies, due pictures, errors and rates c
 /// Periods of the first display over which all results of a run are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ResultWindow {
-    /// First period of the window.
+    /// First display period of the result window.
     pub first_period: PeriodNumber,
-    /// Last period of the window, inclusive.
+    /// Last display period of the result window, inclusive.
     pub last_period: PeriodNumber,
     /// Period of the first picture after the warm-up. `None` if the run shows no picture after the warm-up.
     #[serde(skip)]
@@ -36,8 +36,8 @@ pub struct ResultWindow {
 }
 
 impl ResultWindow {
-    /// Returns the window of a run that has ended. Returns `None` if no period remains after the warm-up, or if the
-    /// remaining periods are too few for a due picture.
+    /// Returns the result window of a run that has ended. Returns `None` if no period remains after the warm-up, or if
+    /// the remaining periods are too few for a due picture.
     ///
     /// `reached` is the first period that was not simulated to its end. `every` is the number of periods from one due
     /// picture to the next, or `None` if no picture is ever due. `planned` is the first period after the requested
@@ -59,7 +59,7 @@ impl ResultWindow {
         (whole > 0).then_some(Self { last_period, ..begun })
     }
 
-    /// Returns the window of a run that has not ended. All pictures in the periods before `known` must have been
+    /// Returns the result window of a run that has not ended. All pictures in the periods before `known` must have been
     /// recorded. The window ends with the requested end of the run.
     pub(crate) fn begun(ends: &PictureResults, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
@@ -78,8 +78,8 @@ impl ResultWindow {
         Self { first_period: PeriodNumber(first), last_period, steady_from }
     }
 
-    /// Returns the window without all intervals between due pictures that begin before the period `from`. Returns
-    /// `None` if nothing remains.
+    /// Returns the result window without all intervals between due pictures that begin before the period `from`.
+    /// Returns `None` if nothing remains.
     pub(crate) fn not_before(self, from: Option<PeriodNumber>, every: Option<u64>) -> Option<Self> {
         let every = every.unwrap_or(1).max(1);
         let later = from.map_or(0, |from| from.0.saturating_sub(self.first_period.0).div_ceil(every) * every);
@@ -87,19 +87,19 @@ impl ResultWindow {
         (first_period <= self.last_period).then_some(Self { first_period, ..self })
     }
 
-    /// Returns true if a period lies in the window.
+    /// Returns true if a display period lies in the result window.
     #[must_use]
     pub fn holds(&self, period: PeriodNumber) -> bool {
         (self.first_period..=self.last_period).contains(&period)
     }
 
-    /// Returns true if a picture that is first shown in `period` lies in the window and after the warm-up.
+    /// Returns true if a picture that is first shown in `period` lies in the result window and after the warm-up.
     #[must_use]
     pub fn holds_picture(&self, period: PeriodNumber) -> bool {
         self.steady_from.is_some_and(|steady| steady <= period) && self.holds(period)
     }
 
-    /// Returns the number of periods in the window.
+    /// Returns the number of display periods in the result window.
     #[must_use]
     pub const fn periods(&self) -> u64 {
         self.last_period.0 + 1 - self.first_period.0

@@ -85,14 +85,18 @@ impl Experiment {
             if stepper.failure().is_some() {
                 break;
             }
-            self.go_on()?;
+            self.check_stopped()?;
             at(field, stepper.machine_mut())?;
         }
         stepper.finish()
     }
 
-    /// Returns an error if the host no longer wants the result.
-    pub(crate) fn go_on(&self) -> Result<(), ExperimentError> {
+    /// Returns an error if the host no longer wants the result ([`Host::is_stopped`](crate::Host::is_stopped)).
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError::Stopped`].
+    pub fn check_stopped(&self) -> Result<(), ExperimentError> {
         if self.host.is_stopped() {
             return Err(ExperimentError::Stopped("the run was stopped".to_owned()));
         }

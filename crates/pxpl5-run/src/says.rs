@@ -65,7 +65,7 @@ impl Stepper {
         (0..lines).rev().find(lit)
     }
 
-    /// Returns the fields of one pixel's memory in a renderer's array, after all commands that have started.
+    /// Returns the bit fields of one pixel's memory in a renderer's array, after all commands that have started.
     ///
     /// Returns `None` under the same conditions as [`Stepper::array`], and for a position outside the array.
     #[must_use]
@@ -111,16 +111,16 @@ impl Stepper {
     }
 }
 
-/// A field of a pixel's memory with its value.
+/// A bit field of a pixel's memory, with its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PixelField {
-    /// Name of the field in the layout.
+    /// Name of the bit field in the layout of pixel memory.
     pub name: String,
-    /// Index of the field's first bit, among the 208 bits of a pixel.
+    /// Index of the bit field's first bit, among the 208 bits of a pixel.
     pub first: u32,
-    /// Width of the field in bits.
+    /// Width of the bit field in bits.
     pub width: u32,
-    /// Value of the field. The field's first bit is the least significant bit.
+    /// Value of the bit field. The first bit is the least significant bit.
     pub value: u128,
 }
 

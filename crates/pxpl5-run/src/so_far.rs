@@ -62,7 +62,7 @@ impl SoFar<'_> {
         self.experiment.pipeline().as_ref()
     }
 
-    /// Returns all stages of all pictures. The times of COPY are measured at the displays.
+    /// Returns the time spans of all stages of all pictures so far. The times of COPY are measured at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()

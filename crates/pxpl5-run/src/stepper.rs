@@ -157,7 +157,7 @@ impl Stepper {
     pub fn finish(mut self) -> Result<Outcome, ExperimentError> {
         self.break_at(BTreeSet::new());
         while self.failure().is_none() && self.now < self.end() {
-            self.experiment.go_on()?;
+            self.experiment.check_stopped()?;
             self.run_to(self.record().tick(self.period().after(PROGRESS_FIELDS)));
         }
         self.run.machine.finish_pixels();
@@ -257,7 +257,7 @@ impl Stepper {
         Some(self.record().renderers().get(number)?.look(self.now))
     }
 
-    /// Returns the pixel array of a renderer after all commands that have started.
+    /// Returns the pixel memory of a renderer after all commands that have started.
     ///
     /// Returns `None` unless [traffic is recorded](Experiment::record_traffic) and pixels are computed.
     #[must_use]
@@ -292,7 +292,8 @@ impl Stepper {
         ideal_picture(&self.experiment, self.record(), self.run.head.as_deref(), surface, self.now)
     }
 
-    /// Sets the current instant and adds all results that can no longer change to the sums.
+    /// Sets the current instant. Adds all results that can no longer change to the sums of the run
+    /// ([`Tally`](crate::Tally)).
     fn advance_to(&mut self, now: Time) {
         self.now = now;
         self.last = None;

@@ -4,7 +4,8 @@ use crate::experiment::Experiment;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
 
-/// Number of fields between two progress reports. After each such interval, final results are added to the sums.
+/// Number of fields between two progress reports. After each such interval, results that can no longer change are added
+/// to the sums of the run.
 pub(crate) const PROGRESS_FIELDS: u64 = 60;
 
 impl Experiment {

@@ -1,8 +1,8 @@
 //! Summary of a run in a few numbers that all levels of modelling provide.
 
 use crate::due::DuePictures;
-use crate::samples::Samples;
-use crate::statistics::Statistics;
+use pxpl5_sim::Samples;
+use pxpl5_sim::Statistics;
 
 /// Results of an experiment that all levels of modelling provide, over the pictures in the result window.
 #[derive(Clone, Debug, PartialEq)]

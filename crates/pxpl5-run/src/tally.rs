@@ -8,10 +8,10 @@ use crate::observers::FinalResults;
 use crate::picture_ends::PictureResults;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::pipelines::faces::requests::RequestedUpdates;
-use crate::samples::Samples;
 use crate::summary::retraces;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
+use pxpl5_sim::Samples;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
@@ -34,7 +34,7 @@ pub struct Tally {
     /// Latencies in milliseconds, by the pipeline's definition. Usually from the start of TRANSFORM until the picture
     /// is shown.
     pub latency_ms: Samples,
-    /// Samples for each part of [`LATENCY_PARTS`], in the same order.
+    /// Durations of each latency part in milliseconds, in the order of [`LATENCY_PARTS`].
     pub parts_ms: Vec<Samples>,
     /// Times from the start of an eye's TRANSFORM to the end of its COPY, for all pictures in the result window.
     pub eye_ms: Samples,
@@ -75,7 +75,8 @@ pub struct Tally {
     limit: usize,
 }
 
-/// Latencies of one surface, or of a pair from the first surface's start to the second surface's end.
+/// Latencies of one surface or of a pair of surfaces. The latency of a pair lasts from the first surface's start to the
+/// second surface's end.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceLatency<'a> {
     /// Surface whose TRANSFORM begins the latency.
@@ -86,7 +87,7 @@ pub struct SurfaceLatency<'a> {
     pub until: &'static str,
     /// Description of the event that ends the latency.
     pub event: &'static str,
-    /// Latencies in milliseconds.
+    /// Latencies from the start of TRANSFORM on the first surface to the event, in milliseconds.
     pub ms: &'a Samples,
 }
 
@@ -137,7 +138,8 @@ impl Tally {
         self.end = self.end.min(reached);
     }
 
-    /// Counts pictures in the order in which they are shown. These counts cover the whole run, not only the window.
+    /// Counts pictures in the order in which the pictures are shown. These counts cover the whole run, not only the
+    /// result window.
     pub(crate) fn count(&mut self, record: &Record, pictures: &[PictureTimes]) {
         for times in pictures {
             let period = record.display().period_at(times.shown_at);
@@ -181,7 +183,7 @@ impl Tally {
         }
     }
 
-    /// Clears the samples of the result window. Counts over the whole run stay.
+    /// Clears the samples of the result window. Counts over the whole run keep their values.
     fn restart(&mut self, first_period: PeriodNumber) {
         let fresh = Self::new(self.end, self.field_ms, self.limit);
         let before = std::mem::replace(self, fresh);
@@ -217,8 +219,8 @@ impl Tally {
         }
     }
 
-    /// Returns the latencies of both surfaces and of the pair. The iterator is empty if the surfaces share one
-    /// TRANSFORM.
+    /// Returns the latencies of each surface and of the pair of surfaces. The iterator is empty if the surfaces share
+    /// one TRANSFORM.
     pub fn latencies_of_surfaces(&self) -> impl Iterator<Item = SurfaceLatency<'_>> {
         let latencies = LATENCY_SURFACES.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
         let with = self.surfaces_ms.iter().zip(latencies).filter(|(ms, _)| ms.count() > 0);

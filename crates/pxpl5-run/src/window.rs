@@ -1,4 +1,4 @@
-//! Memory management of long runs: adds the results of old records to the sums and discards the records.
+//! Memory management of long runs: adds the results of old records to the sums of the run and discards the records.
 
 use crate::assembled::Assembled;
 use crate::experiment::Experiment;
@@ -8,9 +8,9 @@ use crate::observers::{FinalResults, StreamingObserver};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::ResultWindow;
-use crate::samples::KEPT_SAMPLES;
 use crate::tally::Tally;
 use pxpl5_machine::Record;
+use pxpl5_sim::KEPT_SAMPLES;
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::any::Any;
@@ -24,7 +24,7 @@ const LEAST_RECORDS: usize = 32_768;
 const PICTURES_HELD: usize = 32;
 const PERIODS_HELD: u64 = 32;
 
-/// State of the sums of a run, and of the records that are still needed.
+/// The sums of a run's results so far, and the state of discarding: which records are still needed.
 ///
 /// A picture is final (its results can no longer change) after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`]
 /// display periods. Records are discarded if they are at least [`PERIODS_HELD`] periods older than the first picture
@@ -36,15 +36,15 @@ pub(crate) struct Window {
     sum: Option<Box<dyn StreamingObserver>>,
     forgets: bool,
     samples: usize,
-    /// Latest instant up to which all shown pictures are in the sums.
+    /// Latest instant up to which all shown pictures are in the sums of the run.
     taken_to: Option<Time>,
-    /// Number of arrivals in memory that are already in the sums.
+    /// Number of arrivals of regions in memory that are already in the sums of the run.
     arrivals_taken: usize,
-    /// Number of records at which the next pass over the records begins.
+    /// Number of records in memory at which results are added to the sums, and old records discarded, the next time.
     next_look: usize,
 }
 
-/// Results of a run that has ended: its sums, and the pictures whose records are kept.
+/// Results of a run that has ended: the sums of all results, and the pictures whose records are kept.
 #[derive(Debug)]
 pub(crate) struct Closed {
     pub(crate) tally: Tally,
@@ -68,8 +68,8 @@ impl Window {
         Self { tally, sum, forgets, samples, taken_to: None, arrivals_taken: 0, next_look: LEAST_RECORDS }
     }
 
-    /// Adds results that can no longer change to the sums, and discards their records. Does nothing if the run has few
-    /// records or must keep all of them.
+    /// Adds results that can no longer change to the sums of the run, and discards the records of these results. Does
+    /// nothing if the run has few records or must keep all of them.
     pub(crate) fn look(&mut self, experiment: &Experiment, run: &mut Assembled, now: Time) {
         if !self.forgets || run.records() < self.next_look {
             return;
@@ -87,7 +87,8 @@ impl Window {
         self.next_look = LEAST_RECORDS.max(2 * run.records());
     }
 
-    /// Adds final pictures to the sums. Returns the earliest instant whose records other pictures still need.
+    /// Adds pictures whose results can no longer change to the sums of the run. Returns the earliest instant whose
+    /// records other pictures still need.
     fn take_final(&mut self, experiment: &Experiment, run: &Assembled, now: Time) -> Option<Time> {
         let record = run.machine.record();
         let fresh = self.fresh(experiment.pipeline.as_ref(), record, now);
@@ -116,7 +117,7 @@ impl Window {
         Some(begin)
     }
 
-    /// Returns the pictures that are not in the sums yet, in the order in which they are shown.
+    /// Returns the pictures that are not in the sums of the run yet, in the order in which the pictures are shown.
     fn fresh(&self, pipeline: &dyn Pipeline, record: &Record, now: Time) -> Vec<PictureTimes> {
         let pictures = pipeline.pictures(record, now).into_iter();
         pictures.filter(|times| Some(times.shown_at) > self.taken_to).collect()

@@ -2,11 +2,12 @@
 //! waiting programs.
 
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Board, ConfigError, Machine, MachineConfig, Record, RunError};
+use pxpl5_machine::{Board, Machine, MachineConfig, Record, RunError};
 use pxpl5_renderer::Layout;
 use pxpl5_run::{Experiment, ExperimentError, Pause, PictureRules, PictureTimes, Pipeline, Pixels, Setup, Slats};
 use pxpl5_scene::builtin;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 
 /// A pipeline whose program waits for a message that is never sent.
 #[derive(Debug)]
@@ -25,7 +26,7 @@ impl Pipeline for Waiting {
         Layout::slats()
     }
 
-    fn load(&self, machine: &mut Machine, _: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, _: &Setup) -> Result<(), SettingError> {
         let node = machine.ports().gps[0];
         let gp = machine.processor(node, Priority::Foreground);
         let program = async move {

@@ -14,8 +14,8 @@ mod sphere;
 mod typical;
 
 use crate::config::{LEAST_SPHERE_TRIANGLES, MAX_TRIANGLES};
-use crate::error::SceneError;
 use crate::scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 
 const NAMES: [(&str, &str); 10] = [
     (
@@ -63,8 +63,8 @@ pub fn names() -> &'static [(&'static str, &'static str)] {
 ///
 /// # Errors
 ///
-/// [`SceneError::UnknownScene`] with the nearest valid name, or [`SceneError::TriangleCount`].
-pub fn builtin(name: &str) -> Result<Scene, SceneError> {
+/// [`SettingError`] with the nearest valid name, or with the allowed number of triangles.
+pub fn builtin(name: &str) -> Result<Scene, SettingError> {
     match name {
         "aircraft" => Ok(aircraft::scene()),
         "mig" => Ok(mig::scene()),
@@ -78,68 +78,34 @@ pub fn builtin(name: &str) -> Result<Scene, SceneError> {
 }
 
 /// Generates a scene whose name contains a number of triangles, such as `sphere:80`.
-fn counted(name: &str) -> Result<Scene, SceneError> {
+fn counted(name: &str) -> Result<Scene, SettingError> {
     match name.split_once(':') {
         Some(("full-screen", count)) => Ok(full_screen::scene(triangles(FULL_SCREEN, count, 1)?)),
         Some(("typical", count)) => Ok(typical::scene(triangles(TYPICAL, count, 1)?)),
         Some(("sphere", count)) => match triangles(SPHERE, count, LEAST_SPHERE_TRIANGLES)? {
             n if n.is_multiple_of(2) => Ok(sphere::scene(n)),
-            n => Err(SceneError::TriangleCount { scene: SPHERE, expected: "even".to_owned(), found: n.to_string() }),
+            n => Err(wrong_count(SPHERE, "even", &n.to_string())),
         },
         _ => Err(unknown(name)),
     }
 }
 
 /// Parses the number of triangles in a scene's name, and checks that it lies between `least` and [`MAX_TRIANGLES`].
-fn triangles(scene: &'static str, count: &str, least: u32) -> Result<u32, SceneError> {
-    let expected = || format!("from {least} to {MAX_TRIANGLES}");
+fn triangles(scene: &'static str, count: &str, least: u32) -> Result<u32, SettingError> {
     let number = count.parse().ok().filter(|n| (least..=MAX_TRIANGLES).contains(n));
-    number.ok_or_else(|| SceneError::TriangleCount { scene, expected: expected(), found: excerpt(count) })
+    number.ok_or_else(|| wrong_count(scene, &format!("from {least} to {MAX_TRIANGLES}"), &excerpt(count)))
 }
 
-fn unknown(name: &str) -> SceneError {
-    let found = excerpt(name);
-    let lower = found.to_lowercase();
-    let nearest = NAMES.iter().map(|(valid, _)| *valid).min_by_key(|valid| edits(&lower, valid));
-    SceneError::UnknownScene {
-        found,
-        nearest: nearest.unwrap_or_default().to_owned(),
-        valid: NAMES.map(|(valid, _)| valid).join(", "),
-    }
+fn wrong_count(scene: &str, expected: &str, found: &str) -> SettingError {
+    SettingError::value(&format!("scene {scene}"), format_args!("N {expected}"), format_args!("{found:?}"))
+}
+
+fn unknown(name: &str) -> SettingError {
+    SettingError::unknown("scene", &excerpt(name), NAMES.iter().map(|(valid, _)| *valid))
 }
 
 /// Cuts a name to 40 characters, so that an error message and the search for the nearest name stay short. All valid
 /// names are shorter.
 fn excerpt(name: &str) -> String {
     name.chars().take(40).collect()
-}
-
-/// Returns the Levenshtein distance of two words: the number of characters to insert, delete or replace to turn one
-/// word into the other.
-fn edits(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    // `row` holds the distances from the first i characters of `from` to every beginning of `to`.
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (i, a) in from.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, &b) in to.iter().enumerate() {
-            let replaced = diagonal + usize::from(a != b);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[to.len()]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::edits;
-
-    #[test]
-    fn the_distance_of_words_counts_single_edits() {
-        assert_eq!(edits("kitten", "sitting"), 3); // Levenshtein's own textbook pair
-        assert_eq!(edits("", "mig"), 3);
-        assert_eq!(edits("head", "head"), 0);
-    }
 }

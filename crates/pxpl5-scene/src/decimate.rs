@@ -1,4 +1,4 @@
-//! Decimation, which reduces the number of primitives of a scene and keeps the scene's shape.
+//! Decimation, which reduces the number of primitives and keeps the shape.
 //!
 //! The algorithm collapses edges, the cheapest first by the quadric error metric (Garland and Heckbert, SIGGRAPH 97).
 //! Each edge collapses onto one of its ends, so every remaining vertex keeps its position, normal and colour. A closed
@@ -11,69 +11,115 @@ mod collapse;
 mod quadric;
 mod surface;
 
+use pxpl5_sim::parameters::SettingError;
+use std::fmt;
 use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use collapse::{Decimator, Rules};
+use collapse::FirstPass;
 use surface::Surface;
 
-use crate::error::SceneError;
 use crate::scene::{Scene, SceneParts, Structure};
 
 impl Scene {
-    /// Returns a decimated copy of the scene with `n` primitives, or with fewer if the surfaces of the scene do not
-    /// allow exactly `n`. A closed surface has an even number of triangles, so the result can have one primitive less
-    /// than an odd `n`. The ratio of spheres to triangles stays the same.
+    /// Returns the same scene with at most `n` primitives. The scene keeps as many of them as its surfaces allow. A
+    /// closed surface has an even number of triangles, so the result can have one primitive less than an odd `n`. The
+    /// ratio of spheres to triangles stays the same.
     ///
     /// Structures without primitives are removed together with their edits. The same scene and number give the same
     /// result on every host.
     ///
     /// # Errors
     ///
-    /// Returns [`SceneError::Kept`] if `n` is zero or exceeds the number of primitives.
-    pub fn decimated(&self, n: usize) -> Result<Self, SceneError> {
-        let triangles = self.triangles().len();
-        let spheres = self.spheres().len();
-        let all = triangles + spheres;
-        if n == 0 || n > all {
-            return Err(SceneError::Kept { scene: self.name().to_owned(), expected: all, found: n });
-        }
-        if n == all {
-            return Ok(self.clone());
-        }
-        // Spheres keep their share of the primitives, rounded to the nearest integer.
-        let kept_spheres = (2 * n * spheres + all) / (2 * all);
-        let kept = Kept {
-            triangles: triangles_kept(self, n - kept_spheres),
-            spheres: (0..spheres).map(|sphere| is_kept(sphere, spheres, kept_spheres)).collect(),
-        };
-        Ok(Self::new(kept.of(self.clone().into_parts()))?.with_warnings(self.warnings().to_vec()))
+    /// Returns a [`SettingError`] if `n` is zero or exceeds the number of primitives.
+    pub fn decimated(&self, n: usize) -> Result<Self, SettingError> {
+        decimated(self, n, |wanted| FirstPass::new(Surface::new(self)).end(wanted))
     }
 }
 
-/// Returns true if the item with this index is kept, when `kept` of `all` items are kept. The kept items are spread
-/// evenly.
+/// Decimation of one scene to several numbers of primitives. Each result equals that of [`Scene::decimated`].
+///
+/// Collapses have the same order for every number of primitives. A later call therefore continues from a state that an
+/// earlier call has passed, if its number is not larger.
+pub struct Decimation {
+    scene: Arc<Scene>,
+    passed: Mutex<Option<Arc<FirstPass>>>,
+}
+
+impl Decimation {
+    /// Prepares the decimation of a scene.
+    #[must_use]
+    pub const fn new(scene: Arc<Scene>) -> Self {
+        Self { scene, passed: Mutex::new(None) }
+    }
+
+    /// Returns the same scene as [`Scene::decimated`].
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`Scene::decimated`].
+    pub fn decimated(&self, n: usize) -> Result<Scene, SettingError> {
+        decimated(&self.scene, n, |wanted| self.surface(wanted))
+    }
+
+    fn surface(&self, wanted: usize) -> Surface {
+        let passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let known = passed.filter(|passed| passed.serves(wanted));
+        // A state far from the wanted number saves little, so a nearer one replaces it.
+        let is_near = known.as_ref().is_some_and(|known| known.left() / 2 <= wanted);
+        let mut first = known.map_or_else(|| FirstPass::new(Surface::new(&self.scene)), Arc::unwrap_or_clone);
+        if !is_near {
+            first.until(wanted + wanted / PASSED_ABOVE, wanted);
+            // A state that was reached only for this number is of no use to others.
+            if first.serves(wanted) {
+                *self.passed.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(first.clone()));
+            }
+        }
+        first.end(wanted)
+    }
+}
+
+impl fmt::Debug for Decimation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Decimation").field("scene", &self.scene.name()).finish_non_exhaustive()
+    }
+}
+
+/// A state is stored when an eighth more triangles than wanted remain. A search for a limit tries sizes on both sides.
+const PASSED_ABOVE: usize = 8;
+
+/// Returns a scene with at most `n` primitives. `reduce` returns the surface with at most a number of triangles.
+fn decimated(scene: &Scene, n: usize, reduce: impl FnOnce(usize) -> Surface) -> Result<Scene, SettingError> {
+    let triangles = scene.triangles().len();
+    let spheres = scene.spheres().len();
+    let all = triangles + spheres;
+    if n == 0 || n > all {
+        let name = format!("scene {}", scene.name());
+        return Err(SettingError::value(&name, format_args!("1 to {all} triangles to keep"), n));
+    }
+    if n == all {
+        return Ok(scene.clone());
+    }
+    // Rounded to the nearest integer.
+    let kept_spheres = (2 * n * spheres + all) / (2 * all);
+    let wanted = n - kept_spheres;
+    let mut surface = reduce(wanted);
+    drop_pieces(&mut surface, wanted);
+    drop_triangles(&mut surface, wanted);
+    let kept = Kept {
+        triangles: surface.triangles,
+        spheres: (0..spheres).map(|sphere| is_kept(sphere, spheres, kept_spheres)).collect(),
+    };
+    Ok(Scene::new(kept.of(scene.clone().into_parts()))?.with_warnings(scene.warnings().to_vec()))
+}
+
+/// Returns true if item `index` of `all` items is among the `kept` ones. The kept items are spread evenly.
 const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
     index * kept / all != (index + 1) * kept / all
 }
 
-/// Returns the vertices of each remaining triangle, or `None` for a removed triangle. At most `wanted` triangles
-/// remain.
-fn triangles_kept(scene: &Scene, wanted: usize) -> Vec<Option<[u32; 3]>> {
-    let mut surface = Surface::new(scene);
-    // Later passes have weaker rules. From the second pass on, too few triangles may remain. In the third pass,
-    // triangles may also fold over.
-    let mut collapsing = Decimator::new(&mut surface);
-    let passes = [(false, false), (false, true), (true, true)];
-    for (may_flip_triangles, may_overshoot) in passes {
-        collapsing.until(wanted, Rules { may_flip_triangles, may_overshoot });
-    }
-    drop_pieces(&mut surface, wanted);
-    drop_triangles(&mut surface, wanted);
-    surface.triangles
-}
-
-/// Removes whole connected pieces, the smallest first, until at most `wanted` triangles or a single piece remain.
-fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
+/// Removes whole connected pieces, the smallest first. It ends when `wanted` triangles or a single piece remain.
+fn drop_pieces(surface: &mut Surface, wanted: usize) {
     if surface.left <= wanted {
         return;
     }
@@ -90,15 +136,15 @@ fn drop_pieces(surface: &mut Surface<'_>, wanted: usize) {
 }
 
 /// Removes the smallest triangles until `wanted` remain. This is the last resort, after all other passes.
-fn drop_triangles(surface: &mut Surface<'_>, wanted: usize) {
+fn drop_triangles(surface: &mut Surface, wanted: usize) {
     let left: Vec<u32> = surface.all().map(|(triangle, _)| triangle).collect();
     let areas: Vec<f64> = left.iter().map(|&triangle| area(surface, triangle)).collect();
     let excess = surface.left.saturating_sub(wanted);
     smallest_first(&areas).into_iter().take(excess).for_each(|index| remove(surface, left[index]));
 }
 
-/// Returns the indices of triangles by increasing area. Areas that agree to a thousandth count as equal. Triangles of
-/// equal area are in an order that spreads evenly over the surface.
+/// Returns the indices of triangles by increasing area. Areas that agree to a thousandth count as equal, and their
+/// order spreads evenly over the surface.
 fn smallest_first(areas: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..areas.len()).collect();
     // The key is the exponent and ten bits of the fraction, followed by the bits of the index in reverse order.
@@ -106,11 +152,11 @@ fn smallest_first(areas: &[f64]) -> Vec<usize> {
     order
 }
 
-fn area(surface: &Surface<'_>, triangle: u32) -> f64 {
+fn area(surface: &Surface, triangle: u32) -> f64 {
     surface.points(triangle).map_or(0.0, |points| surface.normal(points).length() / 2.0)
 }
 
-fn remove(surface: &mut Surface<'_>, triangle: u32) {
+fn remove(surface: &mut Surface, triangle: u32) {
     if let Some(points) = surface.points(triangle) {
         surface.remove(triangle, points);
     }

@@ -1,11 +1,11 @@
 //! Construction of a scene from the arrays of a triangle mesh.
 
 use crate::config::FIT_DISTANCE_RADII;
-use crate::error::SceneError;
 use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Lighting, Scene, SceneParts, Vertex};
 use crate::sway::Sway;
 use glam::Vec3;
+use pxpl5_sim::parameters::SettingError;
 
 /// Colour of a mesh that has no colours of its own: light grey.
 const GREY: [u8; 3] = [200, 200, 200];
@@ -25,14 +25,14 @@ impl Scene {
     /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
     /// let scene = Scene::from_triangles(&corners, &[[0, 1, 2]])?;
     /// assert_eq!(scene.vertices()[0].normal, Vec3::Z);
-    /// # Ok::<(), pxpl5_scene::SceneError>(())
+    /// # Ok::<(), pxpl5_sim::parameters::SettingError>(())
     /// ```
     ///
     /// # Errors
     ///
-    /// Returns [`SceneError::Part`] if a triangle refers to a missing vertex, a coordinate is not finite, or the mesh
+    /// Returns a [`SettingError`] if a triangle refers to a missing vertex, a coordinate is not finite, or the mesh
     /// has no triangles.
-    pub fn from_triangles(corners: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, SceneError> {
+    pub fn from_triangles(corners: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, SettingError> {
         let mut normals = vec![Vec3::ZERO; corners.len()];
         for triangle in triangles {
             let of = |corner: usize| corners.get(triangle[corner] as usize).copied().unwrap_or(Vec3::ZERO);

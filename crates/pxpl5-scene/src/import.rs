@@ -14,6 +14,8 @@ mod polygon;
 mod source;
 mod stl;
 
+use crate::error::unreadable;
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::io::Read;
 use std::path::Path;
 
@@ -29,7 +31,6 @@ pub use placement::Placement;
 pub(crate) use source::Source;
 
 use crate::config::MAX_FILE_BYTES;
-use crate::error::LoadError;
 use crate::motion::HeadMotion;
 use crate::scene::Scene;
 
@@ -104,8 +105,8 @@ impl Format {
 ///
 /// # Errors
 ///
-/// Returns [`LoadError::Io`] if the reader fails, and all errors of [`from_bytes`].
-pub fn from_reader(reader: impl Read, format: Format, name: &str) -> Result<Scene, LoadError> {
+/// Returns a [`FileError`] if the reader fails, and all errors of [`from_bytes`].
+pub fn from_reader(reader: impl Read, format: Format, name: &str) -> Result<Scene, FileError> {
     placed_from_reader(reader, format, name, Placement::Fitted)
 }
 
@@ -119,7 +120,7 @@ pub fn placed_from_reader(
     format: Format,
     name: &str,
     placement: Placement,
-) -> Result<Scene, LoadError> {
+) -> Result<Scene, FileError> {
     read_placed(reader, 0, format, (name, None), placement)
 }
 
@@ -133,11 +134,11 @@ fn read_placed(
     format: Format,
     (name, folder): (&str, Option<&Path>),
     placement: Placement,
-) -> Result<Scene, LoadError> {
+) -> Result<Scene, FileError> {
     // Read one byte beyond the limit, so that a larger file can be detected.
     let mut bytes = Vec::with_capacity(size.min(MAX_FILE_BYTES) as usize + 1);
     let mut limited = reader.take(MAX_FILE_BYTES + 1);
-    limited.read_to_end(&mut bytes).map_err(|source| LoadError::Io { file: name.to_owned(), source })?;
+    limited.read_to_end(&mut bytes).map_err(|error| unreadable(name, &error))?;
     match read(&bytes, format, (name, folder), placement)? {
         Content::Scene(scene) => Ok(*scene),
         Content::Mesh(model) => {
@@ -161,10 +162,10 @@ fn read_placed(
 ///
 /// # Errors
 ///
-/// [`LoadError`] states the error and its position in the file. No input causes a panic. Reading needs a limited amount
+/// [`FileError`] states the error and its position in the file. No input causes a panic. Reading needs a limited amount
 /// of memory: [`crate::config::MEMORY_TIMES_FILE`] times the size of the file, including the file itself, plus
 /// [`crate::config::MEMORY_FLOOR_BYTES`].
-pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, LoadError> {
+pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, FileError> {
     placed_from_bytes(bytes, format, name, Placement::Fitted)
 }
 
@@ -174,7 +175,7 @@ pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, Loa
 /// # Errors
 ///
 /// The same as [`from_bytes`].
-pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Scene, LoadError> {
+pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Scene, FileError> {
     match read(bytes, format, (name, None), placement)? {
         Content::Mesh(model) => model.into_scene(name, bytes.len(), placement),
         Content::Scene(scene) => Ok(*scene),
@@ -193,17 +194,18 @@ fn read(
     format: Format,
     (name, folder): (&str, Option<&Path>),
     placement: Placement,
-) -> Result<Content, LoadError> {
+) -> Result<Content, FileError> {
     let source = Source { name, bytes, folder };
     // Reject unsuitable bytes before any parser reads them. The header of a binary STL file may have any bytes.
     if format != Format::Stl {
         source.check_is_bytes_of_text()?;
     }
     if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(LoadError::TooLarge { file: name.to_owned(), expected: MAX_FILE_BYTES });
+        let expected = format_args!("at most {MAX_FILE_BYTES} bytes");
+        return Err(FileError::new(FileErrorKind::TooLarge, expected, "more").in_file(name));
     }
     if bytes.iter().all(u8::is_ascii_whitespace) {
-        return Err(LoadError::Empty { file: name.to_owned() });
+        return Err(FileError::new(FileErrorKind::Empty, "a model", "an empty file").in_file(name));
     }
     Ok(match format {
         Format::Ply => Content::Mesh(ply::read(&source)?),
@@ -212,7 +214,11 @@ fn read(
         #[cfg(feature = "gltf")]
         Format::Gltf => Content::Mesh(gltf::read(&source)?),
         #[cfg(not(feature = "gltf"))]
-        Format::Gltf => return Err(LoadError::NotBuilt { file: name.to_owned(), format: "glTF", feature: "gltf" }),
+        Format::Gltf => {
+            let expected = "a program with the feature gltf for glTF files";
+            let found = "one built without gltf; build it with --features gltf";
+            return Err(FileError::new(FileErrorKind::UnknownFormat, expected, found).in_file(name));
+        }
         Format::Pdb => Content::Scene(Box::new(pdb::read(&source, placement)?)),
     })
 }

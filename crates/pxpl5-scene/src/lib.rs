@@ -72,8 +72,8 @@ mod trig;
 mod view;
 
 pub use builtin::{builtin, names};
+pub use decimate::Decimation;
 pub use edit::{Edit, Hinge};
-pub use error::{FilePlace, LoadError, RangeError, SceneError};
 pub use import::{Format, Placement, from_bytes, from_reader, placed_from_bytes, placed_from_reader};
 #[cfg(feature = "files")]
 pub use import::{load, load_placed};

@@ -1,11 +1,11 @@
 //! Head motion in a scene: the pose of a head at any simulated time. The same seed gives the same motion on every host.
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use tracking::Pose;
 
 use crate::config::{FIT_DISTANCE_RADII, WHOLE_DISTANCE_RADII};
-use crate::error::{RangeError, require};
 use crate::sway::{self, Sway, Swing};
 use crate::trig;
 
@@ -83,9 +83,9 @@ struct Unchecked {
 }
 
 impl TryFrom<Unchecked> for HeadMotion {
-    type Error = RangeError;
+    type Error = SettingError;
 
-    fn try_from(unchecked: Unchecked) -> Result<Self, RangeError> {
+    fn try_from(unchecked: Unchecked) -> Result<Self, SettingError> {
         Self::new(unchecked.path, unchecked.sway)
     }
 }
@@ -101,10 +101,10 @@ impl HeadMotion {
     ///
     /// # Errors
     ///
-    /// [`RangeError`] names the first number out of its range.
-    pub fn new(path: HeadPath, sway: Sway) -> Result<Self, RangeError> {
+    /// [`SettingError`] names the first number out of its range.
+    pub fn new(path: HeadPath, sway: Sway) -> Result<Self, SettingError> {
         path.check()?;
-        require((0.0..=10.0).contains(&sway.scale), "sway scale", "0 to 10", sway.scale)?;
+        SettingError::require((0.0..=10.0).contains(&sway.scale), "sway scale", "0 to 10", sway.scale)?;
         Ok(Self { path, sway })
     }
 
@@ -161,7 +161,7 @@ impl HeadMotion {
 }
 
 impl HeadPath {
-    fn check(&self) -> Result<(), RangeError> {
+    fn check(&self) -> Result<(), SettingError> {
         match *self {
             HeadPath::Still { eye, target } => {
                 check_point("eye", eye)?;
@@ -184,7 +184,7 @@ impl HeadPath {
             HeadPath::FlyThrough { target, nearest, farthest, lap_s } => {
                 check_point("target", target)?;
                 check_length("nearest", nearest)?;
-                require(farthest >= nearest, "farthest", "at least nearest", farthest)?;
+                SettingError::require(farthest >= nearest, "farthest", "at least nearest", farthest)?;
                 check_length("farthest", farthest)?;
                 check_length("lap_s", lap_s)
             }
@@ -214,20 +214,20 @@ impl HeadPath {
     }
 }
 
-fn check_point(what: &'static str, point: Vec3) -> Result<(), RangeError> {
+fn check_point(what: &'static str, point: Vec3) -> Result<(), SettingError> {
     // The maximum of a vector's elements ignores NaN, so NaN is tested separately.
     let reach = if point.is_nan() { f64::NAN } else { f64::from(point.abs().max_element()) };
-    require(reach <= LIMIT, what, "coordinates of at most 1e9", reach)
+    SettingError::require(reach <= LIMIT, what, "coordinates of at most 1e9", reach)
 }
 
 /// Checks that a distance or duration is above zero and within the limit.
-fn check_length(what: &'static str, length: f64) -> Result<(), RangeError> {
-    require((1e-9..=LIMIT).contains(&length), what, "1e-9 to 1e9", length)
+fn check_length(what: &'static str, length: f64) -> Result<(), SettingError> {
+    SettingError::require((1e-9..=LIMIT).contains(&length), what, "1e-9 to 1e9", length)
 }
 
 /// Checks that a height or rate, which may be negative, is within the limit.
-fn check_either_sign(what: &'static str, number: f64) -> Result<(), RangeError> {
-    require(number.abs() <= LIMIT, what, "-1e9 to 1e9", number)
+fn check_either_sign(what: &'static str, number: f64) -> Result<(), SettingError> {
+    SettingError::require(number.abs() <= LIMIT, what, "-1e9 to 1e9", number)
 }
 
 /// Returns the vector from the target to the head after a number of laps. A lap has two and a half approaches to the

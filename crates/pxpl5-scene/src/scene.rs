@@ -1,11 +1,11 @@
 //! The display list of a scene: vertices, triangles, spheres, and the structures that the host can move.
 
+use pxpl5_sim::parameters::SettingError;
 use std::ops::Range;
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 
 use crate::edit::{Edit, Hinge};
-use crate::error::SceneError;
 use crate::motion::HeadMotion;
 
 /// A corner of one or more triangles, with position, normal and colour.
@@ -122,8 +122,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`SceneError::Part`] names the first part of the scene that breaks a rule.
-    pub fn new(mut parts: SceneParts) -> Result<Self, SceneError> {
+    /// [`SettingError`] names the first part of the scene that breaks a rule.
+    pub fn new(mut parts: SceneParts) -> Result<Self, SettingError> {
         if parts.structures.is_empty() {
             parts.structures.push(structure_of_all(&parts));
         }
@@ -297,7 +297,7 @@ impl SceneParts {
         }
     }
 
-    fn check(&self) -> Result<(), SceneError> {
+    fn check(&self) -> Result<(), SettingError> {
         self.check_structures()?;
         self.check_vertices()?;
         self.check_spheres()?;
@@ -305,17 +305,12 @@ impl SceneParts {
         self.structures.iter().try_for_each(|s| self.check_triangles(s))
     }
 
-    fn fault(&self, what: &'static str, index: usize, expected: impl ToString, found: impl ToString) -> SceneError {
-        SceneError::Part {
-            scene: self.name.clone(),
-            what,
-            index,
-            expected: expected.to_string(),
-            found: found.to_string(),
-        }
+    fn fault(&self, what: &'static str, index: usize, expected: impl ToString, found: impl ToString) -> SettingError {
+        let part = format!("scene {}: {what} {index}", self.name);
+        SettingError::scene(&part, expected.to_string(), found.to_string())
     }
 
-    fn check_vertices(&self) -> Result<(), SceneError> {
+    fn check_vertices(&self) -> Result<(), SettingError> {
         for (i, v) in self.vertices.iter().enumerate() {
             if !v.position.is_finite() {
                 return Err(self.fault("vertex", i, "a finite position", v.position));
@@ -330,7 +325,7 @@ impl SceneParts {
         Ok(())
     }
 
-    fn check_spheres(&self) -> Result<(), SceneError> {
+    fn check_spheres(&self) -> Result<(), SettingError> {
         for (i, s) in self.spheres.iter().enumerate() {
             if !(s.centre.is_finite() && s.radius.is_finite() && s.radius > 0.0) {
                 let found = format!("{} and {}", s.centre, s.radius);
@@ -341,14 +336,14 @@ impl SceneParts {
         Ok(())
     }
 
-    fn check_path(&self) -> Result<(), SceneError> {
+    fn check_path(&self) -> Result<(), SettingError> {
         match self.path.iter().position(|corner| !corner.is_finite()) {
             Some(i) => Err(self.fault("corner of the path", i, "a finite place", self.path[i])),
             None => Ok(()),
         }
     }
 
-    fn check_structures(&self) -> Result<(), SceneError> {
+    fn check_structures(&self) -> Result<(), SettingError> {
         // Taken in order, the structures must divide each of the three lists without gaps.
         let mut ends = [0; 3];
         for (i, s) in self.structures.iter().enumerate() {
@@ -370,7 +365,7 @@ impl SceneParts {
         Ok(())
     }
 
-    fn check_hinge(&self, index: usize, structure: &Structure) -> Result<(), SceneError> {
+    fn check_hinge(&self, index: usize, structure: &Structure) -> Result<(), SettingError> {
         let Some(hinge) = structure.hinge else {
             return Ok(());
         };
@@ -383,7 +378,7 @@ impl SceneParts {
         Err(self.fault("structure", index, expected, format!("{hinge:?}")))
     }
 
-    fn check_triangles(&self, structure: &Structure) -> Result<(), SceneError> {
+    fn check_triangles(&self, structure: &Structure) -> Result<(), SettingError> {
         for i in structure.triangles.clone() {
             for corner in self.triangles[i] {
                 if !structure.vertices.contains(&(corner as usize)) {

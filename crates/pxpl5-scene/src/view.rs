@@ -1,10 +1,10 @@
 //! The head-mounted display, which converts the pose of a head into the matrices of its two eyes.
 
 use glam::{DMat4, DQuat, DVec3, DVec4, Mat4};
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use tracking::Pose;
 
-use crate::error::{RangeError, require};
 use crate::scene::Frame;
 use crate::trig;
 use std::fmt;
@@ -128,24 +128,29 @@ impl Hmd {
     ///
     /// # Errors
     ///
-    /// [`RangeError`] names the first number that is out of its range.
-    pub fn new(config: HmdConfig) -> Result<Self, RangeError> {
+    /// [`SettingError`] names the first number that is out of its range.
+    pub fn new(config: HmdConfig) -> Result<Self, SettingError> {
         let c = &config;
         let separation = c.eye_separation_m;
         let fov = c.horizontal_fov_deg;
-        require((0.0..=1.0).contains(&separation), "eye_separation_m", "0 to 1", separation)?;
-        require((1.0..=170.0).contains(&fov), "horizontal_fov_deg", "1 to 170", fov)?;
+        SettingError::require((0.0..=1.0).contains(&separation), "eye_separation_m", "0 to 1", separation)?;
+        SettingError::require((1.0..=170.0).contains(&fov), "horizontal_fov_deg", "1 to 170", fov)?;
         for (what, px) in [("width_px", c.width_px), ("height_px", c.height_px)] {
-            require((1..=65_536).contains(&px), what, "1 to 65536", f64::from(px))?;
+            SettingError::require((1..=65_536).contains(&px), what, "1 to 65536", f64::from(px))?;
         }
-        require((1e-6..=1e6).contains(&c.near_m), "near_m", "1e-6 to 1e6", c.near_m)?;
+        SettingError::require((1e-6..=1e6).contains(&c.near_m), "near_m", "1e-6 to 1e6", c.near_m)?;
         let above_near = c.far_m > c.near_m && c.far_m <= 1e9;
-        require(above_near, "far_m", "above near_m, at most 1e9", c.far_m)?;
+        SettingError::require(above_near, "far_m", "above near_m, at most 1e9", c.far_m)?;
         if let Some(metres) = c.convergence_m {
-            require((0.1..=1e6).contains(&metres), "convergence_m", "0.1 to 1e6, or none for parallel axes", metres)?;
+            SettingError::require(
+                (0.1..=1e6).contains(&metres),
+                "convergence_m",
+                "0.1 to 1e6, or none for parallel axes",
+                metres,
+            )?;
         }
         let lens = "0: the model shows flat pictures without a lens";
-        require(c.lens_distortion == 0.0, "lens_distortion", lens, c.lens_distortion)?;
+        SettingError::require(c.lens_distortion == 0.0, "lens_distortion", lens, c.lens_distortion)?;
         let projection = projection(c);
         Ok(Self { config, projection })
     }

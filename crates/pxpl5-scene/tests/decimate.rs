@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
-use pxpl5_scene::{Scene, builtin};
+use pxpl5_scene::{Decimation, Scene, builtin};
 
 fn scene(name: &str) -> Scene {
     builtin(name).unwrap_or_else(|error| panic!("{error}"))
@@ -160,5 +160,26 @@ proptest! {
             prop_assert!(few.triangles().len() + 1 >= wanted);
         }
         prop_assert_eq!(&whole.decimated(wanted).expect("again"), &few);
+    }
+}
+
+/// Decimates to numbers in an order in which later calls continue from states of earlier calls, and in which they cannot.
+#[test]
+fn a_decimation_that_goes_on_from_an_earlier_one_gives_the_same_scene() {
+    for (name, numbers) in [
+        ("mig", &[200, 201, 199, 190, 120, 60, 300, 416, 150, 7, 1, 417][..]),
+        ("molecules", &[900, 880, 901, 500, 3_000, 20]),
+        ("head", &[14_587, 14_588, 14_500, 7_000, 20_000]),
+        ("sphere:100", &[50, 49, 48, 20, 4, 2]),
+        ("full-screen:8", &[6, 5, 3, 1]),
+    ] {
+        let whole = scene(name);
+        let decimation = Decimation::new(std::sync::Arc::new(whole.clone()));
+        for number in numbers {
+            let [alone, after_others] =
+                [whole.decimated(*number), decimation.decimated(*number)].map(|scene| scene.expect("in range"));
+            assert!(alone == after_others, "{name}, {number}");
+        }
+        assert!(decimation.decimated(0).is_err(), "{name}");
     }
 }

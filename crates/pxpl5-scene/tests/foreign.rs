@@ -3,10 +3,11 @@
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use pxpl5_scene::config::{DEFAULT_COLOUR, IMPORT_RADIUS_M};
-use pxpl5_scene::{Format, LoadError, Placement, Scene, from_bytes, placed_from_bytes};
+use pxpl5_scene::{Format, Placement, Scene, from_bytes, placed_from_bytes};
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 
 /// Returns the scene with the coordinates of its file, so that expected values equal the file's values.
-fn read(format: Format, bytes: impl AsRef<[u8]>) -> Result<Scene, LoadError> {
+fn read(format: Format, bytes: impl AsRef<[u8]>) -> Result<Scene, FileError> {
     placed_from_bytes(bytes.as_ref(), format, "test", Placement::AsInFile)
 }
 
@@ -190,7 +191,8 @@ fn what_is_no_text_where_a_number_must_be_is_refused_with_its_line() {
     text.push(0xff);
     assert!(read(Format::Ply, text).expect_err("too much").to_string().starts_with("test: line 18: "));
     let wide: Vec<u8> = "\u{feff}v 0 0 0\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
-    assert!(matches!(read(Format::Obj, wide), Err(LoadError::NotText { found: 0xff, .. })));
+    let error = read(Format::Obj, wide).expect_err("UTF-16");
+    assert_eq!((error.kind, &*error.found), (FileErrorKind::NotText, "byte 0xff"));
 }
 
 // Polygons with more than three corners.

@@ -4,7 +4,8 @@
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use pxpl5_scene::config::DEFAULT_COLOUR;
-use pxpl5_scene::{Format, LoadError, Placement, Scene, load_placed, placed_from_bytes};
+use pxpl5_scene::{Format, Placement, Scene, load_placed, placed_from_bytes};
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde_json::{Value, json};
 
 /// A writer of glTF files that shares no code with the reader.
@@ -91,7 +92,7 @@ fn base64(bytes: &[u8]) -> String {
     bytes.chunks(3).map(group).collect()
 }
 
-fn read(bytes: &[u8]) -> Result<Scene, LoadError> {
+fn read(bytes: &[u8]) -> Result<Scene, FileError> {
     placed_from_bytes(bytes, Format::Gltf, "test", Placement::AsInFile)
 }
 
@@ -471,7 +472,7 @@ fn errors_of_the_container_name_the_position() {
 
 #[test]
 fn small_files_that_ask_for_much_memory_are_refused() {
-    let too_much = |file: &[u8]| matches!(read(file), Err(LoadError::TooMuchMemory { .. }));
+    let too_much = |file: &[u8]| matches!(read(file), Err(ref error) if error.kind == FileErrorKind::TooLarge);
     let (writer, mut document) = square();
     document["nodes"] = vec![json!({}); 200_000].into();
     assert!(too_much(&writer.binary(&document)), "many nodes of three bytes");

@@ -187,9 +187,9 @@ fn the_head_fills_about_a_third_of_the_view_at_all_times() {
 #[test]
 fn numbers_out_of_range_are_refused_also_from_a_file() {
     let nan = HeadPath::Pan { eye: Vec3::ZERO, deg_per_s: f64::NAN };
-    assert_eq!(HeadMotion::new(nan, Sway::none()).expect_err("not a number").what, "deg_per_s");
+    assert_eq!(&*HeadMotion::new(nan, Sway::none()).expect_err("not a number").name, "deg_per_s");
     let far = HeadPath::Look { target: Vec3::splat(f32::INFINITY), distance: 1.0 };
-    assert_eq!(HeadMotion::new(far, Sway::none()).expect_err("infinite").what, "target");
+    assert_eq!(&*HeadMotion::new(far, Sway::none()).expect_err("infinite").name, "target");
     let text = serde_json::to_string(&swaying(7)).expect("plain data");
     assert_eq!(serde_json::from_str::<HeadMotion>(&text).expect("its own text"), swaying(7));
     let wild = text.replace("\"scale\":1.0", "\"scale\":-1.0");

@@ -108,7 +108,7 @@ fn numbers_out_of_range_are_named() {
     for (what, damage) in damage {
         let mut config = HmdConfig::unc();
         damage(&mut config);
-        assert_eq!(Hmd::new(config).expect_err(what).what, what);
+        assert_eq!(&*Hmd::new(config).expect_err(what).name, what);
     }
 }
 

@@ -28,7 +28,7 @@ impl Clock {
         Some(Self { numerator_ps, denominator })
     }
 
-    /// Makes a clock from its frequency in hertz. Returns `None` for a frequency of zero or of more than a terahertz.
+    /// Makes a clock from a frequency in hertz. Returns `None` for a frequency of zero or of more than a terahertz.
     #[must_use]
     pub const fn from_hz(hz: u64) -> Option<Self> {
         Self::new(1_000_000_000_000, hz)
@@ -44,8 +44,8 @@ impl Clock {
         }
     }
 
-    /// Returns the time of edge `n` with 128-bit arithmetic, which needs several times as much host time as 64-bit
-    /// arithmetic.
+    /// Returns the time of edge `n` with 128-bit arithmetic. Callers use it only for long times, because it needs
+    /// several times as much host time as 64-bit arithmetic.
     const fn edge_of_long(&self, n: u64) -> Time {
         let exact = n as u128 * self.numerator_ps as u128 / self.denominator as u128;
         if exact < u64::MAX as u128 { Time(exact as u64) } else { Time::END }

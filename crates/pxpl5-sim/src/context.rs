@@ -1,5 +1,5 @@
-//! The interface through which a device acts on the simulation during one event. Also has a test bench for a single
-//! device.
+//! The interface through which a device acts on the simulation during one event. The module also has a test bench for a
+//! single device.
 
 use crate::{EventQueue, Phase, Span, Time};
 
@@ -21,8 +21,8 @@ impl<E, O> Default for Context<E, O> {
 }
 
 impl<E, O> Context<E, O> {
-    /// Sets the current time for the next event and returns the context. The lists keep their allocated memory for
-    /// reuse.
+    /// Sets the current time for the next event and returns the context. The lists of events and outputs keep their
+    /// allocated memory for reuse.
     pub fn at(&mut self, now: Time) -> &mut Self {
         debug_assert!(self.own.is_empty() && self.outputs.is_empty(), "the wiring left something undone");
         self.now = now;
@@ -45,7 +45,7 @@ impl<E, O> Context<E, O> {
         self.schedule(self.now + span, Phase::Work, event);
     }
 
-    /// Adds an output of the device with the time at which it leaves the device.
+    /// Adds an output of the device. `time` is the time at which the output leaves the device.
     pub fn output(&mut self, time: Time, output: O) {
         self.outputs.push((time, output));
     }
@@ -68,7 +68,7 @@ impl<E, O> Context<E, O> {
         }
     }
 
-    /// Returns true if the device made no output since the last [`Context::drain_outputs`].
+    /// Returns true if the device has made no output since the last [`Context::drain_outputs`].
     #[must_use]
     pub const fn has_no_outputs(&self) -> bool {
         self.outputs.is_empty()

@@ -1,9 +1,9 @@
 //! A heap with four children per node. This heap is half as deep as a binary heap, and the children of a node are
 //! adjacent in memory.
 
-/// A type with a sort key. The heap returns the element with the least key first.
+/// A type with a sort key. The element with the least key leaves the heap first.
 pub(crate) trait Keyed: Copy {
-    /// Returns the sort key as one number, so that one subtraction compares two keys.
+    /// Returns the sort key as one number. One subtraction then compares two keys.
     fn key(&self) -> u128;
 }
 

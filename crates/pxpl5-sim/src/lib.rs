@@ -31,10 +31,13 @@
 
 mod clock;
 mod context;
+pub mod figures;
 mod heap;
 pub mod parameters;
 mod queue;
 mod random;
+mod samples;
+mod statistics;
 mod time;
 mod trace;
 
@@ -42,6 +45,8 @@ pub use clock::{Clock, Cycles};
 pub use context::{Context, TestBench};
 pub use queue::{EventQueue, Phase};
 pub use random::SplitMix64;
+pub use samples::{KEPT_SAMPLES, Samples};
+pub use statistics::{DefinedStatistics, Statistics, number_or_nan};
 pub use time::{Span, Time};
 pub use trace::{TraceHash, mix};
 

@@ -31,25 +31,32 @@
 //! [`ParameterTable::out_of_range`] lists the parameters with such values. A value outside its limits is an error of
 //! [`ParameterTable::check`].
 //!
+//! # Errors
+//!
+//! All crates have the same two errors for inputs. [`SettingError`] is for a setting, a name or an argument, and
+//! [`FileError`] is for a file or a text. Both state the place, the expected and the found content. Their `kind` tells
+//! programs the reason. A setting that names an unusable file is a [`SettingError`] of the kind
+//! [`File`](SettingErrorKind::File).
+//!
 //! **Not here:** rules that relate several parameters, such as "at most the length of a line". The crate that owns the
 //! table checks these rules.
 
 mod error;
+mod file_error;
 mod info;
 mod macros;
 mod name;
 mod nearest;
 mod number;
 mod table;
-mod text;
 mod value;
 
 pub use crate::{named, parameter_table};
-pub use error::ParameterError;
-pub use info::{ParameterInfo, Provenance};
-pub use name::{NameError, find_named, write_name};
+pub use error::{SettingError, SettingErrorKind};
+pub use file_error::{FileError, FileErrorKind, text_of};
+pub use info::{ParameterInfo, Provenance, unknown_parameter};
+pub use name::{find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};
 pub use table::{Entry, ParameterTable};
-pub use text::{TextError, text_of};
 pub use value::{MAX, Value};

@@ -33,8 +33,8 @@ impl Keyed for Due {
 
 const PHASE_SHIFT: u32 = 62;
 
-/// Greatest length of the sorted list of early events. Insertion into a longer list would be slower than insertion into
-/// the heap.
+/// Greatest length of the sorted list of the earliest events. Insertion into a longer list would be slower than
+/// insertion into the heap.
 const NEAR: usize = 16;
 
 /// Returns the sort key that separates the phases `Work` and `Observe` at `now`. The key is greater than the keys of
@@ -48,11 +48,11 @@ const fn work_key(now: Time) -> u128 {
 #[derive(Debug)]
 pub struct EventQueue<E> {
     heap: QuadHeap<Due>,
-    /// The earliest events, at most [`NEAR`] of them, with the next event at the end. If at most [`NEAR`] events wait,
+    /// The earliest events, at most [`NEAR`] events, with the next event at the end. If at most [`NEAR`] events wait,
     /// the heap is empty.
     near: Vec<Due>,
-    /// Events in phase `Work` that were scheduled for the current instant during this instant. They need no sorting.
-    /// The list is unused if events are shuffled.
+    /// Events in phase `Work` that were scheduled for the current instant during this instant. These events need no
+    /// sorting. The list is unused if events are shuffled.
     soon: VecDeque<E>,
     events: Vec<Option<E>>,
     free: Vec<u32>,
@@ -196,7 +196,7 @@ impl<E> EventQueue<E> {
         self.events.iter().flatten().chain(&self.soon)
     }
 
-    /// Returns the time of the next event, or `None` if no event is waiting.
+    /// Returns the time of the next event, or `None` if the queue is empty.
     #[must_use]
     pub fn next_time(&self) -> Option<Time> {
         if !self.soon.is_empty() {
@@ -272,9 +272,9 @@ mod tests {
         assert_ne!(order_of_ties(1), (0..100).collect::<Vec<_>>());
     }
 
-    /// Counts the different first events of 64 shuffled queues of 100 events. A fair shuffle gives 100 (1 - 0.99^64) =
-    /// 47 on average, with a standard deviation of 3. Seeds with very few or very many set bits must give similar
-    /// counts.
+    /// The test counts the different first events of 64 shuffled queues of 100 events. A fair shuffle gives 100 (1 -
+    /// 0.99^64) = 47 on average, with a standard deviation of 3. Seeds with very few or very many set bits must give
+    /// similar counts.
     #[test]
     fn seeds_that_are_nearly_the_same_shuffle_as_fairly_as_any() {
         for bits in [0, u64::MAX] {
@@ -318,8 +318,8 @@ mod tests {
     }
 
     proptest! {
-        /// Compares the queue with a sorted list. Events that are scheduled in phase `Work` for the current instant
-        /// test the separate path through `soon`.
+        /// The test compares the queue with a sorted list. Events that are scheduled in phase `Work` for the current
+        /// instant test the separate path through `soon`.
         #[test]
         fn what_events_schedule_comes_as_from_a_sorted_list(
             begun in proptest::collection::vec((0u64..4, 0u8..3), 1..60),

@@ -68,9 +68,9 @@ mod tests {
         assert_ne!(base, hash(&[(1, &[2, 3]), (1, &[4]), (1, &[4])]));
     }
 
-    /// The time and the fact of the record are equal. Their mixed values are then equal too, so the exclusive or of
-    /// both is 0. The hash is then the mix of 0, the first output of SplitMix64 with seed 0 (Vigna's reference
-    /// program).
+    /// The time and the described number of the record are equal. The mixed values of both are then equal too, so the
+    /// exclusive or of these values is 0. The hash is then the mix of 0, the first output of SplitMix64 with seed 0
+    /// (Vigna's reference program).
     #[test]
     fn a_fact_that_is_its_own_time_leaves_the_hash_of_zero() {
         for both in [0, 1, 1_234_567, u64::MAX] {

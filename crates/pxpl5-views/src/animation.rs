@@ -1,6 +1,6 @@
 //! Writer of animated PNG files.
 
-use crate::picture::{PngError, encoder};
+use crate::picture::{PictureError, encoder};
 use image::RgbImage;
 use std::io::Write;
 
@@ -17,14 +17,14 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// Returns [`PngError`] if the encoder refuses the values, for example an animation without pictures.
+    /// Returns [`PictureError`] if the encoder refuses the values, for example an animation without pictures.
     pub fn begin(
         out: W,
         size: (u32, u32),
         pictures: u32,
         delay: (u16, u16),
         texts: &[(&str, String)],
-    ) -> Result<Self, PngError> {
+    ) -> Result<Self, PictureError> {
         let mut encoder = encoder(out, size, texts)?;
         encoder.set_animated(pictures, 0)?;
         encoder.set_frame_delay(delay.0, delay.1)?;
@@ -35,8 +35,8 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// Returns [`PngError`] if the picture has another size, or if the animation already has all its pictures.
-    pub fn add(&mut self, picture: &RgbImage) -> Result<(), PngError> {
+    /// Returns [`PictureError`] if the picture has another size, or if the animation already has all announced pictures.
+    pub fn add(&mut self, picture: &RgbImage) -> Result<(), PictureError> {
         Ok(self.writer.write_image_data(picture.as_raw())?)
     }
 
@@ -44,8 +44,8 @@ impl<W: Write> Animation<W> {
     ///
     /// # Errors
     ///
-    /// Returns [`PngError`] if pictures are missing.
-    pub fn finish(self) -> Result<(), PngError> {
+    /// Returns [`PictureError`] if pictures are missing.
+    pub fn finish(self) -> Result<(), PictureError> {
         Ok(self.writer.finish()?)
     }
 }

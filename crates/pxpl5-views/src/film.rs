@@ -2,16 +2,16 @@
 
 use crate::animation::Animation;
 use crate::frame_time::frame_seconds;
-use crate::picture::PngError;
+use crate::picture::PictureError;
 use image::RgbImage;
-use pxpl5_machine::{Machine, RunError};
+use pxpl5_machine::Machine;
 use pxpl5_measure::{RasterOffsets, screen, side_by_side};
 use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, Raster};
 use pxpl5_sim::Span;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::{Display, Surface};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::io::Write;
-use thiserror::Error;
 
 /// Surfaces of the first display that a film shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,37 +33,6 @@ pub struct Film {
     of: FilmSurfaces,
 }
 
-/// Error of a film.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum FilmError {
-    /// The experiment cannot be run.
-    #[error(transparent)]
-    Experiment(#[from] ExperimentError),
-    /// The machine failed before the last frame of the film.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// The number of periods is zero or too large for a PNG file.
-    #[error("a film has {} to {} periods of the display, found {found}", expected.0, expected.1)]
-    Periods {
-        /// Smallest and largest number of periods.
-        expected: (u64, u64),
-        /// Number of periods that was requested.
-        found: u64,
-    },
-    /// The display does not have the surface.
-    #[error("a film of surface {}: the display has {there}, counted from 0", found.0)]
-    Surface {
-        /// Number of surfaces of the display.
-        there: usize,
-        /// Surface that was requested.
-        found: SurfaceId,
-    },
-    /// The PNG file could not be written.
-    #[error("the film: {0}")]
-    Png(#[from] PngError),
-}
-
 /// Smallest and largest number of periods in a film. The largest number corresponds to more than an hour of NTSC.
 pub const FILM_PERIODS: (u64, u64) = (1, 250_000);
 
@@ -79,16 +48,16 @@ impl Film {
     ///
     /// # Errors
     ///
-    /// [`FilmError`]. The file is then incomplete.
-    pub fn write(&self, texts: &[(&str, String)], out: impl Write) -> Result<(), FilmError> {
+    /// Returns [`PictureError`]. The file is then incomplete.
+    pub fn write(&self, texts: &[(&str, String)], out: impl Write) -> Result<(), PictureError> {
         let mut machine = self.begin()?;
         let surfaces = self.surfaces(machine.record().display())?;
         let delay = frame_seconds(machine.record().display());
         let size = size(machine.record().display(), &surfaces);
         let mut animation = Animation::begin(out, size, self.periods as u32, delay, texts)?;
-        let add = |_, picture| animation.add(&picture).map(|()| true).map_err(FilmError::from);
+        let add = |_, picture| animation.add(&picture).map(|()| true);
         self.each_of(&mut machine, &surfaces, add)?;
-        Ok(animation.finish()?)
+        animation.finish()
     }
 
     /// Runs the experiment and calls `take` with the number and the picture of each period, in order. The pictures are
@@ -96,17 +65,19 @@ impl Film {
     ///
     /// # Errors
     ///
-    /// Like [`write`](Self::write), without errors of files.
-    pub fn each(&self, mut take: impl FnMut(PeriodNumber, RgbImage) -> bool) -> Result<(), FilmError> {
+    /// Fails in the same cases as [`write`](Self::write), except for errors of the PNG file.
+    pub fn each(&self, mut take: impl FnMut(PeriodNumber, RgbImage) -> bool) -> Result<(), PictureError> {
         let mut machine = self.begin()?;
         let surfaces = self.surfaces(machine.record().display())?;
         self.each_of(&mut machine, &surfaces, |period, picture| Ok(take(period, picture)))
     }
 
-    /// Builds the machine of the film.
-    fn begin(&self) -> Result<Machine, FilmError> {
+    /// Checks the number of periods, and builds the machine that runs the experiment.
+    fn begin(&self) -> Result<Machine, PictureError> {
         if !(FILM_PERIODS.0..=FILM_PERIODS.1).contains(&self.periods) {
-            return Err(FilmError::Periods { expected: FILM_PERIODS, found: self.periods });
+            let (low, high) = FILM_PERIODS;
+            let reason = format_args!("a film has {low} to {high} periods of the display, found {}", self.periods);
+            return Err(SettingError::combination(reason).into());
         }
         Ok(self.experiment.build()?)
     }
@@ -115,15 +86,20 @@ impl Film {
         &self,
         machine: &mut Machine,
         surfaces: &[SurfaceId],
-        mut take: impl FnMut(PeriodNumber, RgbImage) -> Result<bool, FilmError>,
-    ) -> Result<(), FilmError> {
+        mut take: impl FnMut(PeriodNumber, RgbImage) -> Result<bool, PictureError>,
+    ) -> Result<(), PictureError> {
         // A raster that shifts its picture needs the offsets of a run without pixels.
         let plain = self.without_pixels()?;
         let offsets = plain.as_ref().and_then(RasterOffsets::of);
-        for period in self.first_period.until(self.first_period.after(self.periods)) {
-            // A period is over when all events at the beginning of the next period have been handled.
+        // The periods before the film are run one by one too, so that the host can stop them.
+        for period in PeriodNumber::FIRST.until(self.first_period.after(self.periods)) {
+            self.experiment.check_stopped()?;
+            // A period is over when all events at the beginning of the next one have been handled.
             let begun = machine.record().tick(period.next()) + Span(1);
             machine.run_until(begun)?;
+            if period < self.first_period {
+                continue;
+            }
             if !take(period, frame(machine, surfaces, period, offsets.as_ref()))? {
                 break;
             }
@@ -131,9 +107,9 @@ impl Film {
         Ok(())
     }
 
-    /// Runs the experiment for the same length without pixels, to find the raster offset in each period. Returns `None`
-    /// for a raster that shifts nothing.
-    fn without_pixels(&self) -> Result<Option<Outcome>, FilmError> {
+    /// Runs the experiment for the same length without pixels, to find the shift that the display applies to the
+    /// picture in each period. Returns `None` if the display shifts no pictures.
+    fn without_pixels(&self) -> Result<Option<Outcome>, PictureError> {
         if self.experiment.raster() == Raster::Plain {
             return Ok(None);
         }
@@ -145,17 +121,20 @@ impl Film {
         }
     }
 
-    fn surfaces(&self, display: &dyn Display) -> Result<Vec<SurfaceId>, FilmError> {
+    fn surfaces(&self, display: &dyn Display) -> Result<Vec<SurfaceId>, PictureError> {
         let there = display.surfaces().len();
         match self.of {
-            FilmSurfaces::One(found) if found.index() >= there => Err(FilmError::Surface { there, found }),
+            FilmSurfaces::One(found) if found.index() >= there => {
+                let reason = format_args!("a film of surface {}: the display has {there}, counted from 0", found.0);
+                Err(SettingError::combination(reason).into())
+            }
             FilmSurfaces::One(surface) => Ok(vec![surface]),
             FilmSurfaces::All => Ok((0..there as u16).map(SurfaceId).collect()),
         }
     }
 }
 
-/// Returns the total width and height of surfaces that are shown side by side.
+/// Returns the size of a frame that shows surfaces side by side: the sum of the widths, and the greatest height.
 fn size(display: &dyn Display, surfaces: &[SurfaceId]) -> (u32, u32) {
     let shown: Vec<&Surface> = surfaces.iter().filter_map(|id| display.surfaces().get(id.index())).collect();
     let width = shown.iter().map(|surface| surface.width).sum();

@@ -18,7 +18,7 @@ pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
 
 const PS_PER_S: u128 = 1_000_000_000_000;
 
-/// Largest numerator and denominator.
+/// Largest numerator and largest denominator that animated PNG can store.
 const LIMIT: u128 = u16::MAX as u128;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// Returns the distance from another fraction, multiplied by both denominators.
+    /// Returns the distance from another fraction, multiplied by both denominators so that the result is an integer.
     const fn distance(self, other: Self) -> u128 {
         (self.over * other.under).abs_diff(other.over * self.under)
     }
@@ -48,9 +48,9 @@ impl Fraction {
     }
 }
 
-/// Returns the nearest fraction within the limit, by continued fractions.
+/// Returns the fraction that is nearest to `exact` and has no part above [`LIMIT`], by continued fractions.
 ///
-/// The result is the last convergent within the limit, or a fraction between this convergent and the next.
+/// The result is the last convergent within the limit, or a fraction between this convergent and the next convergent.
 fn nearest_fraction(exact: Fraction) -> Fraction {
     let mut before = Fraction { over: 0, under: 1 };
     let mut last = Fraction { over: 1, under: 0 };

@@ -21,8 +21,8 @@
 //! One module writes all SVG and HTML, with one escape function (`markup`, with shapes in `svg`). Likewise, one module
 //! writes all PNG (`png_bytes` and `Animation`), and one writes all CSV ([`results::csv_table`]).
 //!
-//! All output depends only on simulated time, so it is the same on every host. Names, colours and letters of surfaces
-//! come from the machine's displays ([`pxpl5_wire::display::Surface`]).
+//! All output depends only on simulated time and is therefore the same on every host. Names, colours and letters of
+//! surfaces come from the machine's displays ([`pxpl5_wire::display::Surface`]).
 //!
 //! **Not here:** files, threads and clocks of the host. All output goes to a [`std::io::Write`] or is returned as text
 //! or bytes.
@@ -44,9 +44,9 @@ pub mod trace_export;
 mod updates;
 
 pub use animation::Animation;
-pub use film::{FILM_PERIODS, Film, FilmError, FilmSurfaces};
+pub use film::{FILM_PERIODS, Film, FilmSurfaces};
 pub use frame_time::frame_seconds;
-pub use picture::{PngError, png_bytes};
+pub use picture::{PictureError, png_bytes};
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

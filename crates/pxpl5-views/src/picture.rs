@@ -1,25 +1,38 @@
 //! The encoder of all PNG pictures.
 
 use image::RgbImage;
+use pxpl5_machine::RunError;
+use pxpl5_run::ExperimentError;
+use pxpl5_sim::parameters::SettingError;
 use std::io::Write;
 use thiserror::Error;
 
-/// Error of the PNG encoder. Examples are a picture without pixels, and a text with a key that PNG does not allow.
+/// Error of a picture or a film.
 #[derive(Debug, Error)]
-#[error("a picture cannot be encoded: {0}")]
-pub struct PngError(
-    /// Error from the crate `png`.
-    #[from]
-    png::EncodingError,
-);
+#[non_exhaustive]
+pub enum PictureError {
+    /// The experiment cannot be run.
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
+    /// The machine failed before the last frame of the film.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The number of periods, or the surface of the display, does not exist.
+    #[error(transparent)]
+    Setting(#[from] SettingError),
+    /// The PNG encoder refuses the picture, for example a picture without pixels, or a text with a key that PNG does not
+    /// allow.
+    #[error("a picture cannot be encoded: {0}")]
+    Png(#[from] png::EncodingError),
+}
 
 /// Encodes a picture as PNG with texts, such as the texts of [`origin`](crate::results::origin). Each text becomes an
 /// iTXt chunk with the keyword `pxpl5 KEY`, which metadata viewers can read.
 ///
 /// # Errors
 ///
-/// Returns [`PngError`] if the encoder refuses the picture or a text.
-pub fn png_bytes(picture: &RgbImage, texts: &[(&str, String)]) -> Result<Vec<u8>, PngError> {
+/// Returns [`PictureError`] if the encoder refuses the picture or a text.
+pub fn png_bytes(picture: &RgbImage, texts: &[(&str, String)]) -> Result<Vec<u8>, PictureError> {
     let mut bytes = Vec::new();
     let mut writer = encoder(&mut bytes, picture.dimensions(), texts)?.write_header()?;
     writer.write_image_data(picture.as_raw())?;

@@ -48,8 +48,8 @@ fn has_more_ports(display: &dyn Display) -> bool {
     display.nodes().len() > display.surfaces().len()
 }
 
-/// Returns the pictures that a port has shown, in the order in which they were begun. Each picture is shown from one
-/// swap to the next.
+/// Returns the pictures that a port has shown, in the order in which the pictures were begun. A port shows each picture
+/// from one swap to the next swap.
 pub(crate) fn shown(run: &SoFar<'_>, node: NodeId) -> Vec<ShownPicture> {
     let shown = run.record().shown_by(node);
     let ends = shown.iter().skip(1).map(|next| next.at).chain([run.end()]);

@@ -56,32 +56,33 @@ pub(crate) fn finished(document: &Element) -> String {
     format!("{document}\n")
 }
 
-/// Returns a rectangle with a class. The numbers are left, top, width and height.
+/// Returns a rectangle with a CSS class. The numbers are left, top, width and height.
 pub(crate) fn rectangle(class: &str, [x, y, width, height]: [Units; 4]) -> Element {
     Element::new("rect").with("class", class).with("x", x).with("y", y).with("width", width).with("height", height)
 }
 
-/// Returns a straight line with a class. The numbers are the coordinates of the two end points.
+/// Returns a straight line with a CSS class. The numbers are the coordinates of the two end points.
 pub(crate) fn segment(class: &str, [x1, y1, x2, y2]: [Units; 4]) -> Element {
     Element::new("path").with("class", class).with("d", format_args!("M{x1} {y1}L{x2} {y2}"))
 }
 
-/// Returns an empty text element with a class, at a position. The caller adds the text.
+/// Returns an empty text element with a CSS class, at a position. The caller adds the text.
 pub(crate) fn caption(class: &str, [x, y]: [Units; 2]) -> Element {
     Element::new("text").with("class", class).with("x", x).with("y", y)
 }
 
-/// Returns a line of a chart. `course` is the path for the attribute `d`.
+/// Returns a line of a chart. `course` is the text of the SVG attribute `d`, which describes the path of the line.
 pub(crate) fn line(course: impl Display, colour: &str) -> Element {
     Element::new("path").with("d", course).with("stroke", colour)
 }
 
-/// Returns an empty text element of a chart. `anchor` states which part of the text is at the point: `middle` or `end`.
+/// Returns an empty text element of a chart. `anchor` states which part of the text is at the point (`x`, `y`):
+/// `middle` or `end`.
 pub(crate) fn anchored(x: impl Display, y: impl Display, anchor: &str) -> Element {
     Element::new("text").with("x", x).with("y", y).with("text-anchor", anchor)
 }
 
-/// Returns a tooltip. A viewer shows the tooltip for the element that contains the tooltip.
+/// Returns a tooltip. A browser shows the tooltip while the mouse is over the element that contains the tooltip.
 pub(crate) fn hint(text: impl Display) -> Element {
     Element::new("title").text(text)
 }

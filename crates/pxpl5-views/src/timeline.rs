@@ -1,8 +1,8 @@
 //! Timelines in the style of the papers' pipeline figures (TR94 figures 1 to 6, I3D95 figures 5 to 8).
 //!
 //! Each independent resource has a row, and time runs to the right. Retraces and the dependencies of one picture are
-//! drawn too. [`Timeline::of`] collects the observations, and [`svg`] draws them. A drawing depends only on simulated
-//! time, so it is the same on every host.
+//! drawn too. [`Timeline::of`] collects the observations of a run, and [`svg`] draws the timeline. A drawing depends
+//! only on simulated time and is therefore the same on every host.
 //!
 //! | row | bars |
 //! |---|---|
@@ -26,7 +26,7 @@ mod rows;
 mod style;
 
 pub use crate::ports::ShownPicture;
-pub use model::{Arrow, Bar, DrawingPlace, Scan, Timeline, TimelineRow};
+pub use model::{Arrow, Bar, DrawingPlace, Timeline, TimelineRow, TimelineScan};
 pub use options::{MAX_FIELDS, TimelineOptions};
 
 use crate::results::{count_of, origin_lines};

@@ -1,8 +1,9 @@
 //! A run as a trace for viewers, in the Perfetto trace format or as Chrome's JSON. The viewer ui.perfetto.dev opens
 //! both.
 //!
-//! [`Trace::of`] collects tracks from the observations. [`perfetto`] and [`chrome`] write them. Tracks of messages and
-//! counters of the ring and the FIFOs need [`Experiment::record_traffic`](pxpl5_run::Experiment::record_traffic).
+//! [`Trace::of`] collects tracks from the observations. [`perfetto`] and [`chrome`] write the tracks. Tracks of
+//! messages and counters of the ring and the FIFOs need
+//! [`Experiment::record_traffic`](pxpl5_run::Experiment::record_traffic).
 //!
 //! | group | tracks |
 //! |---|---|
@@ -16,8 +17,9 @@
 //! of ports and surfaces of a display differ, ports and surfaces have separate groups.
 //!
 //! Time is simulated time. Chrome's JSON has microseconds with six decimals, which is exact. Perfetto's timestamps are
-//! nanoseconds, rounded down. Slices of a track never overlap. A message may reach a port shortly before the previous
-//! message has left the port. The message is then drawn from the end of the previous message.
+//! nanoseconds, rounded down. Slices (events with a duration) of one track never overlap. A message may reach a port
+//! shortly before the previous message has left the port. The message is then drawn from the end of the previous
+//! message.
 //!
 //! Sources: the published `.proto` files of the Perfetto project (`TracePacket`, `TrackDescriptor`, `TrackEvent`) and
 //! the description of Chrome's trace event format. **Not written:** interned strings, clock snapshots.

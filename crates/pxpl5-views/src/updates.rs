@@ -1,4 +1,4 @@
-//! Finds the update from the host that each picture shows.
+//! Finds the update that each picture shows. An update is a head pose with edits of the scene, which the host sends.
 
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
@@ -8,7 +8,8 @@ use pxpl5_wire::PictureNumber;
 
 /// The updates that the host sent in a run.
 pub(crate) struct Updates {
-    /// True if the host samples a pose for each picture. Update and picture then have the same number.
+    /// True if the host samples a pose for each picture. An update and the picture that shows it then have the same
+    /// number.
     by_picture: bool,
     /// Updates that a graphics processor has received, in order of time.
     received: Vec<Received>,
@@ -34,8 +35,8 @@ impl Updates {
 
     /// Returns the update that a picture shows.
     ///
-    /// If the host does not sample the poses, a graphics processor does. The result is then the newest update that had
-    /// arrived at this processor when it sampled the picture's pose.
+    /// A graphics processor may sample the poses instead of the host. The result is then the newest update that had
+    /// arrived at this processor when the picture's pose was sampled.
     pub(crate) fn shown_by(&self, times: &PictureTimes) -> Option<PictureNumber> {
         if self.by_picture {
             return Some(times.picture);

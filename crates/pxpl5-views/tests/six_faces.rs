@@ -5,13 +5,12 @@ use image::RgbImage;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Outcome, Pixels, RenderingControl};
 use pxpl5_scene::builtin;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_sim::{Span, Time};
 use pxpl5_views::timeline::{Timeline, TimelineOptions, svg};
 use pxpl5_views::trace_export::Trace;
 use pxpl5_wire::display::{
-    BufferReceipt, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer,
-    Surface,
+    BufferReceipt, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, DoubleBuffer, Surface,
 };
 use pxpl5_wire::{NodeId, PeriodNumber, SurfaceId};
 
@@ -126,11 +125,11 @@ impl DisplayConfig for CubeConfig {
         1
     }
 
-    fn check(&self) -> Result<(), DisplayError> {
+    fn check(&self) -> Result<(), SettingError> {
         Ok(())
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
         let surfaces = FACES.map(|(label, title)| Surface { label, title, width: 256, height: 256 }).to_vec();
         Ok(Box::new(Cube { nodes: nodes.to_vec(), surfaces, board: DoubleBuffer::new(256, 256) }))
     }

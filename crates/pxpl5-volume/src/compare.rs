@@ -2,12 +2,12 @@
 //! expensive.
 
 use crate::choices::{ClipKind, Named, ProjectionKind};
-use crate::error::VolumeError;
 use crate::experiment::Volume;
 use crate::pictures::{Look, grid};
 use crate::settings::VolumeSettings;
 use image::RgbImage;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use spatialgl::{Coverage, Workers};
 
@@ -83,7 +83,7 @@ pub struct VolumeComparison {
 
 /// The position of the eye in the pictures of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Viewpoint {
+pub struct ComparePoint {
     /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
     pub azimuth_deg: f64,
     /// Elevation of the eye above the horizon, degrees.
@@ -126,14 +126,14 @@ pub fn variant_count() -> u64 {
 ///
 /// # Errors
 ///
-/// [`VolumeError`] describes the error in a setting or in the scene.
+/// [`SettingError`] describes the error in a setting or in the scene.
 pub fn compare(
     settings: &VolumeSettings,
     scene: &Scene,
-    viewpoint: Option<Viewpoint>,
+    viewpoint: Option<ComparePoint>,
     workers: &dyn Workers,
     finished: impl Fn(u64, u64),
-) -> Result<VolumeComparison, VolumeError> {
+) -> Result<VolumeComparison, SettingError> {
     let all = variants();
     let mut comparison = VolumeComparison {
         schema: "pxpl5-volume-comparison/1",
@@ -170,14 +170,14 @@ pub fn compare(
     Ok(comparison)
 }
 
-impl Viewpoint {
+impl ComparePoint {
     fn look(&self, volume: &Volume) -> Look {
         Look::around(&volume.settings, self.azimuth_deg, self.elevation_deg, self.side)
     }
 }
 
 impl Variant {
-    fn draw(&self, shared: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Volume, VolumeError> {
+    fn draw(&self, shared: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Volume, SettingError> {
         let mut settings = shared.clone();
         // Everything else stays as in the shared settings.
         settings.clip = self.clip;

@@ -1,10 +1,10 @@
 //! A volume, drawn from a scene with given settings.
 
 use crate::choices::RendererKind;
-use crate::error::VolumeError;
 use crate::pixel_planes::{ArrayKind, PixelPlanesRenderer, SliceBounds, SliceTraffic};
 use crate::settings::VolumeSettings;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use spatialgl::{
     CommandBuffer, HostRenderer, SliceRenderer, SpatialDisplay, Supersampled, SweptDisplay, VolumeFrame, Workers,
     record_scene, render_volume,
@@ -37,8 +37,8 @@ impl Volume {
     ///
     /// # Errors
     ///
-    /// [`VolumeError`] describes the error in a setting or in the scene.
-    pub fn draw(settings: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Self, VolumeError> {
+    /// [`SettingError`] describes the error in a setting or in the scene.
+    pub fn draw(settings: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Self, SettingError> {
         let commands = record_scene(scene, settings.radius(), settings.is_lit)?;
         Self::draw_commands(settings, scene.name(), commands, workers)
     }
@@ -53,7 +53,7 @@ impl Volume {
         scene: &str,
         commands: CommandBuffer,
         workers: &dyn Workers,
-    ) -> Result<Self, VolumeError> {
+    ) -> Result<Self, SettingError> {
         let display = settings.swept_display()?;
         let config = settings.volume_config()?;
         let commands = commands.combining(settings.combine);
@@ -83,12 +83,12 @@ impl Volume {
     ///
     /// # Errors
     ///
-    /// Returns [`VolumeError::Missing`] if the volume has fewer slices.
-    pub fn check_slice(&self, slice: u32) -> Result<u32, VolumeError> {
+    /// Returns a [`SettingError`] if the volume has fewer slices.
+    pub fn check_slice(&self, slice: u32) -> Result<u32, SettingError> {
         let slices = self.frame.planes.slices();
         if slice < slices {
             return Ok(slice);
         }
-        Err(VolumeError::Missing { what: "slice", expected: format!("0 to {}", slices - 1), found: slice.to_string() })
+        Err(SettingError::value("slice", format_args!("0 to {}", slices - 1), slice))
     }
 }

@@ -10,14 +10,15 @@ mod row;
 mod shown;
 
 pub use document::markdown;
-pub use drawings::{Drawing, drawings};
-pub use row::{DefinitionRow, FigureRow, Figures, MeasuredScene};
-pub use shown::Shown;
+pub use drawings::{FigureDrawing, drawings};
+pub use row::{MeasuredScene, VolumeFigures};
+pub use shown::ShownStatement;
 
-use crate::error::VolumeError;
 use crate::experiment::Volume;
 use plain::plain;
 use pxpl5_scene::Scene;
+use pxpl5_sim::figures::FigureRow;
+use pxpl5_sim::parameters::SettingError;
 use row::order;
 use spatialgl::Workers;
 use spatialgl::perspecta::figures::{definitions, formulas, measured, packing};
@@ -28,28 +29,31 @@ use std::sync::Arc;
 ///
 /// # Errors
 ///
-/// Returns [`VolumeError`] if a scene cannot be drawn.
-pub fn all(scenes: &[Arc<Scene>], workers: &dyn Workers, finished: impl Fn(u64, u64)) -> Result<Figures, VolumeError> {
+/// Returns [`SettingError`] if a scene cannot be drawn.
+pub fn all(
+    scenes: &[Arc<Scene>],
+    workers: &dyn Workers,
+    finished: impl Fn(u64, u64),
+) -> Result<VolumeFigures, SettingError> {
     let steps = scenes.len() as u64 + 2;
     // Figures that need no scene come first.
-    let mut without_scene = formulas();
-    without_scene.extend(packing());
-    without_scene.extend(printed::figures(workers)?);
-    without_scene.extend(counted::figures(workers)?);
-    let mut rows: Vec<FigureRow> = without_scene.into_iter().map(|figure| FigureRow::of(figure, None)).collect();
+    let mut rows = formulas();
+    rows.extend(packing());
+    rows.extend(printed::figures(workers)?);
+    rows.extend(counted::figures(workers)?);
     finished(1, steps);
     let mut of_scenes = Vec::new();
     for (i, scene) in scenes.iter().enumerate() {
         let volume = Volume::draw(&plain(), scene, workers)?;
         let found = measured(&volume.frame.stats);
-        rows.extend(found.into_iter().map(|figure| FigureRow::of(figure, Some(scene.name()))));
+        rows.extend(found.into_iter().map(|row| FigureRow { scene: Some(scene.name().to_owned()), ..row }));
         of_scenes.push(MeasuredScene::of(&volume));
         finished(i as u64 + 2, steps);
     }
-    rows.sort_by_key(|row| order(row.figure.id));
+    rows.sort_by_key(|row| order(row.id));
     let shown = shown::all(scenes, workers)?;
     finished(steps, steps);
-    let mut definitions: Vec<DefinitionRow> = definitions().into_iter().map(DefinitionRow::of).collect();
-    definitions.sort_by_key(|row| order(row.definition.id));
-    Ok(Figures { schema: "pxpl5-volume-figures/2", figures: rows, definitions, shown, scenes: of_scenes })
+    let mut definitions = definitions();
+    definitions.sort_by_key(|definition| order(definition.id));
+    Ok(VolumeFigures { schema: "pxpl5-volume-figures/3", figures: rows, definitions, shown, scenes: of_scenes })
 }

@@ -22,12 +22,12 @@
 //! A predicting tracker, tracker noise, and the pixels of the head-mounted display (their angle is reported). Roll of
 //! the head in pictures. The resolution of the eye.
 
-use crate::error::VolumeError;
 use crate::experiment::Volume;
 use crate::numbers::ViewerNumbers;
 use crate::pictures::{Look, grid};
 use glam::{DMat4, DQuat, DVec2, DVec3};
 use image::{Rgb, RgbImage};
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use spatialgl::{
     Bin, Coverage, FlatDisplay, HostRenderer, SliceImage, SliceRenderer, SliceWork, SpatialDisplay, Workers,
@@ -138,12 +138,11 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// Returns [`VolumeError::Missing`] if the latency is out of range (0 to 10,000 ms) or missing.
-    pub fn new(volume: &'a Volume, motion: &'a dyn Motion, latency_ms: Option<f64>) -> Result<Self, VolumeError> {
-        let wrong = |found: String| VolumeError::Missing {
-            what: "latency",
-            expected: "0 to 10000 ms (--latency; no pipeline runs here that would give a latency)".to_owned(),
-            found,
+    /// Returns a [`SettingError`] if the latency is out of range (0 to 10,000 ms) or missing.
+    pub fn new(volume: &'a Volume, motion: &'a dyn Motion, latency_ms: Option<f64>) -> Result<Self, SettingError> {
+        let wrong = |found: String| {
+            let expected = "0 to 10000 ms (--latency; no pipeline runs here that would give a latency)";
+            SettingError::value("latency", expected, found)
         };
         // The default is the latency of the volume itself.
         let latency_ms = latency_ms.or_else(|| volume.latency_ms()).ok_or_else(|| wrong("none".to_owned()))?;
@@ -156,13 +155,10 @@ impl<'a> HeadComparison<'a> {
         Ok(Self { volume, motion, viewer, into_volume: placed(&motion.pose(0), volume, &viewer), latency_ps, points })
     }
 
-    fn view(&self) -> Result<HmdView, VolumeError> {
+    fn view(&self) -> Result<HmdView, SettingError> {
         let width = self.viewer.hmd_width_px as u32;
-        HmdView::new(width, width * 3 / 4, self.viewer.hmd_angle_deg).map_err(|error| VolumeError::Missing {
-            what: "viewer",
-            expected: "a head-mounted display that can be".to_owned(),
-            found: error.to_string(),
-        })
+        HmdView::new(width, width * 3 / 4, self.viewer.hmd_angle_deg)
+            .map_err(|error| SettingError::value("viewer", "a head-mounted display that can be", error))
     }
 
     fn millimetres_per_pixel(&self) -> f64 {
@@ -180,9 +176,9 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// Returns [`VolumeError::Missing`] if the length is out of range, if there are fewer than two instants, or if the
+    /// Returns a [`SettingError`] if the length is out of range, if there are fewer than two instants, or if the
     /// head-mounted view is invalid.
-    pub fn study(&self, question: &HeadStudyConfig) -> Result<HeadStudy, VolumeError> {
+    pub fn study(&self, question: &HeadStudyConfig) -> Result<HeadStudy, SettingError> {
         let view = self.view()?;
         let samples = self.instants(question)?.into_iter().map(|time_ps| self.sample(time_ps, &view)).collect();
         let volume_latency_ms = self.volume.latency_ms();
@@ -200,10 +196,9 @@ impl<'a> HeadComparison<'a> {
     }
 
     /// Returns the instants of a study, evenly spaced and starting one latency after the beginning.
-    fn instants(&self, question: &HeadStudyConfig) -> Result<Vec<u64>, VolumeError> {
+    fn instants(&self, question: &HeadStudyConfig) -> Result<Vec<u64>, SettingError> {
         let HeadStudyConfig { seconds, instants, .. } = *question;
-        let wrong =
-            |what, expected: &str, found: String| VolumeError::Missing { what, expected: expected.to_owned(), found };
+        let wrong = |what, expected: &str, found: String| SettingError::value(what, expected, found);
         if !(seconds > 0.0 && seconds <= 3600.0) {
             return Err(wrong("length", "above 0 s and at most an hour", seconds.to_string()));
         }
@@ -265,14 +260,14 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// Returns [`VolumeError`] if `side` is not a multiple of 8, or if an eye is inside the display.
+    /// Returns [`SettingError`] if `side` is not a multiple of 8, or if an eye is inside the display.
     pub fn picture(
         &self,
         time_ps: u64,
         side: u32,
         exposure: f64,
         workers: &dyn Workers,
-    ) -> Result<RgbImage, VolumeError> {
+    ) -> Result<RgbImage, SettingError> {
         let mut shown = Vec::new();
         for eye in [-1.0, 1.0] {
             shown.push(self.look(time_ps, eye, side)?.picture(self.volume, Some(exposure), workers)?);
@@ -288,7 +283,7 @@ impl<'a> HeadComparison<'a> {
     /// # Errors
     ///
     /// The same as [`Self::picture`].
-    pub fn exposure(&self, time_ps: u64, side: u32, workers: &dyn Workers) -> Result<f64, VolumeError> {
+    pub fn exposure(&self, time_ps: u64, side: u32, workers: &dyn Workers) -> Result<f64, SettingError> {
         self.look(time_ps, -1.0, side)?.exposure(self.volume, workers)
     }
 
@@ -297,11 +292,11 @@ impl<'a> HeadComparison<'a> {
     /// # Errors
     ///
     /// The same as [`Self::study`].
-    pub fn film_instants(&self, question: &HeadStudyConfig, frames: u32) -> Result<Vec<u64>, VolumeError> {
+    pub fn film_instants(&self, question: &HeadStudyConfig, frames: u32) -> Result<Vec<u64>, SettingError> {
         self.instants(&HeadStudyConfig { instants: frames, ..*question })
     }
 
-    fn look(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<Look, VolumeError> {
+    fn look(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<Look, SettingError> {
         let eye = self.into_volume.transform_point3(self.eye(time_ps, side).position);
         let [azimuth_deg, elevation_deg] = around(eye);
         let mut look = Look::around(&self.volume.settings, azimuth_deg, elevation_deg, picture_px);
@@ -310,7 +305,7 @@ impl<'a> HeadComparison<'a> {
         Ok(look)
     }
 
-    fn head_mounted(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<RgbImage, VolumeError> {
+    fn head_mounted(&self, time_ps: u64, side: f64, picture_px: u32) -> Result<RgbImage, SettingError> {
         let then = time_ps - self.latency_ps;
         // Draw the scene for the eye of one latency ago.
         let look = self.look(then, side, picture_px)?;

@@ -1,9 +1,9 @@
 //! Access to the settings of a volume by path.
 
 use crate::choices::{ClipKind, Named};
-use crate::error::VolumeError;
 use crate::settings::VolumeSettings;
-use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
+use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, Value};
 
 /// Paths of the settings that are choices, and of the numbers that no table contains.
 const CHOICES: [&str; 12] = [
@@ -45,8 +45,8 @@ impl VolumeSettings {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::UnknownKey`] with the most similar path, or [`VolumeError::Value`].
-    pub fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), VolumeError> {
+    /// [`SettingError`] with the most similar path, or with the allowed values.
+    pub fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), SettingError> {
         let done = match path {
             "clip.variant" => self.set_clip(text),
             "clip.ties" => choose(&mut self.ties, text),
@@ -70,8 +70,8 @@ impl VolumeSettings {
     ///
     /// # Errors
     ///
-    /// The same as [`Self::set`], and [`VolumeError::Value`] without an equals sign.
-    pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), VolumeError> {
+    /// The same as [`Self::set`], and a [`SettingError`] without an equals sign.
+    pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), SettingError> {
         match assignment.split_once('=') {
             Some((path, text)) => self.set(path.trim(), text.trim(), place),
             None => Err(wrong("PATH=VALUE", assignment, place, "an equals sign".to_owned())),
@@ -114,12 +114,8 @@ impl VolumeSettings {
         choose(&mut self.bin_tolerance, text).map_err(|names| format!("{names} or a number of pixels from 0 on"))
     }
 
-    fn set_number(&mut self, path: &str, text: &str, place: &str) -> Result<(), VolumeError> {
-        let unknown = || {
-            let keys = self.keys();
-            let nearest = nearest(path, keys.iter().map(String::as_str)).unwrap_or_default().to_owned();
-            VolumeError::UnknownKey { place: place.to_owned(), found: path.to_owned(), nearest }
-        };
+    fn set_number(&mut self, path: &str, text: &str, place: &str) -> Result<(), SettingError> {
+        let unknown = || SettingError::unknown_path("key", path, self.keys()).at(place);
         let Some((_, entry)) = self.numbers().into_iter().find(|(key, _)| key == path) else { return Err(unknown()) };
         let expected = expected_of(entry.info);
         // A whole number is also valid for a real setting, but not the reverse.
@@ -178,6 +174,6 @@ fn choose<T: Named>(choice: &mut T, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-fn wrong(key: &str, found: &str, place: &str, expected: String) -> VolumeError {
-    VolumeError::Value { place: place.to_owned(), key: key.to_owned(), expected, found: found.to_owned() }
+fn wrong(key: &str, found: &str, place: &str, expected: String) -> SettingError {
+    SettingError::value(key, expected, found).at(place)
 }

@@ -24,7 +24,6 @@
 
 mod choices;
 pub mod compare;
-mod error;
 mod experiment;
 pub mod figures;
 pub mod heads;
@@ -37,9 +36,9 @@ mod settings;
 mod workers;
 
 pub use choices::{ClipKind, ProjectionKind, RendererKind};
-pub use error::VolumeError;
 pub use experiment::Volume;
 pub use numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers, ViewerNumbers};
+pub use pxpl5_sim::parameters::SettingError;
 pub use report::{Brightness, DisplayReport, ModelPart, ModelTimes, Override, PixelPlanesReport, VolumeReport};
 pub use settings::VolumeSettings;
 pub use spatialgl;

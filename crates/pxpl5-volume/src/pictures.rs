@@ -1,11 +1,11 @@
 //! Pictures of a volume: all slices, one slice before and after halftoning, tiles, and the view of an eye.
 
-use crate::error::VolumeError;
 use crate::experiment::Volume;
 use crate::settings::VolumeSettings;
 use image::imageops::{self, FilterType};
 use image::{GenericImage, Rgb, RgbImage};
-use spatialgl::perspecta::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
+use pxpl5_sim::parameters::SettingError;
+use spatialgl::perspecta::{Camera, PictureLight, ViewOptions, film, view_planes, view_undithered};
 use spatialgl::{SpatialDisplay, Strobes, Tiling, Workers};
 
 /// Number of thumbnails per row of a sheet: 22 x 18 thumbnails show the paper's 396 slices.
@@ -45,18 +45,18 @@ impl Look {
     ///
     /// # Errors
     ///
-    /// [`VolumeError::Display`] names the number that is out of range.
-    pub fn check(&self, settings: &VolumeSettings) -> Result<(), VolumeError> {
+    /// [`SettingError`] names the number that is out of range.
+    pub fn check(&self, settings: &VolumeSettings) -> Result<(), SettingError> {
         let display = &settings.display;
-        Ok(self.camera.check_before([display.width as u32, display.height as u32])?)
+        self.camera.check_before([display.width as u32, display.height as u32])
     }
 
     /// Returns the light that reaches the eye during one turn of the screen.
     ///
     /// # Errors
     ///
-    /// Returns [`VolumeError::Display`] if the camera is invalid.
-    pub fn light(&self, volume: &Volume, workers: &dyn Workers) -> Result<Light, VolumeError> {
+    /// Returns a [`SettingError`] if the camera is invalid.
+    pub fn light(&self, volume: &Volume, workers: &dyn Workers) -> Result<PictureLight, SettingError> {
         let undithered = match self.is_undithered {
             true => view_undithered(&volume.frame, &self.camera, self.options, workers)?,
             false => None,
@@ -78,7 +78,7 @@ impl Look {
         volume: &Volume,
         exposure: Option<f64>,
         workers: &dyn Workers,
-    ) -> Result<RgbImage, VolumeError> {
+    ) -> Result<RgbImage, SettingError> {
         let light = self.light(volume, workers)?;
         Ok(light.picture(exposure.unwrap_or_else(|| light.exposure(BELOW_WHITE))))
     }
@@ -88,7 +88,7 @@ impl Look {
     /// # Errors
     ///
     /// The same as [`Self::light`].
-    pub fn exposure(&self, volume: &Volume, workers: &dyn Workers) -> Result<f64, VolumeError> {
+    pub fn exposure(&self, volume: &Volume, workers: &dyn Workers) -> Result<f64, SettingError> {
         Ok(self.light(volume, workers)?.exposure(BELOW_WHITE))
     }
 
@@ -98,9 +98,8 @@ impl Look {
         volume: &'a Volume,
         frames: u32,
         workers: &'a dyn Workers,
-    ) -> impl Iterator<Item = Result<RgbImage, VolumeError>> + use<'a> {
-        let pictures = film(&volume.frame.planes, self.camera, self.options, frames, workers);
-        pictures.map(|picture| Ok(picture?))
+    ) -> impl Iterator<Item = Result<RgbImage, SettingError>> + use<'a> {
+        film(&volume.frame.planes, self.camera, self.options, frames, workers)
     }
 }
 

@@ -1,9 +1,9 @@
 //! The settings of an experiment with a volume. Each setting has a path such as `clip.bias_px2`.
 
 use crate::choices::{ClipKind, Named, ProjectionKind, RendererKind};
-use crate::error::VolumeError;
 use crate::numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers, ViewerNumbers};
 use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::SettingError;
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::{
     BinTolerance, Binning, Combine, Coverage, GpuTiming, Halftone, Jitter, Projection, Rotation, SliceClip, Strobes,
@@ -169,11 +169,11 @@ impl VolumeSettings {
     ///
     /// # Errors
     ///
-    /// [`VolumeError`] names the first number that is out of range, the expected and the found value.
-    pub fn swept_display(&self) -> Result<SweptDisplay, VolumeError> {
+    /// [`SettingError`] names the first number that is out of range, the expected and the found value.
+    pub fn swept_display(&self) -> Result<SweptDisplay, SettingError> {
         self.check_tables()?;
         let bits = self.clip_numbers.plane_fraction_bits;
-        Ok(SweptDisplay::new(SweptConfig {
+        SweptDisplay::new(SweptConfig {
             slices: self.display.slices as u32,
             width: self.display.width as u32,
             height: self.display.height as u32,
@@ -184,7 +184,7 @@ impl VolumeSettings {
             // 53 bits are the full double precision.
             plane_fraction_bits: (bits < 53).then_some(bits as u32),
             projection: self.slice_projection(),
-        })?)
+        })
     }
 
     /// Returns the settings for rendering a volume.
@@ -192,7 +192,7 @@ impl VolumeSettings {
     /// # Errors
     ///
     /// The same as [`Self::swept_display`].
-    pub fn volume_config(&self) -> Result<VolumeConfig, VolumeError> {
+    pub fn volume_config(&self) -> Result<VolumeConfig, SettingError> {
         self.check_tables()?;
         let size = self.tile.size as u32;
         // A size of 0 turns tiles off.
@@ -238,7 +238,7 @@ impl VolumeSettings {
     }
 
     /// Checks every number against the limits of its table, and the number of samples against the allowed values.
-    fn check_tables(&self) -> Result<(), VolumeError> {
+    fn check_tables(&self) -> Result<(), SettingError> {
         for (prefix, table) in self.tables() {
             if let Some(entry) = table.entries().into_iter().find(|entry| !entry.is_within_limits()) {
                 let (least, most) = entry.info.limits;
@@ -253,12 +253,7 @@ impl VolumeSettings {
         Ok(())
     }
 
-    fn wrong(prefix: &str, name: &str, expected: &str, found: impl ToString) -> VolumeError {
-        VolumeError::Value {
-            place: "settings".to_owned(),
-            key: format!("{prefix}.{name}"),
-            expected: expected.to_owned(),
-            found: found.to_string(),
-        }
+    fn wrong(prefix: &str, name: &str, expected: &str, found: impl std::fmt::Display) -> SettingError {
+        SettingError::value(name, expected, found).in_table(prefix).at("settings")
     }
 }

@@ -2,26 +2,26 @@
 //! the document is up to date.
 
 use pxpl5_scene::builtin;
-use pxpl5_volume::figures::{Drawing, Figures, all, drawings, markdown};
+use pxpl5_volume::figures::{FigureDrawing, VolumeFigures, all, drawings, markdown};
 use pxpl5_volume::spatialgl::Threads;
 use std::sync::{Arc, LazyLock};
 
-static FIGURES: LazyLock<Figures> = LazyLock::new(|| {
+static FIGURES: LazyLock<VolumeFigures> = LazyLock::new(|| {
     let scenes = ["mig", "head", "molecules"].map(|name| Arc::new(builtin(name).expect("built in")));
     all(&scenes, &Threads::all(), |_, _| {}).expect("valid scenes")
 });
 
 #[test]
 fn every_figure_of_the_specification_has_a_row() {
-    let defined = FIGURES.definitions.iter().map(|row| row.definition.id);
-    let ids: Vec<&str> = FIGURES.figures.iter().map(|row| row.figure.id).chain(defined).collect();
+    let defined = FIGURES.definitions.iter().map(|row| row.id);
+    let ids: Vec<&str> = FIGURES.figures.iter().map(|row| row.id).chain(defined).collect();
     for id in [
         "P1", "P2", "P3", "P4", "P5", "P6", "P7", "P8", "P9", "P10", "P11", "P13", "P14", "P15", "P16", "P17", "P18",
         "P19", "P20", "D1", "D2", "D3", "D4", "D5", "D6", "D7", "D8", "D9", "D10", "D11", "D12",
     ] {
         assert!(ids.contains(&id), "{id} is not among {ids:?}");
     }
-    assert_eq!((ids[0], FIGURES.definitions[0].definition.id), ("P2", "P1"), "printed ones first, by number");
+    assert_eq!((ids[0], FIGURES.definitions[0].id), ("P2", "P1"), "printed ones first, by number");
 }
 
 /// Checks that all figures without a scene agree with the paper. Figures measured on a scene must be listed as missed
@@ -39,8 +39,8 @@ fn every_row_without_a_scene_is_met() {
 fn a_number_that_no_run_can_change_is_a_definition_and_has_no_verdict() {
     let inputs = ["P1", "P6", "P13", "P16", "P18", "P20", "D12"];
     for id in inputs {
-        assert!(FIGURES.definitions.iter().any(|row| row.definition.id == id), "{id} is a definition");
-        assert!(FIGURES.figures.iter().all(|row| row.figure.id != id), "{id} is no row");
+        assert!(FIGURES.definitions.iter().any(|row| row.id == id), "{id} is a definition");
+        assert!(FIGURES.figures.iter().all(|row| row.id != id), "{id} is no row");
     }
     let text = markdown(&FIGURES);
     let (_, list) = text.split_once("## Definitions").expect("a list of them");
@@ -86,5 +86,5 @@ fn the_drawings_show_what_their_captions_say() {
     };
     assert!(of_slice(4) < of_slice(8) && of_slice(8) < of_slice(7));
     assert!(of_slice(4) < of_slice(6) && of_slice(6) < of_slice(7));
-    assert_eq!(Drawing::sheet(&drawn).dimensions(), (3 * 260, 3 * 260));
+    assert_eq!(FigureDrawing::sheet(&drawn).dimensions(), (3 * 260, 3 * 260));
 }

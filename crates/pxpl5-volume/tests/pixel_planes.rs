@@ -8,8 +8,8 @@ use pxpl5_volume::pixel_planes::{
     halftone_clocks, halftone_words, lit_field, simulate, threshold_field,
 };
 use pxpl5_volume::spatialgl::{
-    Bin, ClipQuadratic, CommandBuffer, Context, Coverage, HalfWedge, Halftone, HostRenderer, OneThread, SliceImage,
-    SliceRenderer, SliceWork, SpatialDisplay, Topology, Vertex, VertexBuffer, render_volume,
+    Bin, ClipQuadratic, ColouredVertex, CommandBuffer, Coverage, DrawContext, HalfWedge, Halftone, HostRenderer,
+    OneThread, SliceImage, SliceRenderer, SliceWork, SpatialDisplay, Topology, VertexBuffer, render_volume,
 };
 use pxpl5_volume::{ProjectionKind, Volume, VolumeSettings};
 
@@ -49,10 +49,10 @@ fn triangles() -> Vec<[Corner; 3]> {
 fn recording(corners: &[Corner; 3]) -> CommandBuffer {
     let vertices = corners.map(|([x, y], off, colour)| {
         let place = [f64::from(x) / 16.0 - 384.0, 384.0 - f64::from(y) / 16.0, off];
-        Vertex::new(place.into(), colour)
+        ColouredVertex::new(place.into(), colour)
     });
     let buffer = VertexBuffer::new(vertices.to_vec()).expect("finite");
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.draw(&buffer, 0..3, Topology::Triangles).expect("in range");
     context.present()
 }

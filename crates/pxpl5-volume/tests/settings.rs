@@ -1,9 +1,9 @@
 //! Tests of settings by path: accepted values, and errors for other values.
 
 use pxpl5_volume::spatialgl::{BinTolerance, SliceClip};
-use pxpl5_volume::{VolumeError, VolumeSettings};
+use pxpl5_volume::{SettingError, VolumeSettings};
 
-fn set(assignment: &str) -> Result<VolumeSettings, VolumeError> {
+fn set(assignment: &str) -> Result<VolumeSettings, SettingError> {
     let mut settings = VolumeSettings::paper();
     settings.assign(assignment, "--set")?;
     settings.swept_display()?;

@@ -1,7 +1,7 @@
 //! Tests of volumes and their reports on small displays: counts from formulas, and pixels of pictures.
 
 use pxpl5_scene::{Scene, builtin};
-use pxpl5_volume::compare::{Viewpoint, compare, variant_count};
+use pxpl5_volume::compare::{ComparePoint, compare, variant_count};
 use pxpl5_volume::pictures::{before_and_after, coloured, halftoned, sheet, tile_map};
 use pxpl5_volume::spatialgl::{OneThread, Strobes, Threads};
 use pxpl5_volume::{ClipKind, ProjectionKind, Volume, VolumeSettings};
@@ -177,7 +177,7 @@ fn a_slice_that_is_not_there_is_refused() {
 /// and clips with enlarged volumes accept at least as many fragments.
 #[test]
 fn a_comparison_has_a_row_and_a_picture_for_each_variant() {
-    let viewpoint = Viewpoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: 32 };
+    let viewpoint = ComparePoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: 32 };
     let mut heard = Vec::new();
     let heard_by = std::cell::RefCell::new(&mut heard);
     let finished = |done, of| heard_by.borrow_mut().push((done, of));

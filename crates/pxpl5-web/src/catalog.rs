@@ -1,4 +1,4 @@
-//! Lists of the pipelines, scenes, displays and motions that a visitor of the page can choose.
+//! Lists of the pipelines, scenes, displays and motions that a visitor of the web page can choose.
 
 use serde_json::{Value, json};
 
@@ -28,12 +28,12 @@ pub(crate) fn catalog() -> Value {
     })
 }
 
-/// Splits a list in plain English, such as `optical, fastrak or ideal`, into its names.
+/// Splits an English list, such as `optical, fastrak or ideal`, into the single names.
 fn names(list: &str) -> Vec<&str> {
     list.split([',', ' ']).filter(|word| !word.is_empty() && *word != "or").collect()
 }
 
-/// Returns a scene's name with an example number of triangles in place of `N`.
+/// Returns a scene's name in which an example number of triangles replaces the letter `N`.
 fn example(name: &str) -> String {
     let (family, count) = name.split_once(':').unwrap_or((name, ""));
     match count {

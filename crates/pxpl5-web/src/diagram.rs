@@ -1,5 +1,5 @@
 //! Data for the block diagram and the guided tours of the page. The data are stages of processors, messages, regions
-//! that are being copied, and the age of the shown picture.
+//! that are being drawn or copied, and the age of the shown picture.
 
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::Board;
@@ -29,8 +29,8 @@ const fn name(stage: Stage) -> &'static str {
     }
 }
 
-/// Returns the messages that began after an instant, at most `most` messages. If there are more, only every n-th
-/// message is returned. Messages that still occupy a channel are included.
+/// Returns the ring messages that began after an instant, including messages that still occupy a channel. The result
+/// has at most `most` messages. If more messages began, only every n-th message is returned.
 pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
     let record = stepper.record();
     let name = |node| record.ports().board(node).to_string();
@@ -46,7 +46,7 @@ pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
     some.map(|(begin, from, to, words)| json!({"begin_ps": begin.0, "from": from, "to": to, "words": words})).collect()
 }
 
-/// Returns the regions that renderers are drawing, then the regions that they are copying to displays.
+/// Returns the regions that renderers are drawing, then the regions that renderers are copying to displays.
 ///
 /// Each region has its stage (`render` or `copy`), its renderer, the index of its surface, and a rectangle in pixels.
 /// `works` is false for a region whose renderer waits, for more commands or for the copy command.
@@ -115,8 +115,8 @@ mod tests {
         Session::new(&settings, &Files::default()).expect("known settings")
     }
 
-    /// TR94: first the graphics processors execute TRANSFORM, then renderers get commands, then renderers copy regions
-    /// to the frame buffers.
+    /// Tests the order of work in TR94: first the graphics processors execute TRANSFORM, then renderers get commands,
+    /// then renderers copy regions to the frame buffers.
     #[test]
     fn stages_messages_and_regions_appear_in_the_order_of_the_paper() {
         let mut session = session("rendering-control");
@@ -148,8 +148,9 @@ mod tests {
         all.as_array().expect("a list").iter().filter(|region| region["stage"] == stage).count()
     }
 
-    /// TR94: a renderer draws a region, then copies the same region to the frame buffer of the same eye. Each region has
-    /// 20 triangles of 258 clocks, so drawing takes 129 us, and a look each 20 us finds the region.
+    /// TR94: a renderer draws a region, then copies the same region to the frame buffer of the same eye. Each region
+    /// has 20 triangles of 258 clocks, so drawing takes 129 us. A test that reads the state every 20 us therefore finds
+    /// each region.
     #[test]
     fn a_region_is_copied_by_the_renderer_that_drew_it_and_where_it_was_drawn() {
         let settings = "pipeline=rendering-control\nscene=full-screen:20\nfields=60\n";

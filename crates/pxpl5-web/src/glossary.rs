@@ -4,7 +4,8 @@ use serde_json::{Map, Value};
 
 const TEXT: &str = include_str!("../../../docs/glossary.md");
 
-/// Returns all terms with their explanations as JSON. The document has each term on a line `- **term**: sentence`.
+/// Returns all terms with their explanations as JSON. In docs/glossary.md, each term is on a line `- **term**:
+/// sentence`.
 pub(crate) fn glossary() -> Value {
     let terms = TEXT.lines().filter_map(|line| line.strip_prefix("- **")?.split_once("**: "));
     Value::Object(terms.map(|(term, sentence)| (term.to_owned(), plain(sentence).into())).collect::<Map<_, _>>())

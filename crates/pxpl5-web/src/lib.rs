@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Settings have the format of experiment files. The page and the command-line program therefore run the same
-//! experiment and get the same trace hash. The page has one [`WebMachine`] for each pipeline, all in one worker
+//! experiment and compute the same trace hash. The page has one [`WebMachine`] for each pipeline, all in one worker
 //! thread of the browser. Models and recorded motions that a visitor drops onto the page are passed as [`Files`].
 //! `scripts/site` builds the page. Building and testing this crate needs no browser.
 //!
@@ -31,8 +31,8 @@ pub use files::Files;
 use session::Session;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
-/// Returns everything that a visitor can choose as JSON: pipelines, scenes, displays and motions, each with its name
-/// and a description.
+/// Returns, as JSON, the pipelines, scenes, displays and motions that a visitor can choose, each with a name and a
+/// description.
 #[wasm_bindgen]
 #[must_use]
 pub fn catalog() -> String {
@@ -79,7 +79,7 @@ impl WebMachine {
     }
 
     /// Adds poses to the motion of a head that the visitor moves (`head.motion=live.csv`). `rows` is a recording with
-    /// its header line. Its last row must not be earlier than the instant to which the machine runs next.
+    /// its header line. The last row of `rows` must not be earlier than the instant to which the machine runs next.
     ///
     /// # Errors
     ///
@@ -89,7 +89,7 @@ impl WebMachine {
         self.0.moved(rows).map_err(refused)
     }
 
-    /// Runs the machine for one `event`, `line` (a scanline) or `field`.
+    /// Runs the machine for one step. The step `of` is `event`, `line` (a scanline) or `field`.
     ///
     /// # Errors
     ///
@@ -123,14 +123,14 @@ impl WebMachine {
         look::boards(self.0.stepper()).to_string()
     }
 
-    /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most`. If there are
-    /// more, only every n-th message is returned.
+    /// Returns the messages that began after the instant `after_ps` (picoseconds) as JSON, at most `most` messages. If
+    /// more messages began, only every n-th message is returned.
     #[must_use]
     pub fn messages(&self, after_ps: f64, most: usize) -> String {
         diagram::messages(self.0.stepper(), pxpl5_sim::Time(after_ps as u64), most).to_string()
     }
 
-    /// Returns the regions that renderers are copying to displays, as JSON.
+    /// Returns the regions that renderers are drawing or copying to displays, as JSON.
     #[must_use]
     pub fn regions(&self) -> String {
         diagram::regions(self.0.stepper()).to_string()
@@ -188,15 +188,15 @@ impl WebMachine {
     }
 
     /// Returns the difference between the seen and the ideal picture of a surface as JSON. The object has the
-    /// percentage of pixels that differ. The object also has the mean over all pixels of the largest difference of any
-    /// colour, in per cent. The result is `null` without an ideal picture.
+    /// percentage of pixels that differ, and the mean difference over all pixels in per cent. The difference at a pixel
+    /// is the largest of the differences of red, green and blue. The result is `null` without an ideal picture.
     #[must_use]
     pub fn difference(&self, surface: u16) -> String {
         self.0.difference(surface).map_or_else(|| "null".to_owned(), |difference| difference.numbers().to_string())
     }
 
     /// Returns the 128 x 128 pixels of a renderer as bytes. Enabled pixels are green, and other pixels have the colours
-    /// in their memory. The result is empty before the first command.
+    /// in their memory. The result is empty before the renderer's first command.
     #[must_use]
     pub fn renderer(&self, renderer: usize) -> Vec<u8> {
         pictures::renderer(self.0.stepper(), renderer)
@@ -216,7 +216,8 @@ impl WebMachine {
         look::timeline(self.0.stepper(), u64::from(fields))
     }
 
-    /// Returns the parts of the latency of the last complete pictures, at most `most` pictures, as JSON.
+    /// Returns, as JSON, the parts of the latency for each of the last complete pictures. The result has at most `most`
+    /// pictures.
     #[must_use]
     pub fn latencies(&self, most: usize) -> String {
         look::latencies(self.0.stepper(), most).to_string()
@@ -266,7 +267,8 @@ impl WebVolume {
         self.0.size().to_vec()
     }
 
-    /// Returns the slice with index `number` as bytes. A pixel has one bit for each of red, green and blue.
+    /// Returns the slice with index `number` as bytes. The value of each colour of a pixel is 0 or 255, because the
+    /// display has one bit for each colour.
     #[must_use]
     pub fn slice(&self, number: u32) -> Vec<u8> {
         self.0.slice(number)

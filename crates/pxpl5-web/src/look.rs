@@ -33,9 +33,9 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     })
 }
 
-/// Returns the instant to which one step back by a period leads, or `None` at time zero. From the begin of a period, a
-/// step leads to the begin of the period before. From within a period, a step leads to the same place in the period
-/// before, or to time zero.
+/// Returns the instant one display period before the present instant, for the page's step back. The result has the same
+/// distance from the beginning of its period as the present instant. Within the first period the result is time zero,
+/// and at time zero the result is `None`.
 fn back(stepper: &Stepper) -> Option<Time> {
     let (now, period) = (stepper.now(), stepper.period());
     let tick = |period| stepper.record().tick(period);

@@ -21,13 +21,13 @@ const fn opaque([red, green, blue]: [u8; 3]) -> [u8; 4] {
     [red, green, blue, u8::MAX]
 }
 
-/// The difference between the seen and the ideal picture: a heat map and sums. For each pixel, the largest difference
-/// of any colour counts.
+/// The difference between the seen and the ideal picture: a heat map and sums. The difference at a pixel is the largest
+/// of the differences of red, green and blue.
 pub(crate) struct Difference {
     pub(crate) heat: Vec<u8>,
     pixels: usize,
     differing: usize,
-    /// Sum over all pixels of the largest difference of any colour, in units of 1/255 of full brightness.
+    /// Sum of the differences at all pixels, in units of 1/255 of full brightness.
     sum: u64,
 }
 
@@ -48,8 +48,8 @@ impl Difference {
         Some(difference)
     }
 
-    /// Returns the fraction of pixels that differ, and the mean over all pixels of the largest difference of any
-    /// colour, both in per cent.
+    /// Returns the percentage of pixels that differ, and the mean difference over all pixels in per cent of full
+    /// brightness.
     pub(crate) fn numbers(&self) -> Value {
         let pixels = self.pixels.max(1) as f64;
         json!({
@@ -65,9 +65,9 @@ fn heat(difference: u8) -> [u8; 3] {
     [rising(0), rising(85), rising(170)]
 }
 
-/// Returns the 128 x 128 pixels of a renderer, after all commands that have started. A pixel is green if the last of
-/// these commands has left it enabled. Other pixels have their own colours. The result is empty before the first
-/// command.
+/// Returns the 128 x 128 pixels of a renderer, after all commands that have started. A pixel is green if it is enabled
+/// after the last of these commands. Other pixels have the colours in their memory. The result is empty before the
+/// renderer's first command.
 pub(crate) fn renderer(stepper: &Stepper, number: usize) -> Vec<u8> {
     let Some(array) = stepper.array(number) else { return Vec::new() };
     let colours = array.read_colour(REGION_SIZE, REGION_SIZE);
@@ -132,16 +132,17 @@ pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Optio
     Some(rgba(&cross))
 }
 
-/// Colour of outlines, which no built-in scene uses.
+/// Colour of outlines (amber). No built-in scene uses this colour.
 const OUTLINE: [u8; 3] = [255, 196, 61];
 
-/// Second difference of the depth of three neighbouring pixels above which the middle pixel is an edge, in units of the
-/// lowest of 24 bits. Within a flat triangle, depth is linear on the screen. Its second difference comes only from
-/// rounding.
+/// Threshold for edges. A pixel is an edge if the second difference of depth across the pixel and two neighbours is
+/// greater. The unit is the lowest of 24 depth bits. Within a flat triangle, depth is linear on the screen, so that the
+/// second difference comes only from rounding.
 const BEND: i64 = 24;
 
-/// Returns the edges visible in an ideal picture as bytes. A pixel is opaque where the depth on the screen is not
-/// linear: at edges between triangles and at the rim of objects. All other pixels are transparent.
+/// Returns the edges in an ideal picture as bytes: red, green, blue and opacity of each pixel. A pixel is opaque where
+/// the depth on the screen is not linear: at edges between triangles and at the rim of objects. All other pixels are
+/// transparent.
 pub(crate) fn outlines(picture: &IdealPicture) -> Vec<u8> {
     let [width, height] = [picture.image().width() as usize, picture.image().height() as usize];
     let depths = picture.depths();
@@ -181,7 +182,7 @@ mod tests {
         session
     }
 
-    /// Within a plane, depth is linear on the screen, so it has no bend.
+    /// The depth of a plane is linear on the screen, so that a plane has no edges.
     #[test]
     fn a_plane_that_covers_the_screen_has_no_outlines_and_an_aircraft_has() {
         let opaque =

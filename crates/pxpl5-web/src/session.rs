@@ -1,11 +1,11 @@
-//! A run in short steps, with the functions that the page needs.
+//! An experiment that runs in short steps, with the functions that the web page needs.
 
 use crate::files::Files;
 use crate::look;
 use crate::pictures::{self, Difference, rgba};
 use crate::volume::Volume;
 use pxpl5_lab::limit::{LimitQuery, Model, about};
-use pxpl5_lab::{ExperimentFile, Plan, SceneChoice};
+use pxpl5_lab::{ExperimentFile, Plan};
 use pxpl5_machine::Board;
 use pxpl5_run::{BareHost, Experiment, Keep, Pause, Stepper};
 use pxpl5_sim::{Span, Time};
@@ -54,8 +54,8 @@ impl Session {
         Ok(Self { stepper, is_over: false, plan, moves })
     }
 
-    /// Adds poses to the motion of the head that the visitor moves. The last row of `rows` must not be earlier than the
-    /// instant to which the machine runs next.
+    /// Adds poses to the motion of the head that the visitor of the page moves. The last row of `rows` must not be
+    /// earlier than the instant to which the machine runs next.
     pub(crate) fn moved(&self, rows: &str) -> Result<(), String> {
         let moves = self.moves.as_ref().ok_or("this head is not moved on the page")?;
         let more = Recording::read(rows.as_bytes()).map_err(|error| error.to_string())?;
@@ -137,8 +137,8 @@ impl Session {
     fn fitting_by_runs(&self) -> Option<u64> {
         let whole = Arc::clone(self.stepper.experiment().scene());
         let triangles = u32::try_from(whole.triangles().len()).ok().filter(|triangles| *triangles > 0)?;
-        let choice = SceneChoice { triangles: None, ..self.plan.scene.clone() };
-        let query = LimitQuery { model: Some(Model { choice, whole }), ..LimitQuery::of_plan(&self.plan) };
+        let model = Model::new(self.plan.scene.clone(), whole);
+        let query = LimitQuery { model: Some(model), ..LimitQuery::of_plan(&self.plan) };
         about(triangles, |triangles| query.reached(triangles)).ok().map(u64::from)
     }
 
@@ -253,7 +253,7 @@ mod tests {
     fn a_wrong_setting_is_refused_in_words() {
         for (settings, said) in [
             ("pipeline=slat", "slats"),
-            ("pipeline=slats\nscene=migg", "the nearest is \"mig\""),
+            ("pipeline=slats\nscene=migg", "there is no scene `migg`; did you mean `mig`?"),
             ("pipeline=slats\nscene=mig\nfields=0", "fields"),
             ("nonsense", "expected path=value"),
             ("pipeline=slats\ndisplay=arp", "arp"),
@@ -290,7 +290,7 @@ mod tests {
     }
 
     /// TR94 gives the limit of Slats: about 140 triangles of any size. The Mig has ten times as many. For just-in-time
-    /// pixels, a reduced scene runs in time, and twice as many triangles do not.
+    /// pixels, the decimated scene is shown in time, but a scene with twice as many triangles is not.
     #[test]
     fn a_scene_that_is_too_heavy_is_reported_with_what_would_fit() {
         let misses_all = |settings: &str| {

@@ -7,7 +7,8 @@ use spatialgl::perspecta::{Camera, PerspectaConfig, ViewOptions, view_planes};
 use spatialgl::{HostRenderer, Jitter, OneThread, Projection, SliceClip, VolumeConfig, VolumeFrame};
 use spatialgl::{record_scene, render_volume};
 
-/// Fraction of the lit pixels of a view that are darker than white.
+/// Fraction of the lit pixels of a view that must be darker than white. This fraction determines the exposure of the
+/// view.
 const BELOW_WHITE: f64 = 0.98;
 
 /// A scene drawn for the volumetric display of the SpatialGL paper, with hyperbolic clipping and jittered projections.
@@ -34,16 +35,16 @@ impl Volume {
         [self.frame.planes.slices(), width, height]
     }
 
-    /// Returns the slice with index `number` as bytes. A pixel has one bit for each of red, green and blue. A slice
-    /// that does not exist is black.
+    /// Returns the slice with index `number` as bytes. The value of each colour of a pixel is 0 or 255, because the
+    /// display has one bit for each colour. A slice that does not exist is black.
     pub(crate) fn slice(&self, number: u32) -> Vec<u8> {
         let [slices, width, height] = self.size();
         let lit = |x, y| if number < slices { self.frame.planes.pixel(number, x, y) } else { 0 };
         rgba(&RgbImage::from_fn(width, height, |x, y| Rgb([0, 1, 2].map(|channel| 255 * (lit(x, y) >> channel & 1)))))
     }
 
-    /// Returns the view of an eye during one turn of the display, from a distance of four radii. The picture is `side`
-    /// pixels wide and high.
+    /// Returns the view of an eye during one turn of the display, from a distance of four radii of the display. The
+    /// picture is `side` pixels wide and high.
     pub(crate) fn seen(&self, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Result<Vec<u8>, String> {
         let camera = Camera::around(self.radius, azimuth_deg, elevation_deg, side);
         let light = view_planes(&self.frame.planes, &camera, ViewOptions::default(), &OneThread);

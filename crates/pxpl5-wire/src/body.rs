@@ -25,7 +25,7 @@ pub enum Body {
     Commands(CommandList),
     /// Pixels of a part of a region, sent to a frame buffer.
     Pixels(RegionPixels),
-    /// Words sent from program to program. The firmware defines their meaning.
+    /// Words sent from program to program. The firmware defines the meaning of the words.
     Words(Arc<[Word]>),
 }
 
@@ -60,8 +60,8 @@ impl CommandContent {
         Self { words, part, frame_buffer: None }
     }
 
-    /// Returns the same content, marked with the frame buffer for whose picture the commands draw. Only observers use
-    /// the mark.
+    /// Returns this content with a mark: the frame buffer that will show the drawn picture. Only observers use the
+    /// mark.
     #[must_use]
     pub fn for_frame_buffer(self, frame_buffer: NodeId) -> Self {
         Self { frame_buffer: Some(frame_buffer), ..self }
@@ -80,8 +80,8 @@ impl CommandContent {
         self.words.append_words(self.part, out);
     }
 
-    /// Passes the commands of the message to `out`. The source may leave out primitives that touch no pixel of the
-    /// region ([`CommandWords::append_visible`]).
+    /// Passes the commands of the message to `out`, and may leave out primitives that touch no pixel of the region.
+    /// Returns false only if the passed commands contain no primitive ([`CommandWords::append_visible`]).
     pub fn append_visible(&self, out: &mut dyn CommandSink) -> bool {
         self.words.append_visible(self.part, out)
     }
@@ -183,7 +183,7 @@ impl CommandList {
         self.runs.iter().map(|run| run.count * run.words_each).sum()
     }
 
-    /// Returns the same list, marked with the frame buffer for whose picture the commands draw
+    /// Returns this list with a mark: the frame buffer that will show the drawn picture
     /// ([`CommandContent::for_frame_buffer`]).
     #[must_use]
     pub fn for_frame_buffer(self, frame_buffer: NodeId) -> Self {
@@ -208,15 +208,18 @@ pub trait CommandWords: Debug + Send + Sync {
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
     /// Passes the commands of message `part` to `out`. The source may leave out primitives that touch no pixel of the
-    /// region. Returns true if the passed commands contain a primitive. `out` receives only whole commands. Before each
-    /// drawing command, the passed commands set the Enable bits of the pixels.
+    /// region. `out` receives only whole commands. Before each drawing command, the passed commands set the Enable bits
+    /// of the pixels.
+    ///
+    /// Returns false only if the passed commands contain no primitive. The default implementation passes all commands
+    /// and returns true.
     fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         self.append_words(part, out.words());
         true
     }
 
-    /// Returns the region for which all messages draw. The default is `None`, for a source that does not state the
-    /// region.
+    /// Returns the region for which the commands of all messages draw. The default is `None`, for a source that does
+    /// not state the region.
     fn place(&self) -> Option<RegionPlace> {
         None
     }
@@ -328,8 +331,8 @@ pub trait PixelSource: Debug + Send + Sync {
 pub const COPY_ACKNOWLEDGEMENT: Word = 0xC0_11_ED;
 
 impl CopyTarget {
-    /// Returns the words of the message that notifies a program that this region was copied. The words are: tag,
-    /// region, low word of the picture number, frame buffer.
+    /// Returns the words of the message that notifies a program that this region was copied. The words are:
+    /// [`COPY_ACKNOWLEDGEMENT`], number of the region, low word of the picture number, port of the frame buffer.
     #[must_use]
     pub fn acknowledgement(&self) -> Arc<[Word]> {
         let words = [

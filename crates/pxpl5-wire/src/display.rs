@@ -6,9 +6,10 @@
 //!                                       +--> what a surface shows in a period, and when each of its pixels lights
 //! ```
 //!
-//! A display has three parts. Its *ports* receive messages from the ring. Its *clock* ticks at each retrace, update of
-//! cube faces, or strobe. Its *surfaces* are visible: an eye's picture, a face of a cube, or a slice of a volume. A
-//! *period* is the time from one tick to the next.
+//! A display has ports, a clock and surfaces. The *ports* receive messages from the ring. The *clock* ticks at each
+//! retrace, at each update of cube faces, or at each strobe, depending on the kind of display. The *surfaces* are
+//! visible: an eye's picture, a face of a cube, or a slice of a volume. A *period* is the time from one tick to the
+//! next.
 //!
 //! The machine owns any number of displays and uses only this interface. The first display is the machine's sync
 //! generator. The machine passes the ticks of the first display to the first graphics processor. The length of a run is
@@ -17,8 +18,8 @@
 //! A crate that provides a display implements two traits: [`DisplayConfig`] for the parameters of a display, and
 //! [`Display`] for its boards. Timelines, traces, reports, pictures, films and pixel errors use only these traits.
 //!
-//! **Not here:** properties of one kind of display that its firmware needs, such as fields or beams. A pipeline for one
-//! kind of display can downcast to the type of this display, because every display is [`Any`].
+//! **Not here:** properties of one kind of display, such as fields or beams. Firmware for this kind of display can
+//! downcast to the type of the display, because every display is [`Any`].
 
 #![warn(missing_docs)]
 
@@ -29,9 +30,9 @@ mod light;
 mod surface;
 
 pub use aim::{Aim, LightTimes};
-pub use config::{DisplayConfig, DisplayError};
+pub use config::DisplayConfig;
 pub use double_buffer::{BufferReceipt, DoubleBuffer};
-pub use light::{Light, Scan};
+pub use light::{PixelLight, ScanOrder};
 pub use surface::{Counter, Surface};
 
 use crate::{Body, CopyTarget, NodeId, PeriodNumber};
@@ -53,7 +54,7 @@ pub enum DisplayEvent {
         /// Content of the message.
         body: Body,
     },
-    /// An event that the display itself has scheduled. The display chooses the number.
+    /// An event that the display itself has scheduled. The number has a meaning only within the display.
     Timer(u64),
 }
 
@@ -71,7 +72,7 @@ pub enum DisplayOutput {
         /// Arrival time of the region's last message.
         last_part_at: Time,
     },
-    /// A surface shows its other buffer from this tick of the display's clock on. The machine notifies the first
+    /// A surface shows the requested buffer from this tick of the display's clock on. The machine notifies the first
     /// graphics processor.
     Swapped {
         /// Index of the surface that has swapped, counted from the display's first surface.
@@ -81,9 +82,9 @@ pub enum DisplayOutput {
         /// Number of the period that begins with the tick.
         tick: PeriodNumber,
     },
-    /// A display memory shows its other buffer from this tick of the display's clock on. The memory is one of several
-    /// memories, each with its own port, that share a surface. The status line of the memory's port notifies the first
-    /// graphics processor.
+    /// A display memory shows the requested buffer from this tick of the display's clock on. Several display memories,
+    /// each with its own port, share a surface. The machine notifies the first graphics processor of the swap at this
+    /// port.
     Updated {
         /// Index of the surface that shows the display memory, counted from the display's first surface.
         surface: usize,
@@ -132,9 +133,11 @@ pub trait Display: Any + Debug + Send + Sync {
     /// display has discarded the data of the period.
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage>;
 
-    /// Returns the picture that a viewer sees at time `time`, which must lie in a period whose pictures the display
-    /// still holds. The default implementation returns the picture at the end of the period. This result is right for
-    /// displays that light all pixels at once.
+    /// Returns the picture that a viewer sees at the instant `time`. Returns `None` if the display no longer has the
+    /// pictures of the period that contains `time`, or if this period has not ended.
+    ///
+    /// The default implementation returns the picture at the end of the period. This result is right for displays that
+    /// light all pixels at the same time.
     fn seen_at(&self, surface: usize, time: Time) -> Option<RgbImage> {
         self.seen(surface, self.period_at(time))
     }
@@ -171,15 +174,15 @@ pub trait Display: Any + Debug + Send + Sync {
 
     /// Returns the order in which pixels are lit, and the time for which each pixel shines from [`Display::lights`] on.
     /// The default is a scan from the top, line by line, in which each pixel shines only for an instant.
-    fn light(&self) -> Light {
-        Light::default()
+    fn light(&self) -> PixelLight {
+        PixelLight::default()
     }
 
     /// Returns the display's counters. Each counter covers the time since the start of the run.
     fn counters(&self) -> Vec<Counter>;
 
-    /// Returns the number of messages that the display could not use. The text is the reason for the first such
-    /// message, if known.
+    /// Returns the number of messages that the display could not use. The text states why the display could not use the
+    /// first of these messages, if the reason is known.
     fn faults(&self) -> (u64, Option<String>);
 
     /// Returns the time at which pixel `x` of line `y` starts to shine in a period. If the period skips this line, the

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// The expression `a x + b y + c` at the integer pixel (x, y) of the screen, in 32-bit two's complement (sums wrap).
 ///
-/// Code that computes the coefficients must add the offset from the pixel's corner to its centre to `c`.
+/// The value at (x, y) applies to the centre of the pixel. Code that computes the coefficients must therefore include
+/// the offset from a pixel's corner to its centre in `c`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Linear {
     /// Increase of the value from one pixel to the next one on the right.
@@ -34,7 +35,7 @@ impl Linear {
 /// widest vector register of host processors.
 pub const LANES: usize = 8;
 
-/// The linear expressions of [`LANES`] triangles, stored by coefficient.
+/// The linear expressions of [`LANES`] triangles, with one array for each coefficient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinearLanes {
     /// Coefficient [`Linear::a`] of each triangle.

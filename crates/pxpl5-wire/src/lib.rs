@@ -10,9 +10,9 @@
 //! - [`PeriodNumber`], [`PictureNumber`], [`ViewNumber`]: the counts of periods, pictures and views;
 //! - [`RegionGrid`]: the division of a picture into regions of at most 128 x 128 pixels.
 //!
-//! Bodies are *lazy*: their words are computed only when a picture is read. A message always contains its length and
-//! the sequence of its command kinds. Simulated times depend only on the length and the kinds, because a SIMD array
-//! takes the same number of cycles for all data.
+//! Bodies are *lazy*: the words of a body are computed only when a picture is read. A message always contains its
+//! length and the sequence of its command kinds. Simulated times depend only on the length and the kinds, because a
+//! SIMD array takes the same number of cycles for all data.
 //!
 //! **Not modelled:** routing headers and check words. Instead, the ring adds a fixed overhead to each message.
 //!
@@ -24,6 +24,7 @@ mod expression;
 pub mod format;
 mod number;
 mod region;
+mod video;
 
 pub use body::{
     Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandContent, CommandList, CommandRun, CommandSink,
@@ -33,11 +34,12 @@ pub use body::{
 pub use expression::{LANES, Linear, LinearLanes, Quadratic, TriangleBatch};
 pub use number::{PeriodNumber, PictureNumber, ViewNumber};
 pub use region::{Eye, RegionGrid, RegionId, SurfaceId};
+pub use video::{Video, VideoNumbers, frame_line};
 
 /// One word of the ring: 32 bits (TR94).
 pub type Word = u32;
 
-/// Greatest length of a message in words. The value is derived: a region of a field has 15 x 1,024 pixels.
+/// Greatest length of a message in words. The value is derived: a region of a field has 128 x 120 = 15 x 1,024 pixels.
 pub const MAX_MESSAGE_WORDS: u32 = 1024;
 
 /// Width and height of a renderer's pixel array, in pixels (F89).

@@ -103,9 +103,9 @@ count_from_zero! {
 
 count_from_zero! {
     /// The number of a view. A view is one pose of the head, with edits of the scene, as received from the host. The
-    /// program that requests views numbers them. Rendering Control and frameless rendering request one view for each
-    /// picture. Slats requests one view for each transmission. Just-in-time pixels request a fixed number of views for
-    /// each field.
+    /// program that requests the views also assigns their numbers. Rendering Control and frameless rendering request
+    /// one view for each picture. Slats requests one view for each transmission. Just-in-time pixels request a fixed
+    /// number of views for each field.
     ViewNumber
 }
 

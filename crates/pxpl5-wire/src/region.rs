@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum Eye {
     /// The left eye, or the only eye of a picture without stereo.
     Left,
-    /// The right eye. The second frame buffer shows its picture.
+    /// The right eye. The second frame buffer shows the picture of this eye.
     Right,
 }
 

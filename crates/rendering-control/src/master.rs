@@ -217,6 +217,10 @@ impl RegionMaster {
         } else if self.stored[renderer].len() < self.config.regions_stored {
             RegionEnd::Stored
         } else {
+            // Under the other rule, finished regions wait in pixel memory, whatever the capacity of the store is.
+            if self.config.regions_stored > 0 {
+                self.gp.note_full_store();
+            }
             RegionEnd::Held
         }
     }

@@ -1,7 +1,7 @@
 //! Assignment of regions to renderers and contexts, and the order in which regions are copied.
 
-use crate::error::SlatsConfigError;
 use crate::schedule::CopySchedule;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{Eye, RegionGrid, RegionId};
 
 /// A region of one eye's field. One context of one renderer holds this region for the whole run.
@@ -34,23 +34,24 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Assigns the regions to the renderers in turn. The order is: top regions of the left eye, top regions of the
-    /// right eye, bottom regions of the left eye, bottom regions of the right eye.
+    /// Assigns the regions to the renderers in turn. All top regions come before all bottom regions, and in each half
+    /// the left eye comes before the right eye.
     ///
     /// Each renderer thus gets nearly the same number of regions of each kind. Clumps are sent to the regions in this
     /// order, so that all renderers have work.
     ///
     /// # Errors
     ///
-    /// Returns [`SlatsConfigError::TooFewRenderers`] if a renderer would hold more than `contexts` regions.
-    pub fn new(renderers: usize, contexts: u8, copy: CopySchedule) -> Result<Self, SlatsConfigError> {
+    /// Returns a [`SettingError`] if a renderer would hold more than `contexts` regions.
+    pub fn new(renderers: usize, contexts: u8, copy: CopySchedule) -> Result<Self, SettingError> {
         let columns = RegionGrid::FIELD.columns() as u16;
         let kinds = [(0, Eye::Left), (0, Eye::Right), (1, Eye::Left), (1, Eye::Right)];
         let all = kinds.iter().flat_map(|(row, eye)| (0..columns).map(move |c| (*eye, RegionId(row * columns + c))));
         let total = kinds.len() * usize::from(columns);
         let expected = total.div_ceil(usize::from(contexts.max(1)));
         if renderers < expected {
-            return Err(SlatsConfigError::TooFewRenderers { found: renderers, expected });
+            let expected = format!("at least {expected} renderers of four contexts");
+            return Err(SettingError::value("Slats binds 20 field regions statically", expected, renderers));
         }
         let regions = all.enumerate().map(|(i, (eye, region))| BoundRegion {
             eye,
@@ -89,7 +90,7 @@ impl Binding {
     }
 }
 
-/// Reorders regions so that left and right eye alternate while both eyes have regions left. The first region stays
+/// Reorders regions so that the eyes alternate as long as both eyes have regions left. The region that was first stays
 /// first.
 fn alternate(regions: Vec<BoundRegion>) -> Vec<BoundRegion> {
     let Some(first) = regions.first().map(|b| b.eye) else { return regions };

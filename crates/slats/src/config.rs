@@ -1,11 +1,11 @@
 //! Configuration of Slats: the boards, and the variant of the pipeline.
 
 use crate::bind::Binding;
-use crate::error::SlatsConfigError;
 use crate::schedule::CopySchedule;
 use pphigs::{Picture, RegionBinning, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid};
 
 /// The boards of the pipeline, and the variant of Slats.
@@ -37,11 +37,11 @@ impl SlatsConfig {
     ///
     /// # Errors
     ///
-    /// Returns [`SlatsConfigError`] if the renderers have too few contexts for the regions, or if there is no graphics
+    /// Returns a [`SettingError`] if the renderers have too few contexts for the regions, or if there is no graphics
     /// processor.
-    pub fn check(&self) -> Result<Binding, SlatsConfigError> {
+    pub fn check(&self) -> Result<Binding, SettingError> {
         if self.processors.is_empty() {
-            return Err(SlatsConfigError::NoProcessor);
+            return Err(SettingError::combination("Slats needs at least one graphics processor, found none"));
         }
         Binding::new(self.renderers.len(), self.layout.plan().contexts, self.copy)
     }
@@ -56,7 +56,8 @@ impl SlatsConfig {
         }
     }
 
-    /// Returns the place in a frame buffer that receives a region.
+    /// Returns the destination of a region's pixels: the frame buffer of the eye, pixel buffer `buffer`, and the lines
+    /// of field `field`.
     ///
     /// While a field is written into its lines, the beam scans the other lines of the frame. Interlace thus acts as a
     /// double buffer. Without a backup buffer, only buffer 0 is needed.

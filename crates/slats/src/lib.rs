@@ -26,31 +26,29 @@
 //! - COPY, backup ([`CopySchedule::Backup`], not in the prototype): like split, but into the buffer that is not shown.
 //!   If a field's top regions are not ready at its retrace, the last complete field of the same lines is shown again.
 //!   The late field is shown at the next retrace of its lines.
-//! - Without a backup buffer, a field that is late at its retrace is shown as far as it is complete. The GPs continue
-//!   with the field that begins at the next retrace.
+//! - Without a backup buffer (schedules whole and split), a late field is shown at its retrace with the regions that
+//!   are ready. The GPs continue with the field that begins at the next retrace.
 //!
 //! If there are n GPs, each GP holds every n-th primitive. The first GP sends the copy commands when all other GPs have
 //! reported that their last clump was accepted.
 //!
 //! **Not modelled:** loading of the primitives at initialization.
 //!
-//! Assumed: renderers with an odd index begin a split copy with the right eye, so that copies to both frame buffers
-//! start at the same time. If all renderers began with the left eye, ten regions would take the time of six regions
-//! instead of the published five. A whole copy begins with the left eye on every renderer. Then 20 regions take the
-//! time of 11 regions, as published.
+//! Assumed: renderers with an odd index begin a split copy with the right eye. Copies to both frame buffers then start
+//! at the same time. If all renderers began with the left eye, ten regions would take the time of six regions instead
+//! of the published five. A whole copy begins with the left eye on every renderer. Then 20 regions take the time of 11
+//! regions, as published.
 //!
 //! Sources: TR94, I3D95.
 
 mod bind;
 mod config;
-mod error;
 mod host;
 mod processor;
 mod schedule;
 
 pub use bind::{Binding, BoundRegion};
 pub use config::SlatsConfig;
-pub use error::SlatsConfigError;
 pub use host::host;
 pub use processor::{CLUMP, processor};
 pub use schedule::CopySchedule;

@@ -3,10 +3,9 @@
 use crate::bind::{Binding, BoundRegion};
 use crate::config::SlatsConfig;
 use crate::schedule::CopySchedule;
-use pphigs::{
-    FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, TransformWork, ViewWordsError, copy_message, region_messages,
-};
+use pphigs::{FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, TransformWork, copy_message, region_messages};
 use pxpl5_gp::{Account, Chain, Fault, Gp, Priority, Received, Stage, Ticket};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{
     Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyContent, CopyOrder, CopyPath, Eye, FieldParity, NodeId, PeriodNumber,
     PictureNumber, Word, swap_request,
@@ -19,7 +18,8 @@ use std::sync::Arc;
 /// Largest number of primitives in a clump. The commands of a clump for one region fit into one message (TR94).
 pub const CLUMP: usize = 30;
 
-/// First word of a message to the leading GP: the sender's clumps of a field have been accepted.
+/// First word of the message by which another GP notifies the leading GP that all of its clumps of a field were
+/// accepted. The number of the field follows this word.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 
 /// First word of the message by which the leading GP begins a field on the other GPs. The number and the view of the
@@ -34,7 +34,7 @@ struct ProcessorState {
     begun: VecDeque<(PeriodNumber, FrameView)>,
     /// Number of renderers that have acknowledged the copy of their last region since the last copy order.
     copied: usize,
-    /// The prepared copies of the bottom regions. These copies wait until the top regions are copied.
+    /// The prepared copies of the bottom regions. These copies wait until all top regions are copied.
     bottom: Option<Bottom>,
     /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],
@@ -48,14 +48,14 @@ struct Bottom {
     chain: Chain,
     /// Field of the bottom regions.
     field: PeriodNumber,
-    /// Earliest field period in which the copy may start. Before this period, the beam still scans the lines of the
-    /// copy.
+    /// Earliest field period in which the copies may start. Without a backup buffer, this is the period that shows the
+    /// field.
     not_before: PeriodNumber,
     /// Number of renderers that copy top regions. The bottom copies start after all these renderers have acknowledged
     /// their copies.
     copiers: usize,
-    /// True while the chain of copies is about to start: from the request to display the field until the start of the
-    /// copies.
+    /// True while the interrupt program or the foreground program is about to start the chain. The other program must
+    /// then not start the chain again.
     is_taken: bool,
 }
 
@@ -94,8 +94,8 @@ pub fn processor(
     })
 }
 
-/// The frame buffers under [`CopySchedule::Backup`]. The leading GP asks the frame buffers to show the last complete
-/// field.
+/// The frame buffers of both eyes under [`CopySchedule::Backup`]. The leading GP requests that the frame buffers show
+/// the last complete field.
 #[derive(Clone, Copy, Debug)]
 struct Backup {
     frame_buffers: [NodeId; 2],
@@ -145,10 +145,11 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
 }
 
 impl Backup {
-    /// Records that all top regions of a field are copied. If the field is due at the next retrace, the function
-    /// requests its display.
+    /// Records that a field is complete, because all of its top regions are copied. If the field is due at the next
+    /// retrace, the function requests its display.
     ///
-    /// The copies of the bottom regions follow. These copies are faster than the beam.
+    /// The field counts as complete before the copies of its bottom regions, because these copies are faster than the
+    /// beam.
     async fn show_next(self, gp: &Gp, state: &SharedState, field: PeriodNumber) {
         {
             let state = &mut *state.borrow_mut();
@@ -160,8 +161,8 @@ impl Backup {
         }
     }
 
-    /// Requests a field that the frame buffers show from the start of `period` on. The field is the last complete field
-    /// with the lines of this period. If the period has already begun, the function requests nothing.
+    /// Requests that the frame buffers show the last complete field with the lines of `period` from the start of
+    /// `period` on. If the period has already begun, the function requests nothing.
     ///
     /// A later request replaces an earlier request.
     async fn ask(self, gp: &Gp, state: &SharedState, period: PeriodNumber) {
@@ -174,11 +175,11 @@ impl Backup {
     }
 }
 
-/// Starts the copies of a field's bottom regions when two conditions hold: all top regions of the field are copied, and
-/// the beam has left the lines.
+/// Starts the copies of a field's bottom regions if two conditions hold. All top regions of the field are copied, and
+/// the period [`Bottom::not_before`] has begun.
 ///
-/// With a backup buffer, the function first requests the display of the field, because the copies then occupy the ports
-/// of the frame buffers.
+/// With a backup buffer, the function first requests the display of the field. The copies then occupy the ports of the
+/// frame buffers, so a later request would have to wait.
 async fn copy_bottom_when_due(gp: &Gp, state: &SharedState, backup: Option<Backup>) {
     // Decide within one borrow, and mark the chain as taken. In the steps below, the program can wait while the other
     // program runs.
@@ -203,7 +204,7 @@ async fn copy_bottom_when_due(gp: &Gp, state: &SharedState, backup: Option<Backu
 }
 
 impl ProcessorState {
-    fn note(&mut self, words: &[Word]) -> Result<(), ViewWordsError> {
+    fn note(&mut self, words: &[Word]) -> Result<(), SettingError> {
         match words {
             [COPY_ACKNOWLEDGEMENT, ..] => self.copied += 1,
             [CLUMPS_ACCEPTED, low, high] => self.note_finished(PeriodNumber::from_words(*low, *high)),
@@ -290,16 +291,16 @@ impl SlatsProcessor {
         }
     }
 
-    /// Waits until the copies of the previous field's bottom regions have started. The next messages clear these
-    /// regions.
+    /// Waits until the copies of the previous field's bottom regions have started. The caller's next messages clear
+    /// these regions, so they must not be sent earlier.
     async fn bottom_started(&self) {
         self.gp.until("the copies of the top regions", || self.state.borrow().bottom.is_none().then_some(())).await;
     }
 
-    /// Returns the next field to draw, which is the field that begins at the next retrace.
+    /// Returns the next field to draw: the field that begins at the retrace after field `now`.
     ///
-    /// With a backup buffer, even and odd fields alternate even if fields are late, so that both kinds of lines are
-    /// renewed.
+    /// With a backup buffer, the function skips a field with the same lines as the field `last`. Even and odd lines are
+    /// then renewed in turn even if fields are late.
     fn next_field(&self, now: PeriodNumber, last: Option<PeriodNumber>) -> PeriodNumber {
         let field = now.next();
         let same_lines = last.is_some_and(|last| FieldParity::of_field(last) == FieldParity::of_field(field));
@@ -318,22 +319,22 @@ impl SlatsProcessor {
             let (field, view) =
                 self.gp.until("the leading processor", || self.state.borrow_mut().begun.pop_front()).await;
             self.field(field, &view).await?;
-            // The message waits in the queue behind the clumps, so it arrives after the acceptance of the clumps.
+            // This message is sent after the clumps, so the leading GP receives it only after the acceptance of the
+            // clumps.
             let [low, high] = field.to_words();
             let words = [CLUMPS_ACCEPTED, low, high];
             self.gp.send(self.config.processors[0], 3, Body::Words(words.into())).await;
         }
     }
 
-    /// Returns true if there is only one GP. Its first clump then clears the regions.
+    /// Returns true if there is only one GP. The first clump of a single GP clears the regions.
     fn is_alone(&self) -> bool {
         self.config.processors.len() == 1
     }
 
-    /// Clears all regions by a separate chain of messages.
+    /// Clears all regions by a separate chain of messages, which is needed if there are several GPs.
     ///
-    /// Chains are sent one after the other. The clumps of other GPs begin after this chain, so this chain cannot clear
-    /// their pixels.
+    /// The other GPs send their clumps only after this chain, so the chain cannot clear pixels of these clumps.
     async fn clear(&self, field: PeriodNumber, view: &FrameView) {
         let picture = self.config.picture(FieldParity::of_field(field));
         let nothing = self.share.nothing();
@@ -371,7 +372,7 @@ impl SlatsProcessor {
                 self.gp.begin(Stage::Render, number, None);
             }
             let sent = self.send(&passes, i == 0 && self.is_alone()).await;
-            // There is no second buffer. The next clump is made in this buffer while the DMA empties the buffer.
+            // A GP has only one clump buffer. The next clump is made in this buffer while the DMA empties the buffer.
             if let Some(ticket) = sent.filter(|_| i < last) {
                 self.gp.draining(ticket).await;
             }
@@ -380,7 +381,8 @@ impl SlatsProcessor {
         Ok(())
     }
 
-    /// Sends a clump to all its regions as one chain of messages. Returns `None` if no region needs a message.
+    /// Sends a clump to all its regions as one chain of messages. If `begin` is true, the messages also clear the
+    /// regions. Returns `None` if no region needs a message.
     async fn send(&self, passes: &[Arc<Pass>; 2], begin: bool) -> Option<Ticket> {
         let envelope = RegionEnvelope { begin, ..RegionEnvelope::default() };
         let lists = self.binding.regions().iter().flat_map(|bound| {

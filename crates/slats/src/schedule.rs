@@ -5,10 +5,11 @@
 pub enum CopySchedule {
     /// Copies all regions before the retrace.
     Whole,
-    /// Copies the top regions before the retrace and the bottom regions right after it (the COPY optimization).
+    /// Copies the top regions before the retrace and the bottom regions right after the retrace (the COPY
+    /// optimization).
     Split,
-    /// Copies top regions, then bottom regions. The regions go into the buffer without the last complete field of the
-    /// same lines.
+    /// Copies top regions, then bottom regions. The regions go into the buffer that does not hold the last complete
+    /// field of the same lines.
     ///
     /// A field is shown at its retrace if its top regions are ready. Otherwise the last complete field is shown again,
     /// and the late field appears at the next retrace of its lines.

@@ -1,8 +1,8 @@
 //! The six methods of clipping the scene to a slice on a swept display, with their near plane, far plane and bin
 //! tolerance.
 
-use crate::error::{SpatialError, require};
 use crate::slice_volume::{SliceVolume, TieRule, WedgePlanes, WedgeTest};
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 /// A method of clipping the scene to the volume of one slice. The slices are arranged around an axis.
@@ -137,14 +137,14 @@ impl SliceClip {
         }
     }
 
-    pub(crate) fn check(self, wedge: HalfWedge) -> Result<(), SpatialError> {
+    pub(crate) fn check(self, wedge: HalfWedge) -> Result<(), SettingError> {
         let (what, value, most) = match self {
             Self::Tapered(q) => ("clip.offset_px", q, wedge.radius * wedge.tan),
             Self::Parallel(q) => ("clip.offset_px", q, wedge.radius),
             Self::Hyperbolic(b) => ("clip.bias_px2", b, wedge.radius * wedge.radius),
             _ => return Ok(()),
         };
-        require((0.0..=most).contains(&value), what, format_args!("0 to {most}"), value)
+        SettingError::require((0.0..=most).contains(&value), what, format_args!("0 to {most}"), value)
     }
 }
 

@@ -2,14 +2,14 @@
 //! display.
 
 use crate::command::{Combine, CommandBuffer, Primitive, Shape};
-use crate::error::{SpatialError, require};
 use glam::{DMat4, DVec3};
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// A vertex, in the coordinates of its object.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Vertex {
+pub struct ColouredVertex {
     /// Position in the object's coordinates. The unit is the pixel if the model-view matrix is the identity.
     pub position: DVec3,
     /// Normal of the surface, of any length. The normal matters only with lighting.
@@ -17,7 +17,7 @@ pub struct Vertex {
     pub colour: [u8; 3],
 }
 
-impl Vertex {
+impl ColouredVertex {
     /// Creates a vertex without a normal.
     #[must_use]
     pub const fn new(position: DVec3, colour: [u8; 3]) -> Self {
@@ -28,7 +28,7 @@ impl Vertex {
 /// A buffer of checked vertices: every position and normal is finite.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VertexBuffer {
-    vertices: Vec<Vertex>,
+    vertices: Vec<ColouredVertex>,
 }
 
 impl VertexBuffer {
@@ -36,12 +36,13 @@ impl VertexBuffer {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::NotFinite`] names the first vertex with a coordinate that is infinite or NaN.
-    pub fn new(vertices: Vec<Vertex>) -> Result<Self, SpatialError> {
+    /// [`SettingError`] names the first vertex with a coordinate that is infinite or NaN.
+    pub fn new(vertices: Vec<ColouredVertex>) -> Result<Self, SettingError> {
         for (index, vertex) in vertices.iter().enumerate() {
             for (what, value) in [("position", vertex.position), ("normal", vertex.normal)] {
                 if !value.is_finite() {
-                    return Err(SpatialError::NotFinite { index, what, found: value.to_string() });
+                    let name = format!("vertex {index}");
+                    return Err(SettingError::scene(&name, format_args!("a finite {what}"), value));
                 }
             }
         }
@@ -79,7 +80,7 @@ pub enum Topology {
 
 /// A directional light that shines on both sides of a surface, because a volume is seen from all sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Light {
+pub struct TwoSidedLight {
     /// Direction towards the light source in world coordinates, of any length except zero.
     pub direction: DVec3,
     /// Fraction of a surface's colour that is visible without light.
@@ -88,10 +89,10 @@ pub struct Light {
     pub diffuse: f64,
 }
 
-/// The drawing state and the current recording of draw calls. [`Context::present`] returns the recording and starts a
-/// new one. The drawing state does not change.
+/// The drawing state and the current recording of draw calls. [`DrawContext::present`] returns the recording and starts
+/// a new one. The drawing state does not change.
 #[derive(Clone, Debug)]
-pub struct Context {
+pub struct DrawContext {
     /// Matrix from object to world coordinates. The matrix must scale uniformly if there is a light.
     pub model_view: DMat4,
     /// Side of the square that represents a point, in pixels of the slice.
@@ -99,13 +100,13 @@ pub struct Context {
     /// Width of lines, in pixels of the image.
     pub line_width: f64,
     /// Light source of the scene. With `None`, colours stay unchanged.
-    pub light: Option<Light>,
+    pub light: Option<TwoSidedLight>,
     /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,
     recording: CommandBuffer,
 }
 
-impl Default for Context {
+impl Default for DrawContext {
     fn default() -> Self {
         Self {
             model_view: DMat4::IDENTITY,
@@ -118,7 +119,7 @@ impl Default for Context {
     }
 }
 
-impl Context {
+impl DrawContext {
     /// Discards the recorded draw calls, and fills every slice with a colour.
     pub fn clear(&mut self, colour: [u8; 3]) {
         self.recording = CommandBuffer { background: colour, ..CommandBuffer::default() };
@@ -128,12 +129,14 @@ impl Context {
     ///
     /// # Errors
     ///
-    /// Returns [`SpatialError::Range`] if the range exceeds the buffer. Returns [`SpatialError::Setting`] if a point
-    /// size or line width is not above zero, or if the matrix is not finite.
-    pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SpatialError> {
+    /// Returns a [`SettingError`] if the range exceeds the buffer, if a point size or line width is not above zero, or if
+    /// the matrix is not finite.
+    pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SettingError> {
         let vertices = buffer.len();
         let Some(run) = buffer.vertices.get(range.clone()) else {
-            return Err(SpatialError::Range { start: range.start, end: range.end, vertices });
+            let Range { start, end } = range;
+            let reason = format_args!("vertices {start}..{end}: expected a range within 0..{vertices}");
+            return Err(SettingError::combination(reason));
         };
         self.check_state(topology)?;
         let first = self.push_vertices(run);
@@ -145,16 +148,17 @@ impl Context {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Index`] names the first index beyond the buffer. All errors of [`Self::draw`] can also occur.
+    /// [`SettingError`] names the first index beyond the buffer. All errors of [`Self::draw`] can also occur.
     pub fn draw_indexed(
         &mut self,
         buffer: &VertexBuffer,
         indices: &[u32],
         topology: Topology,
-    ) -> Result<(), SpatialError> {
+    ) -> Result<(), SettingError> {
         let vertices = buffer.len();
         if let Some(at) = indices.iter().position(|i| *i as usize >= vertices) {
-            return Err(SpatialError::Index { at, vertices, found: indices[at] });
+            let name = format!("index {at}");
+            return Err(SettingError::scene(&name, format_args!("below {vertices}"), indices[at]));
         }
         self.check_state(topology)?;
         let first = self.push_vertices(&buffer.vertices);
@@ -168,17 +172,17 @@ impl Context {
         std::mem::take(&mut self.recording)
     }
 
-    fn check_state(&self, topology: Topology) -> Result<(), SpatialError> {
-        require(self.model_view.is_finite(), "model_view", "a finite matrix", self.model_view)?;
+    fn check_state(&self, topology: Topology) -> Result<(), SettingError> {
+        SettingError::require(self.model_view.is_finite(), "model_view", "a finite matrix", self.model_view)?;
         let (what, size) = match topology {
             Topology::Points => ("point_size", self.point_size),
             Topology::Lines | Topology::LineStrip => ("line_width", self.line_width),
             _ => return Ok(()),
         };
-        require(size.is_finite() && size > 0.0, what, "a finite size above 0 px", size)
+        SettingError::require(size.is_finite() && size > 0.0, what, "a finite size above 0 px", size)
     }
 
-    fn push_vertices(&mut self, vertices: &[Vertex]) -> u32 {
+    fn push_vertices(&mut self, vertices: &[ColouredVertex]) -> u32 {
         let first = self.recording.positions.len() as u32;
         for vertex in vertices {
             let world = self.model_view.transform_point3(vertex.position);
@@ -188,7 +192,7 @@ impl Context {
         first
     }
 
-    fn lit(&self, vertex: &Vertex) -> [f64; 3] {
+    fn lit(&self, vertex: &ColouredVertex) -> [f64; 3] {
         let colour = vertex.colour.map(f64::from);
         let Some(light) = &self.light else { return colour };
         let normal = self.model_view.transform_vector3(vertex.normal).normalize_or_zero();

@@ -1,7 +1,7 @@
 //! Halftoning from eight bits to one bit per channel: ordered dither with Bayer's matrix, eight pixels of a row at a
 //! time.
 
-use crate::error::{SpatialError, require};
+use pxpl5_sim::parameters::SettingError;
 
 /// Thresholds of an ordered dither, the same for all channels and slices.
 ///
@@ -20,9 +20,9 @@ impl Halftone {
     ///
     /// # Errors
     ///
-    /// Returns [`SpatialError::Setting`] unless the size is 2, 4, 8 or 16.
-    pub fn bayer(size: u32) -> Result<Self, SpatialError> {
-        require([2, 4, 8, 16].contains(&size), "halftone.matrix", "2, 4, 8 or 16", size)?;
+    /// Returns a [`SettingError`] unless the size is 2, 4, 8 or 16.
+    pub fn bayer(size: u32) -> Result<Self, SettingError> {
+        SettingError::require([2, 4, 8, 16].contains(&size), "halftone.matrix", "2, 4, 8 or 16", size)?;
         // Repeat small matrices, so that eight thresholds can always be read at once.
         let period = size.max(8);
         let threshold = |i: u32, j: u32| ((2 * bayer(size, i % size, j % size) + 1) * 255 / (2 * size * size)) as u8;

@@ -2,7 +2,7 @@
 //! display.
 //!
 //! ```text
-//!  Context --present()--> CommandBuffer            (vertices transformed and lit once)
+//!  DrawContext --present()--> CommandBuffer            (vertices transformed and lit once)
 //!                              |
 //!   SpatialDisplay --bins()--> bin  ------------>  which primitives each group of slices draws
 //!        |                     |
@@ -56,7 +56,6 @@ mod command;
 mod context;
 mod curve;
 mod displays;
-mod error;
 mod frame;
 mod halftone;
 mod image;
@@ -81,9 +80,8 @@ pub use angle::sin_cos_of_turn;
 pub use bin::{BinLayout, BinRegion, BinTolerance, Binning};
 pub use clip::{DEFAULT_HYPERBOLIC_BIAS_PX2, DEFAULT_OFFSET_PX, HalfWedge, SliceClip};
 pub use command::{Combine, CommandBuffer, CommandTriangle};
-pub use context::{Context, Light, Topology, Vertex, VertexBuffer};
+pub use context::{ColouredVertex, DrawContext, Topology, TwoSidedLight, VertexBuffer};
 pub use displays::{FlatDisplay, PlaneStack, Rotation, SweptConfig, SweptDisplay};
-pub use error::SpatialError;
 pub use frame::{BitPlanes, ColourSample, VolumeFrame};
 pub use halftone::Halftone;
 pub use image::SliceImage;

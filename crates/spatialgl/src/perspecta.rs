@@ -34,14 +34,12 @@
 //! The SpatialGL paper (ASI-0110, 2005). Favalora et al. 2001 (SPIE 4297) and Chun et al. 2005 (SPIE 5664) for presets.
 
 mod display;
-mod error;
 pub mod figures;
 mod protocol;
 mod store;
 mod timing;
 mod viewer;
 
-pub use error::PerspectaError;
 pub use protocol::{BatchMessages, TileMessage, batch_messages, volume_messages};
 pub use timing::PerspectaConfig;
-pub use viewer::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
+pub use viewer::{Camera, PictureLight, ViewOptions, film, view_planes, view_undithered};

@@ -1,9 +1,9 @@
 //! Projections from the coordinates of a slice to its image. No projection moves the points of the slice itself (s =
 //! 0).
 
-use crate::error::{SpatialError, require};
 use glam::{DMat4, DVec4};
 use pxpl5_sim::mix;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 /// The size of an image: width, then height, in pixels.
@@ -83,15 +83,20 @@ impl Projection {
         }
     }
 
-    pub(crate) fn check(&self, radius: f64, reach: f64) -> Result<(), SpatialError> {
+    pub(crate) fn check(&self, radius: f64, reach: f64) -> Result<(), SettingError> {
         let (distance, others) = match *self {
             Self::Orthographic => return Ok(()),
             Self::Perspective { eye: [u, v], distance, shear: [x, y] } => (distance, [u, v, x, y]),
             Self::Jittered(j) => (j.eye_distance * radius, [j.eye_radius, j.shear_px, 0.0, 0.0]),
         };
-        require(others.iter().all(|x| x.is_finite()), "projection", "finite numbers", format_args!("{others:?}"))?;
+        SettingError::require(
+            others.iter().all(|x| x.is_finite()),
+            "projection",
+            "finite numbers",
+            format_args!("{others:?}"),
+        )?;
         let expected = format_args!("more than {reach} px, where the far plane is").to_string();
-        require(distance.is_finite() && distance > reach, "jitter.eye_distance", expected, distance)
+        SettingError::require(distance.is_finite() && distance > reach, "jitter.eye_distance", expected, distance)
     }
 }
 

@@ -3,7 +3,6 @@
 
 use crate::bin::{BinTolerance, Binning};
 use crate::command::CommandBuffer;
-use crate::error::SpatialError;
 use crate::frame::{BitPlanes, ColourSample, VolumeFrame, words_of_slice};
 use crate::halftone::{Halftone, bits_above};
 use crate::image::SliceImage;
@@ -15,6 +14,7 @@ use crate::tile::{TileGrid, Tiling};
 use crate::view::{SliceView, SpatialDisplay};
 use crate::workers::{Task, Workers};
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -88,14 +88,14 @@ impl VolumeConfig {
 ///
 /// # Errors
 ///
-/// Returns [`SpatialError::Setting`] if the size of tiles or batches is invalid.
+/// Returns a [`SettingError`] if the size of tiles or batches is invalid.
 pub fn render_volume(
     display: &dyn SpatialDisplay,
     commands: &CommandBuffer,
     config: &VolumeConfig,
     renderer: &dyn SliceRenderer,
     workers: &dyn Workers,
-) -> Result<VolumeFrame, SpatialError> {
+) -> Result<VolumeFrame, SettingError> {
     config.tiling.check()?;
     let size = display.target_size();
     let shown = display.views().len();

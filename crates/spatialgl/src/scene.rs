@@ -2,10 +2,10 @@
 //! spheres become triangles.
 
 use crate::command::CommandBuffer;
-use crate::context::{Context, Light, Topology, Vertex, VertexBuffer};
-use crate::error::SpatialError;
+use crate::context::{ColouredVertex, DrawContext, Topology, TwoSidedLight, VertexBuffer};
 use glam::{DMat4, DVec3};
 use pxpl5_scene::{Scene, Sphere};
+use pxpl5_sim::parameters::SettingError;
 
 /// Number of facets of a sphere from pole to pole. There are twice as many facets around the sphere.
 const SPHERE_ROWS: u32 = 12;
@@ -19,16 +19,16 @@ pub const SCENE_REACH: f64 = 0.9;
 ///
 /// # Errors
 ///
-/// Returns [`SpatialError`] if the scene has vertices that a recording cannot hold.
-pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuffer, SpatialError> {
+/// Returns a [`SettingError`] if the scene has vertices that a recording cannot hold.
+pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuffer, SettingError> {
     let (centre, reach) = scene.bounding_sphere();
     // A scene of a single point is not scaled.
     let scale = if reach > 0.0 { SCENE_REACH * radius / f64::from(reach) } else { 1.0 };
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.model_view = DMat4::from_scale(DVec3::splat(scale)) * DMat4::from_translation(-centre.as_dvec3());
     if lit {
         let lighting = scene.lighting();
-        context.light = Some(Light {
+        context.light = Some(TwoSidedLight {
             direction: lighting.towards_light.as_dvec3(),
             ambient: f64::from(lighting.ambient),
             diffuse: f64::from(lighting.diffuse),
@@ -41,8 +41,8 @@ pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuff
     Ok(context.present())
 }
 
-fn draw_triangles(context: &mut Context, scene: &Scene) -> Result<(), SpatialError> {
-    let vertices = scene.vertices().iter().map(|v| Vertex {
+fn draw_triangles(context: &mut DrawContext, scene: &Scene) -> Result<(), SettingError> {
+    let vertices = scene.vertices().iter().map(|v| ColouredVertex {
         position: v.position.as_dvec3(),
         normal: v.normal.as_dvec3(),
         colour: v.colour,
@@ -51,7 +51,7 @@ fn draw_triangles(context: &mut Context, scene: &Scene) -> Result<(), SpatialErr
     context.draw_indexed(&buffer, scene.triangles().as_flattened(), Topology::Triangles)
 }
 
-fn draw_sphere(context: &mut Context, sphere: &Sphere) -> Result<(), SpatialError> {
+fn draw_sphere(context: &mut DrawContext, sphere: &Sphere) -> Result<(), SettingError> {
     let (vertices, indices) =
         tessellated_sphere(sphere.centre.as_dvec3(), f64::from(sphere.radius), SPHERE_ROWS, sphere.colour);
     context.draw_indexed(&VertexBuffer::new(vertices)?, &indices, Topology::Triangles)
@@ -60,7 +60,7 @@ fn draw_sphere(context: &mut Context, sphere: &Sphere) -> Result<(), SpatialErro
 /// Returns vertices and triangle indices of a sphere with `rows` x `2 rows` facets. Vertex (a, b) has the polar angle
 /// pi a / rows from +y, and the azimuth pi b / rows from +x to +z.
 #[must_use]
-pub fn tessellated_sphere(centre: DVec3, radius: f64, rows: u32, colour: [u8; 3]) -> (Vec<Vertex>, Vec<u32>) {
+pub fn tessellated_sphere(centre: DVec3, radius: f64, rows: u32, colour: [u8; 3]) -> (Vec<ColouredVertex>, Vec<u32>) {
     let columns = 2 * rows;
     let mut vertices = Vec::new();
     for a in 0..=rows {
@@ -68,7 +68,7 @@ pub fn tessellated_sphere(centre: DVec3, radius: f64, rows: u32, colour: [u8; 3]
         for b in 0..columns {
             let (across, along) = crate::angle::sin_cos_of_turn(i64::from(b), columns);
             let normal = DVec3::new(sin * along, cos, sin * across);
-            vertices.push(Vertex { position: centre + radius * normal, normal, colour });
+            vertices.push(ColouredVertex { position: centre + radius * normal, normal, colour });
         }
     }
     // Each facet is two triangles, but only one at the poles.

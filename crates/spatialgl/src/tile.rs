@@ -1,8 +1,8 @@
 //! Tiles of slices, and the queries that find the occupied tiles.
 
-use crate::error::{SpatialError, require};
 use crate::image::SliceImage;
 use crate::projection::Size;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 /// The division of slice images into tiles, and the number of slices per query.
@@ -27,13 +27,13 @@ impl Tiling {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] names the number, the expected range and the value found.
-    pub fn check(self) -> Result<(), SpatialError> {
+    /// [`SettingError`] names the number, the expected range and the value found.
+    pub fn check(self) -> Result<(), SettingError> {
         if let Some(tile) = self.tile {
-            require((8..=4096).contains(&tile), "tile.size", "8 to 4096", tile)?;
-            require(tile.is_multiple_of(8), "tile.size", "a multiple of 8", tile)?;
+            SettingError::require((8..=4096).contains(&tile), "tile.size", "8 to 4096", tile)?;
+            SettingError::require(tile.is_multiple_of(8), "tile.size", "a multiple of 8", tile)?;
         }
-        require(self.batch >= 1, "tile.batch", "1 or more", self.batch)
+        SettingError::require(self.batch >= 1, "tile.batch", "1 or more", self.batch)
     }
 
     /// Returns the grid of tiles of an image. Without tiles, the grid has one tile that covers the whole image.

@@ -2,7 +2,7 @@
 
 use crate::projection::Size;
 use crate::stats::VolumeStats;
-use pxpl5_sim::parameters::{ParameterError, ParameterTable};
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use serde::Serialize;
 
 pxpl5_sim::parameters::parameter_table! {
@@ -87,8 +87,8 @@ impl TimeModel {
     ///
     /// # Errors
     ///
-    /// Returns [`ParameterError::OutOfLimits`] for the first number that the model cannot use.
-    pub fn new(timing: GpuTiming) -> Result<Self, ParameterError> {
+    /// Returns [`SettingError`] for the first number that the model cannot use.
+    pub fn new(timing: GpuTiming) -> Result<Self, SettingError> {
         ParameterTable::check(&timing)?;
         Ok(Self { timing })
     }

@@ -10,7 +10,7 @@ use support::*;
 /// Returns a recording of the sphere of section 6: 24 x 48 facets, r = 300.
 fn sphere() -> CommandBuffer {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 24, [255; 3]);
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.draw_indexed(&VertexBuffer::new(vertices).expect("finite"), &indices, Topology::Triangles).expect("valid");
     context.present()
 }
@@ -55,7 +55,7 @@ fn case_28_connected_surfaces_of_a_sphere() {
 #[test]
 fn jitter_makes_gaps_of_neighbouring_slices_unlike() {
     let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 198, [255; 3]);
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.draw_indexed(&VertexBuffer::new(vertices).expect("finite"), &indices, Topology::Triangles).expect("valid");
     let commands = context.present();
     let likeness = |projection| {
@@ -87,14 +87,14 @@ fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {
 fn a_flat_screen_hides_what_is_behind() {
     let square = |z: f64, size: f64, colour: [u8; 3]| {
         [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
-            .map(|[x, y]| Vertex::new(DVec3::new(x * size, y * size, z), colour))
+            .map(|[x, y]| ColouredVertex::new(DVec3::new(x * size, y * size, z), colour))
     };
     let near = square(10.0, 20.0, [255, 0, 0]);
     let far = square(-10.0, 60.0, [0, 0, 255]);
     let display = FlatDisplay::around([128, 128], 0.0, 0.0, 400.0, 400.0).expect("valid");
     for order in [[near, far], [far, near]] {
         let buffer = VertexBuffer::new(order.as_flattened().to_vec()).expect("finite");
-        let mut context = Context::default();
+        let mut context = DrawContext::default();
         context.draw(&buffer, 0..12, Topology::Triangles).expect("valid");
         let frame = both(&display, &context.present(), &VolumeConfig::paper());
         let colours = [(64, 64), (64 + 15, 64 - 15), (64 + 40, 64), (64, 3)].map(|(x, y)| frame.planes.pixel(0, x, y));

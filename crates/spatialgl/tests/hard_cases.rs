@@ -116,15 +116,15 @@ fn any_phase_and_either_direction_partition_space() {
 #[test]
 fn an_empty_recording_is_a_dark_volume() {
     let display = swept(SliceClip::Hyperbolic(0.25), ORTHOGRAPHIC);
-    let frame = volume(&display, &Context::default().present(), &VolumeConfig::paper());
+    let frame = volume(&display, &DrawContext::default().present(), &VolumeConfig::paper());
     assert_eq!((frame.planes.lit_voxels(), frame.stats.tiles_occupied, frame.stats.slices_empty), (0, 0, 396));
     assert_eq!(frame.stats.bytes_sent, 99 * 72, "the bitmaps alone");
 }
 
 #[test]
 fn a_cleared_colour_fills_every_slice() {
-    let mut context = Context::default();
-    let buffer = VertexBuffer::new(vec![Vertex::new(DVec3::ZERO, [9; 3])]).expect("finite");
+    let mut context = DrawContext::default();
+    let buffer = VertexBuffer::new(vec![ColouredVertex::new(DVec3::ZERO, [9; 3])]).expect("finite");
     context.draw(&buffer, 0..1, Topology::Points).expect("valid");
     context.clear([255, 0, 255]);
     let commands = context.present();
@@ -146,8 +146,8 @@ fn lit_of(frame: &VolumeFrame) -> u64 {
 #[test]
 fn lines_and_points_have_their_size_on_the_slice() {
     let draw = |a: DVec3, b: DVec3, width: f64| {
-        let buffer = VertexBuffer::new([a, b].map(|p| Vertex::new(p, [255; 3])).to_vec()).expect("finite");
-        let mut context = Context::default();
+        let buffer = VertexBuffer::new([a, b].map(|p| ColouredVertex::new(p, [255; 3])).to_vec()).expect("finite");
+        let mut context = DrawContext::default();
         context.line_width = width;
         context.draw(&buffer, 0..2, Topology::Lines).expect("valid");
         let frame =
@@ -160,8 +160,8 @@ fn lines_and_points_have_their_size_on_the_slice() {
     assert!((dot - disc * 3.0 / std::f64::consts::PI).abs() < 20.0, "{dot}");
     let bar = draw(DVec3::new(100.0, 7.0, 0.0), DVec3::new(200.0, 7.0, 0.0), 20.0);
     assert!((bar - 2_000.0 - disc * 3.0 / std::f64::consts::PI).abs() < 40.0, "{bar}");
-    let buffer = VertexBuffer::new(vec![Vertex::new(DVec3::new(100.2, 7.3, 0.0), [255; 3])]).expect("finite");
-    let mut context = Context::default();
+    let buffer = VertexBuffer::new(vec![ColouredVertex::new(DVec3::new(100.2, 7.3, 0.0), [255; 3])]).expect("finite");
+    let mut context = DrawContext::default();
     context.point_size = 9.0;
     context.draw(&buffer, 0..1, Topology::Points).expect("valid");
     let frame = both(&swept(SliceClip::Hyperbolic(0.25), ORTHOGRAPHIC), &context.present(), &VolumeConfig::plain());
@@ -170,10 +170,11 @@ fn lines_and_points_have_their_size_on_the_slice() {
 
 #[test]
 fn strips_and_fans_make_the_triangles_of_gl() {
-    let corners: Vec<Vertex> = (0..5).map(|i| Vertex::new(DVec3::new(f64::from(i), 0.0, 0.0), [255; 3])).collect();
+    let corners: Vec<ColouredVertex> =
+        (0..5).map(|i| ColouredVertex::new(DVec3::new(f64::from(i), 0.0, 0.0), [255; 3])).collect();
     let buffer = VertexBuffer::new(corners).expect("finite");
     let firsts = |topology| {
-        let mut context = Context::default();
+        let mut context = DrawContext::default();
         context.draw(&buffer, 0..5, topology).expect("valid");
         let commands = context.present();
         let triangles =
@@ -228,11 +229,12 @@ fn settings_that_no_display_has_are_named() {
 
 #[test]
 fn vertices_and_indices_that_cannot_be_drawn_are_named() {
-    let bad = vec![Vertex::new(DVec3::ONE, [0; 3]), Vertex::new(DVec3::new(0.0, f64::NAN, 1.0), [0; 3])];
+    let bad =
+        vec![ColouredVertex::new(DVec3::ONE, [0; 3]), ColouredVertex::new(DVec3::new(0.0, f64::NAN, 1.0), [0; 3])];
     let error = VertexBuffer::new(bad).expect_err("not finite").to_string();
     assert!(error.starts_with("vertex 1: expected a finite position, found"), "{error}");
-    let buffer = VertexBuffer::new(vec![Vertex::new(DVec3::ONE, [0; 3]); 3]).expect("finite");
-    let mut context = Context::default();
+    let buffer = VertexBuffer::new(vec![ColouredVertex::new(DVec3::ONE, [0; 3]); 3]).expect("finite");
+    let mut context = DrawContext::default();
     let error = context.draw_indexed(&buffer, &[0, 1, 3], Topology::Triangles).expect_err("3 of 3");
     assert_eq!(error.to_string(), "index 2: expected below 3, found 3");
     let error = context.draw(&buffer, 1..4, Topology::Triangles).expect_err("beyond");

@@ -41,13 +41,13 @@ fn clips() -> impl Strategy<Value = SliceClip> {
 /// Returns recorded commands for triangles of different colours, some drawn as lines or points. `combine` is the rule
 /// for several fragments on one pixel.
 fn mixed(triangles: &[Triangle], combine: Combine) -> CommandBuffer {
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.combine = combine;
     context.line_width = 2.5;
     context.point_size = 3.5;
     for (i, triangle) in triangles.iter().enumerate() {
         let colour = |corner: usize| [(i * 53 + corner * 90) as u8, (i * 31) as u8, 255 - (i * 17) as u8];
-        let vertices = (0..3).map(|k| Vertex::new(DVec3::from_array(triangle[k]), colour(k))).collect();
+        let vertices = (0..3).map(|k| ColouredVertex::new(DVec3::from_array(triangle[k]), colour(k))).collect();
         let buffer = VertexBuffer::new(vertices).expect("finite");
         let topology = [Topology::Triangles, Topology::Triangles, Topology::LineStrip, Topology::Points][i % 4];
         context.draw(&buffer, 0..3, topology).expect("valid");

@@ -68,9 +68,9 @@ fn both_rasterisers_take_the_same_samples() {
 /// Checks that the width of a line stays the same: the numbers of lit pixels differ by at most one on each side.
 #[test]
 fn a_line_keeps_its_width() {
-    let ends = [[20.0, -50.0, 0.0], [20.0, 50.0, 0.0]].map(|p| Vertex::new(p.into(), [255; 3]));
+    let ends = [[20.0, -50.0, 0.0], [20.0, 50.0, 0.0]].map(|p| ColouredVertex::new(p.into(), [255; 3]));
     let buffer = VertexBuffer::new(ends.to_vec()).expect("finite");
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.line_width = 6.0;
     context.draw(&buffer, 0..2, Topology::Lines).expect("valid");
     let commands = context.present();

@@ -3,7 +3,8 @@
 
 use image::RgbImage;
 use pxpl5_scene::builtin;
-use spatialgl::perspecta::{Camera, PerspectaConfig, PerspectaError, ViewOptions, film, view_planes, view_undithered};
+use pxpl5_sim::parameters::SettingError;
+use spatialgl::perspecta::{Camera, PerspectaConfig, ViewOptions, film, view_planes, view_undithered};
 use spatialgl::{
     BitPlanes, HostRenderer, Jitter, OneThread, Projection, Rotation, SliceClip, Strobes, Threads, VolumeConfig,
     VolumeFrame, record_scene, render_volume, sin_cos_of_turn,
@@ -155,7 +156,7 @@ fn halftoned_and_undithered_light_agree() {
 fn a_film_turns_around_the_volume() {
     let planes = mig(Strobes::Mirror).planes;
     let camera = Camera::around(384.0, 0.0, 15.0, 96);
-    let turn: Result<Vec<RgbImage>, PerspectaError> = film(&planes, camera, PLAIN, 4, &OneThread).collect();
+    let turn: Result<Vec<RgbImage>, SettingError> = film(&planes, camera, PLAIN, 4, &OneThread).collect();
     let turn = turn.expect("valid");
     let exposure = view_planes(&planes, &camera, PLAIN, &OneThread).expect("valid").exposure(0.98);
     let quarter = Camera { azimuth_deg: 90.0, ..camera };

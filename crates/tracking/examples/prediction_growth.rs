@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         };
         let model = TrackerModel::new(tracker)?;
         let motion = Synthetic::recorded_use(JUDGED);
-        let mean = |config: &PredictorConfig, interval: u64| -> Result<f64, tracking::SettingError> {
+        let mean = |config: &PredictorConfig, interval: u64| -> Result<f64, pxpl5_sim::parameters::SettingError> {
             let span = (PS_PER_S, 300 * PS_PER_S);
             Ok(prediction_errors(&motion, &model, config, JUDGED, &[interval], span)?[0].mean_deg)
         };

@@ -54,7 +54,7 @@ impl Tables {
         gate: Gate::PAPERS,
     };
 
-    /// Returns every table with its name.
+    /// Returns every parameter table with the name of the table.
     pub fn all(&self) -> [(&'static str, &dyn ParameterTable); 8] {
         [
             ("fastrak", &self.fastrak),
@@ -84,8 +84,8 @@ impl Tables {
     }
 }
 
-/// Tables of fixed facts with their names: head speeds, the pendulum rig that measures latency, NTSC video, and the
-/// picture size of the head-mounted display. An experiment cannot change these numbers.
+/// Tables of numbers that an experiment cannot change, with the names of the tables. The tables have head speeds, the
+/// pendulum rig that measures latency, NTSC video, and the picture size of the head-mounted display.
 pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
     ("head", &HeadSpeeds::PAPERS),
     ("rig", &RigNumbers::PAPERS),
@@ -98,13 +98,14 @@ parameter_table! {
     pub struct Fastrak {
         /// Measurement rate of the Fastrak, shared by all receivers.
         rate: 120, "Hz", Published, 120..=120 in 1..=10000, "PF";
-        /// Time from the Fastrak's sync signal to the first character on its line.
+        /// Time from the Fastrak's sync signal to the first character on the serial cable.
         sync_to_output: f64 = 5.5, "ms", Published, 5.5..=5.5 in 0.0..=10000.0, "PF";
-        /// Effective latency of the Fastrak, from the middle of the measurement to the first character.
+        /// Effective latency of the Fastrak, from the middle of the measurement to the first character on the serial
+        /// cable.
         latency: f64 = 3.75, "ms", Published, 3.75..=5.5 in 0.0..=10000.0, "PF";
         /// Length of an ASCII record of the Fastrak.
         record: 47, "bytes", Published, 8..=200 in 1..=1000, "PF";
-        /// Serial line rate of the Fastrak.
+        /// Rate of the Fastrak's serial cable.
         baud: 115200, "baud", Published, 300..=115200 in 300..=1000000, "PF";
         /// Gain a of the Fastrak's low-pass filter, which replaces its output x' by a x + (1 - a) x' at each
         /// measurement x. The filter adds a delay of dt (1 - a) / a, where dt is the time between measurements. A gain
@@ -114,11 +115,11 @@ parameter_table! {
         position_noise: f64 = 0.2, "mm", Assumed, 0.0..=0.8 in 0.0..=10000.0, "PF gives no value; assumed below the tracker's static accuracy";
         /// Random orientation error of the Fastrak that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.03, "deg", Assumed, 0.0..=0.15 in 0.0..=90.0, "PF gives no value; assumed below the tracker's static accuracy";
-        /// Constant position error of the Fastrak, the same in every report of a run. The value is the rms along each
-        /// axis over all seeds.
+        /// Constant position error of the Fastrak, the same in every report of a run. The value is the root mean square
+        /// of this error along each axis, over all seeds.
         position_bias: f64 = 0.8, "mm", Published, 0.0..=2.0 in 0.0..=10000.0, "PF";
-        /// Constant orientation error of the Fastrak, the same in every report of a run. The value is the rms about
-        /// each axis over all seeds.
+        /// Constant orientation error of the Fastrak, the same in every report of a run. The value is the root mean
+        /// square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.15, "deg", Published, 0.0..=0.5 in 0.0..=90.0, "PF";
     }
 }
@@ -136,11 +137,11 @@ parameter_table! {
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "none published: less than the static accuracy";
         /// Random orientation error of the Flock of Birds that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "none published: less than the static accuracy";
-        /// Constant position error of the Flock of Birds, the same in every report of a run. The value is the rms along
-        /// each axis over all seeds.
+        /// Constant position error of the Flock of Birds, the same in every report of a run. The value is the root mean
+        /// square of this error along each axis, over all seeds.
         position_bias: f64 = 2.5, "mm", Published, 0.0..=5.0 in 0.0..=10000.0, "Ascension data sheet";
-        /// Constant orientation error of the Flock of Birds, the same in every report of a run. The value is the rms
-        /// about each axis over all seeds.
+        /// Constant orientation error of the Flock of Birds, the same in every report of a run. The value is the root
+        /// mean square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.5, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "Ascension data sheet";
         /// Time from the first report of a Flock of Birds until a host with a patched kernel crashes.
         crash: f64 = 1000.0, "ms", Assumed, 0.0..=600000.0, "TR94 says that it crashes, not when";
@@ -159,10 +160,10 @@ parameter_table! {
         /// Random orientation error of the optical ceiling tracker that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.15, "deg", Assumed, 0.06..=0.2 in 0.0..=90.0, "at most WARD92's resolution of 0.2 deg, at least 0.2/sqrt(12); with 0.1 to 0.15 prediction cuts the error 2 to 3 times below 80 ms, as A95 measured on this tracker";
         /// Constant position error of the optical ceiling tracker, the same in every report of a run. The value is the
-        /// rms along each axis over all seeds.
+        /// root mean square of this error along each axis, over all seeds.
         position_bias: f64 = 0.0, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "WARD92 gives none; 0 for a calibrated ceiling";
         /// Constant orientation error of the optical ceiling tracker, the same in every report of a run. The value is
-        /// the rms about each axis over all seeds.
+        /// the root mean square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.0, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "WARD92 gives none; 0 for a calibrated ceiling";
     }
 }
@@ -178,11 +179,11 @@ parameter_table! {
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "as the Flock";
         /// Random orientation error of the 3Space that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "as the Flock";
-        /// Constant position error of the 3Space, the same in every report of a run. The value is the rms along each
-        /// axis over all seeds.
+        /// Constant position error of the 3Space, the same in every report of a run. The value is the root mean square
+        /// of this error along each axis, over all seeds.
         position_bias: f64 = 2.5, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "as the Flock";
-        /// Constant orientation error of the 3Space, the same in every report of a run. The value is the rms about each
-        /// axis over all seeds.
+        /// Constant orientation error of the 3Space, the same in every report of a run. The value is the root mean
+        /// square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
         /// Depth of the position error by metal, at 1 m from the transmitter. Metal bends a measured plane into a bowl.
         bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
@@ -203,9 +204,9 @@ parameter_table! {
 parameter_table! {
     /// The host's serial port, through which a report reaches the program.
     pub struct HostPort {
-        /// Bits on the serial line for each byte: start bit, 8 data bits, stop bit.
+        /// Bits on the serial cable for each byte: start bit, 8 data bits, stop bit.
         byte_bits: 10, "bits", Derived, 10..=11 in 1..=100, "47 x 10 / 115200 = 4.08 ms and / 9600 = 49 ms, the times of PF";
-        /// Interval at which the host's kernel polls the serial line.
+        /// Interval at which the host's kernel polls the serial port.
         poll: f64 = 30.0, "ms", Published, 1.0..=100.0 in 0.001..=10000.0, "TR94";
     }
 }
@@ -306,13 +307,14 @@ parameter_table! {
         speed: f64 = 8.0, "m/s", Assumed, 1.0..=100.0, "20 times the mean of recorded traces";
         /// Fastest turn of the head that a predictor accepts. A report that implies a faster turn is rejected.
         turn: f64 = 1000.0, "deg/s", Assumed, 370.0..=10000.0, "2.7 times the peak of LIST83";
-        /// Distance between two successive reported positions that noise alone can cause. The test of the speed ignores
-        /// this distance.
+        /// Distance between two successive reported positions that noise alone can cause. This distance is subtracted
+        /// before the speed is compared with the limit `speed`.
         distance: f64 = 30.0, "mm", Assumed, 1.0..=1000.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Angle between two successive reported orientations that noise alone can cause. The test of the turn ignores
-        /// this angle.
+        /// Angle between two successive reported orientations that noise alone can cause. This angle is subtracted
+        /// before the turn is compared with the limit `turn`.
         angle: f64 = 6.0, "deg", Assumed, 0.1..=90.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Number of successive rejected jumps after which a predictor accepts the new position.
+        /// Number of successive reports, rejected because of a jump of the pose, after which a predictor accepts the
+        /// new pose.
         patience: 5, "reports", Assumed, 1..=100, "42 ms at 120 Hz";
         /// Time without reports after which a filter restarts with unknown velocities.
         gap: f64 = 250.0, "ms", Assumed, 10.0..=10000.0, "30 reports at 120 Hz; longer than any planned prediction";

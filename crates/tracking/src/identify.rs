@@ -5,7 +5,7 @@ use pxpl5_sim::parameters::{Entry, ParameterTable};
 use crate::config::HostPort;
 use crate::identity::{SettingSink, write_vector};
 use crate::predict::PredictorConfig;
-use crate::tracker::{HostLine, MagneticDistortion, SerialLine, TrackerConfig, TrackerFault};
+use crate::tracker::{MagneticDistortion, SerialLine, SerialRead, TrackerConfig, TrackerFault};
 
 impl TrackerConfig {
     /// Writes every setting of the tracker to `settings`, each as a key and a value.
@@ -49,8 +49,8 @@ impl TrackerConfig {
             }
         }
         match host {
-            HostLine::Polled { period_ps } => settings("tracker.host.polled_ps", period_ps),
-            HostLine::InterruptPerCharacter => settings("tracker.host", &"interrupt-per-character"),
+            SerialRead::Polled { period_ps } => settings("tracker.host.polled_ps", period_ps),
+            SerialRead::InterruptPerCharacter => settings("tracker.host", &"interrupt-per-character"),
         }
         if let Some(after_ps) = crashes_patched_host_after_ps {
             settings("tracker.crashes_patched_host_after_ps", after_ps);
@@ -116,8 +116,8 @@ impl PredictorConfig {
     }
 }
 
-/// Writes a number only if it differs from the papers' value. Thus an experiment with the papers' values keeps the name
-/// that it had before the number became a setting.
+/// Writes the value of a parameter only if the value differs from the papers' value. Thus an experiment with the
+/// papers' values keeps the name that it had before the parameter became a setting.
 fn write_unusual(settings: &mut SettingSink, of: &str, entry: &Entry) {
     if entry.value != entry.info.papers {
         settings(&format!("{of}.{}", entry.info.name), &entry.value);

@@ -1,8 +1,8 @@
 //! Lists the settings of motions, trackers and predictors as keys and values. The names of experiments derive from
 //! these texts. Renaming a type or a field must therefore not change a text.
 //!
-//! [`Display`] formats every number; for an `f64` this is the shortest text that parses to the same number. The
-//! functions destructure each struct, so code that forgets a new field does not compile.
+//! [`Display`] formats every number. The text of an `f64` is the shortest text that parses to the same number. The
+//! functions destructure each struct, so that code without a newly added field does not compile.
 
 use core::fmt::Display;
 

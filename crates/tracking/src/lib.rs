@@ -45,7 +45,7 @@
 //! }
 //! let shown_ps = 1_050_000_000_000;
 //! assert!(predictor.predict(shown_ps).is_finite());
-//! # Ok::<(), tracking::SettingError>(())
+//! # Ok::<(), pxpl5_sim::parameters::SettingError>(())
 //! ```
 //!
 //! # Not modelled
@@ -66,8 +66,8 @@
 //!
 //! [`config`] lists the sources of all numbers. Prediction is by Azuma and Bishop 1995, just-in-time pixels by Mine and
 //! Bishop, UNC TR93-005. The raster offset is by Breglia 1981, and frameless rendering by Bishop, Fuchs, McMillan and
-//! Scher Zagier 1994. The rig is by Cohen and Olano, UNC TR94-028. Elliptic functions follow Abramowitz and Stegun,
-//! chapters 16 and 17.
+//! Scher Zagier 1994. The pendulum rig is by Cohen and Olano, UNC TR94-028. Elliptic functions follow Abramowitz and
+//! Stegun, chapters 16 and 17.
 
 #![warn(missing_docs)]
 
@@ -85,7 +85,6 @@ pub mod time;
 pub mod tracker;
 pub mod view;
 
-pub use error::SettingError;
 pub use identity::SettingSink;
 pub use pose::Pose;
 

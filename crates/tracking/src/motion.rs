@@ -14,10 +14,10 @@ mod synthetic;
 mod walk;
 
 pub use from_fn::{FnMotion, from_fn};
-pub use growing::{GrowingRecording, GrowthError};
+pub use growing::GrowingRecording;
 pub use pan::Pan;
 pub use pendulum::Pendulum;
-pub use recording::{Axes, Columns, End, Recording, RecordingError, RecordingFormat};
+pub use recording::{Axes, Columns, End, Recording, RecordingFormat};
 pub use shifted::AdvancedMotion;
 pub use sinusoid::Sinusoid;
 pub use slide::Slide;
@@ -42,8 +42,8 @@ const HALF_STEP_PS: u64 = 50_000_000;
 const SAMPLE_PS: u64 = PS_PER_S / 8;
 const SAMPLES: u64 = 512;
 
-/// The motion of a head as a pure function of simulated time. The pendulum of the latency rig, which carries a tracker,
-/// is described in the same way.
+/// The motion of a head as a pure function of simulated time. The trait also describes the pendulum of the latency rig,
+/// because this pendulum carries a tracker.
 pub trait Motion: Debug {
     /// Returns the pose of the head in the world at `t_ps` (ps of simulated time).
     fn pose(&self, t_ps: u64) -> Pose;
@@ -155,7 +155,7 @@ macro_rules! forward {
 
 forward!(&M, Box<M>, Arc<M>);
 
-/// Compares the motion's velocity and angular velocity with differences of its poses.
+/// Compares the motion's velocity and angular velocity with differences of the motion's poses, for tests of a motion.
 #[cfg(test)]
 fn assert_rates_agree_with_poses(motion: &impl Motion, t_ps: u64, tolerance: f64) {
     #[derive(Debug)]

@@ -13,7 +13,7 @@ mod predicting;
 mod tune;
 
 pub use config::{PredictorConfig, PredictorKind, Start};
-pub use evaluate::{PredictionError, prediction_errors};
+pub use evaluate::{PredictionDeviation, prediction_errors};
 pub use exact::ExactPredictor;
 pub use gate::ReportCounts;
 pub use tune::{Training, Tuned, training_seed, tune};
@@ -26,9 +26,9 @@ pub trait Predictor: Send {
     /// Adds a report, in order of arrival. An impossible report is rejected and counted, but causes no error.
     fn observe(&mut self, report: &TrackerReport);
 
-    /// Returns the predicted pose at `at_ps`. Before the first accepted report the result is [`Pose::IDENTITY`]. If
-    /// `at_ps` is later than the last report by more than the longest prediction of the settings, the result is the
-    /// last pose.
+    /// Returns the predicted pose at `at_ps`. Before the first accepted report the result is [`Pose::IDENTITY`]. The
+    /// settings limit how far a predictor extrapolates beyond the last report. If `at_ps` is later than this limit, the
+    /// result is the last reported pose.
     fn predict(&self, at_ps: u64) -> Pose;
 
     /// Returns the counts of accepted and rejected reports so far.

@@ -1,7 +1,8 @@
-//! Random numbers as pure functions of (seed, index). The numbers can be drawn in any order and are the same on every
-//! host.
+//! Random numbers as pure functions of (seed, index). The numbers can be computed in any order and are the same on
+//! every host.
 //!
-//! The generator is SplitMix64 (Steele, Lea and Flood 2014). Its step is [`pxpl5_sim::mix`] of the simulation kernel.
+//! The generator is SplitMix64 (Steele, Lea and Flood 2014). The function [`pxpl5_sim::mix`] of the simulation kernel
+//! computes one step of the generator.
 
 use pxpl5_sim::mix;
 

@@ -1,21 +1,21 @@
 //! The pendulum rig, which measures latency from outside the machine (TR94).
 //!
 //! An LED and a photodiode detect the low point of a pendulum's arc. A tracker on the pendulum sends reports to the
-//! host. When the host detects the low point in the reports, it starts a new frame and switches a D/A line. A
+//! host. When the host detects the low point in the reports, the host starts a new frame and switches its D/A output. A
 //! photodiode on the screen detects frames that are alternately dark and light. On the oscilloscope, tracking latency
-//! is the time from the low point to the step of the D/A line. Rendering latency is the time from this step to the step
-//! of the screen.
+//! is the time from the low point to the step of the D/A output. Rendering latency is the time from this step to the
+//! step of the screen.
 //!
 //! This module has the parts outside of the emulated system: the pendulum and the oscilloscope. The module also has the
-//! host's detection of low points. The caller simulates the system and supplies the steps of the D/A line and the light
-//! on the screen.
+//! host's detection of low points. The caller simulates the system and supplies the steps of the host's D/A output and
+//! the light on the screen.
 
 mod detection;
 mod measurement;
 mod oscilloscope;
 
 pub use detection::Detection;
-pub use measurement::{InsidePass, Latency, LowPointReport, Measurement, Oscilloscope, OutsidePass, Side};
+pub use measurement::{InsidePass, LowPointReport, Measurement, Oscilloscope, OutsidePass, Side};
 pub use oscilloscope::{ScopeEdge, ScopeTrace};
 
 use thiserror::Error;
@@ -28,8 +28,8 @@ use crate::tracker::TrackerModel;
 /// Greatest time without a detected low point, ps. After this time the measurement fails.
 const PATIENCE_PS: u64 = 10 * PS_PER_S;
 
-/// Number of parts of a half swing. Noise may cause the detection of a low point to be early by up to one of these
-/// parts.
+/// Number of equal parts into which half a swing is divided. Noise may make the detection of a low point early by up to
+/// one of these parts.
 const EARLY_PART: u64 = 10;
 
 /// The pendulum rig, which measures latency from outside the machine. The pendulum's pivot and the tracker's origin are
@@ -100,8 +100,8 @@ impl PendulumRig {
         if seen.len() < expected { Err(RigError::TooFewPasses { expected, found: seen.len() }) } else { Ok(seen) }
     }
 
-    /// Measures the passes on the oscilloscope and combines them with the measurements by time stamps. `place_ps` is
-    /// the time from the retrace until the beam passes the photodiode on the screen.
+    /// Measures the passes of the pendulum on the oscilloscope and combines the results with the measurements by time
+    /// stamps. `place_ps` is the time from the retrace until the beam passes the photodiode on the screen.
     ///
     /// # Errors
     ///
@@ -121,9 +121,9 @@ impl PendulumRig {
         Ok(Measurement::new(self.detection, tracker, place_ps, outside.ok_or(no_light)?, inside))
     }
 
-    /// Returns the instant of the low point that caused a step of the D/A line. This is the last low point before the
-    /// step, or the next low point if noise caused an early detection. The result is correct for tracking latencies
-    /// below nine tenths of a half swing, 0.64 s.
+    /// Returns the instant of the pendulum's low point that caused a step of the host's D/A output. This is the last
+    /// low point before the step, or the next low point if noise caused an early detection. The result is correct for
+    /// tracking latencies below nine tenths of a half swing, 0.64 s.
     fn low_point_before(&self, dac_ps: u64) -> u64 {
         let half_ps = self.half_swing_ps();
         let guess = dac_ps.saturating_add(half_ps / EARLY_PART).saturating_sub(half_ps / 2) / half_ps;

@@ -24,8 +24,8 @@ pub fn exp(r: DVec3) -> DQuat {
     DQuat::from_xyzw(v.x, v.y, v.z, cos)
 }
 
-/// Returns the shortest rotation vector (rad, length at most pi) of the unit quaternion `q`. The quaternions `q` and
-/// `-q` give the same vector.
+/// Returns the shortest rotation vector (rad, length at most pi) that gives the rotation of the unit quaternion `q`.
+/// The quaternions `q` and `-q` give the same vector.
 pub fn log(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let v = DVec3::new(q.x, q.y, q.z);

@@ -28,7 +28,8 @@ pub(crate) fn tick_ps(n: u64, seconds: u32, rate: u32) -> Option<u64> {
 /// Duration of an NTSC field, floor(1001 / 60000 s).
 pub const NTSC_FIELD_PS: u64 = 1_001 * PS_PER_S / 60_000;
 
-/// Returns the time from the first visible line of an NTSC field to its visible line `n`, ps: floor(n x 4004/63 us).
+/// Returns the time from visible line 0 of an NTSC field to visible line `n` of the same field, ps: floor(n x 4004/63
+/// us).
 pub fn ntsc_lines_ps(n: u32) -> u64 {
     u64::from(n) * 4_004_000_000 / 63
 }

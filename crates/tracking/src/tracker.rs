@@ -14,4 +14,4 @@ pub use fault::TrackerFault;
 pub use model::TrackerModel;
 pub use report::TrackerReport;
 pub use reports::Reports;
-pub use serial::{HostLine, SerialLine};
+pub use serial::{SerialLine, SerialRead};

@@ -5,7 +5,7 @@ use tracking::rig::{
     Detection, InsidePass, LowPointReport, Measurement, Oscilloscope, PendulumRig, RigError, ScopeTrace,
 };
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, ntsc_lines_ps, seconds};
-use tracking::tracker::{HostLine, SerialLine, TrackerConfig, TrackerFault, TrackerModel};
+use tracking::tracker::{SerialLine, SerialRead, TrackerConfig, TrackerFault, TrackerModel};
 
 /// Returns the instant at which a frame is shown: 57 ms after its start (Rendering Control), at the next field.
 fn pipeline(start_ps: u64) -> u64 {
@@ -48,14 +48,12 @@ fn measure(rig: PendulumRig, config: TrackerConfig) -> Measurement {
 fn the_low_point_is_seen_within_one_report_of_the_optical_tracker_and_33_ms_of_it() {
     let measured = measure(PendulumRig::assumed(), noiseless(TrackerConfig::optical_ceiling()));
     let period_s = 1.0 / 60.0;
-    assert!(
-        measured.outside.tracking.least_s >= 0.033 && measured.outside.tracking.greatest_s <= 0.033 + period_s + 1e-9
-    );
+    assert!(measured.outside.tracking.min >= 0.033 && measured.outside.tracking.max <= 0.033 + period_s + 1e-9);
     // Low points fall anywhere in a period, so half a period is added on average.
     assert!(
-        (measured.outside.tracking.mean_s - 0.033 - period_s / 2.0).abs() < 1.5e-3,
+        (measured.outside.tracking.mean - 0.033 - period_s / 2.0).abs() < 1.5e-3,
         "{}",
-        measured.outside.tracking.mean_s
+        measured.outside.tracking.mean
     );
     assert_eq!(measured.tracking_bound_ps, PS_PER_S / 60);
 }
@@ -65,10 +63,10 @@ fn rendering_is_the_inside_latency_plus_the_photodiodes_place() {
     for photodiode_line in [0, 120, 239] {
         let rig = PendulumRig { photodiode_line, ..PendulumRig::assumed() };
         let measured = measure(rig, noiseless(TrackerConfig::optical_ceiling()));
-        let difference = measured.outside.rendering.mean_s - measured.inside.rendering.mean_s;
+        let difference = measured.outside.rendering.mean - measured.inside.rendering.mean;
         assert!((difference - seconds(ntsc_lines_ps(photodiode_line))).abs() < 1e-12);
         // The latency is 57 ms plus the wait for a field.
-        assert!(measured.inside.rendering.least_s >= 0.057 && measured.inside.rendering.greatest_s < 0.074);
+        assert!(measured.inside.rendering.min >= 0.057 && measured.inside.rendering.max < 0.074);
     }
 }
 
@@ -79,7 +77,7 @@ fn outside_and_inside_agree_within_the_bound_for_every_tracker_and_line() {
         TrackerConfig::ideal(),
         TrackerConfig::fastrak(),
         TrackerConfig { serial: slow_line, ..TrackerConfig::fastrak() },
-        TrackerConfig { host: HostLine::unix(), ..TrackerConfig::fastrak() },
+        TrackerConfig { host: SerialRead::unix(), ..TrackerConfig::fastrak() },
         TrackerConfig::flock_of_birds(),
         TrackerConfig::optical_ceiling(),
         TrackerConfig::polhemus_3space(),

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use tracking::Pose;
 use tracking::motion::{Motion, Pan, Synthetic};
-use tracking::predict::{PredictionError, Predictor, PredictorConfig, PredictorKind, Start, prediction_errors};
+use tracking::predict::{PredictionDeviation, Predictor, PredictorConfig, PredictorKind, Start, prediction_errors};
 use tracking::rotation;
 use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{TrackerConfig, TrackerFault, TrackerModel, TrackerReport};
@@ -14,7 +14,7 @@ fn build(kind: PredictorKind, tracker: &TrackerConfig) -> Box<dyn Predictor> {
     PredictorConfig::for_tracker(kind, tracker).build().unwrap()
 }
 
-fn errors(kind: PredictorKind, tracker: TrackerConfig, seed: u64, span_s: (u64, u64)) -> Vec<PredictionError> {
+fn errors(kind: PredictorKind, tracker: TrackerConfig, seed: u64, span_s: (u64, u64)) -> Vec<PredictionDeviation> {
     let config = PredictorConfig::for_tracker(kind, &tracker);
     let unbiased = TrackerConfig { position_bias_m: 0.0, orientation_bias_deg: 0.0, ..tracker };
     let model = TrackerModel::new(unbiased).unwrap();

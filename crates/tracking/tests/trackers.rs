@@ -5,7 +5,7 @@ use tracking::Pose;
 use tracking::config::Tables;
 use tracking::motion::{Motion, Pan, Still, Synthetic};
 use tracking::time::{PS_PER_MS, PS_PER_S};
-use tracking::tracker::{HostLine, SerialLine, TrackerConfig, TrackerFault, TrackerModel, TrackerReport};
+use tracking::tracker::{SerialLine, SerialRead, TrackerConfig, TrackerFault, TrackerModel, TrackerReport};
 
 const HEAD: Still = Still(Pose { position: DVec3::new(0.3, 1.7, -0.2), orientation: glam::DQuat::IDENTITY });
 
@@ -139,7 +139,7 @@ fn the_optical_ceiling_is_33_ms_late() {
 
 #[test]
 fn a_polled_line_adds_0_to_30_ms_uniformly_over_seeds() {
-    let polled = TrackerConfig { host: HostLine::unix(), ..TrackerConfig::optical_ceiling() };
+    let polled = TrackerConfig { host: SerialRead::unix(), ..TrackerConfig::optical_ceiling() };
     let tracker = model(polled);
     let waits: Vec<f64> = (0..3000)
         .map(|seed| tracker.reports(&HEAD, seed).next().unwrap())
@@ -156,7 +156,7 @@ fn a_polled_line_adds_0_to_30_ms_uniformly_over_seeds() {
 
 #[test]
 fn polling_never_changes_the_order() {
-    let config = TrackerConfig { host: HostLine::unix(), ..TrackerConfig::fastrak() };
+    let config = TrackerConfig { host: SerialRead::unix(), ..TrackerConfig::fastrak() };
     let all = reports(config, &HEAD, 7, 2000);
     assert!(all.windows(2).all(|w| w[0].arrives_ps <= w[1].arrives_ps));
 }

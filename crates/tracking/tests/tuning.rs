@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use tracking::Pose;
 use tracking::motion::{End, Motion, Pan, Recording, Sinusoid, Still, Synthetic};
 use tracking::predict::{
-    PredictionError, PredictorConfig, PredictorKind, gain, prediction_errors, training_seed, tune,
+    PredictionDeviation, PredictorConfig, PredictorKind, gain, prediction_errors, training_seed, tune,
 };
 use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{TrackerConfig, TrackerModel};
@@ -23,7 +23,12 @@ fn tuned(motion: &dyn Motion, tracker: &TrackerModel, kind: PredictorKind, inter
     tune(motion, tracker, interval_ps, &base, JUDGED).unwrap().config
 }
 
-fn error(motion: &dyn Motion, tracker: &TrackerModel, config: &PredictorConfig, interval_ps: u64) -> PredictionError {
+fn error(
+    motion: &dyn Motion,
+    tracker: &TrackerModel,
+    config: &PredictorConfig,
+    interval_ps: u64,
+) -> PredictionDeviation {
     let span = (PS_PER_S, 60 * PS_PER_S);
     prediction_errors(motion, tracker, config, JUDGED, &[interval_ps], span).unwrap()[0]
 }
@@ -74,7 +79,7 @@ fn a_tuned_filter_is_near_the_best_of_all_on_motion_and_noise_that_it_has_not_se
                 interval_ps,
             )
         });
-        let all: Vec<PredictionError> = all.collect();
+        let all: Vec<PredictionDeviation> = all.collect();
         let least_m = all.iter().map(|e| e.mean_m).fold(f64::INFINITY, f64::min);
         let least_deg = all.iter().map(|e| e.mean_deg).fold(f64::INFINITY, f64::min);
         println!(

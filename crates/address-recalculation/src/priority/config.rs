@@ -1,7 +1,6 @@
 //! Parameters of all policies.
 
-use crate::priority::error::PriorityError;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 
 pxpl5_sim::parameters::parameter_table! {
     /// Parameters of the policies: accepted image error, cells, warping and rates of memories.
@@ -35,12 +34,12 @@ impl PriorityTiming {
     ///
     /// # Errors
     ///
-    /// [`PriorityError`] names the parameter, its expected and its found value.
-    pub fn check(&self) -> Result<(), PriorityError> {
-        ParameterTable::check(self).map_err(|error| PriorityError(format!("priority.{error}")))?;
+    /// [`SettingError`] names the parameter, its expected and its found value.
+    pub fn check(&self) -> Result<(), SettingError> {
+        ParameterTable::check(self).map_err(|error| error.in_table("priority"))?;
         if self.falloff_m > self.cell_m {
-            let text = format!("at most a cell's side of {} m, found {}", self.cell_m, self.falloff_m);
-            return Err(PriorityError(format!("priority.falloff_m: expected {text}")));
+            let expected = format_args!("at most a cell's side of {} m", self.cell_m);
+            return Err(SettingError::value("priority.falloff_m", expected, self.falloff_m));
         }
         Ok(())
     }

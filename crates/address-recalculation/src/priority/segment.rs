@@ -1,8 +1,8 @@
 //! Segmentation: a mesh is cut once at the borders of cells, so that only its near parts must be drawn often.
 
 use crate::priority::cells::{Cell, CellAssignment, border, column};
-use crate::priority::error::PriorityError;
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 
 /// Largest coordinate, in metres, of a world that the function can cut.
@@ -41,9 +41,9 @@ impl Segmentation {
     ///
     /// # Errors
     ///
-    /// Returns [`PriorityError`] if the side is not positive and finite, or if a coordinate exceeds 1e6 m. The same
+    /// Returns a [`SettingError`] if the side is not positive and finite, or if a coordinate exceeds 1e6 m. The same
     /// error is returned if an index has no vertex, or if there could be more than ten million pieces.
-    pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<Self, PriorityError> {
+    pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<Self, SettingError> {
         check(vertices, triangles, side_m)?;
         let mut cutter = Cutter { side_m, vertices: vertices.to_vec(), cuts: Vec::new(), made: BTreeMap::new() };
         let mut segments: BTreeMap<Cell, Vec<[u32; 3]>> = BTreeMap::new();
@@ -67,24 +67,26 @@ impl Segmentation {
     }
 }
 
-fn check(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<(), PriorityError> {
-    let refused = |text: String| Err(PriorityError(text));
+fn check(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<(), SettingError> {
     if !(side_m > 0.0 && side_m.is_finite()) {
-        return refused(format!("priority.cell_m: expected a length above 0, found {side_m}"));
+        return Err(SettingError::value("priority.cell_m", "a length above 0", side_m));
     }
     if let Some(vertex) =
         vertices.iter().find(|vertex| !(vertex.abs().max_element() <= FARTHEST_M && vertex.is_finite()))
     {
-        return refused(format!("scene: expected coordinates up to {FARTHEST_M} m, found {vertex}"));
+        let expected = format_args!("coordinates up to {FARTHEST_M} m");
+        return Err(SettingError::value("scene", expected, vertex));
     }
     if let Some(corner) = triangles.iter().flatten().find(|corner| **corner as usize >= vertices.len()) {
-        return refused(format!("scene: expected corners below {}, found {corner}", vertices.len()));
+        let expected = format_args!("corners below {}", vertices.len());
+        return Err(SettingError::value("scene", expected, corner));
     }
     // Limit the number of pieces before cutting, to bound time and memory.
     let pieces: f64 =
         triangles.iter().map(|triangle| most_pieces(triangle.map(|i| vertices[i as usize]), side_m)).sum();
     if pieces > MOST_PIECES {
-        return refused(format!("priority.cell_m: expected at most {MOST_PIECES} pieces, found up to {pieces:.0}"));
+        let expected = format_args!("at most {MOST_PIECES} pieces");
+        return Err(SettingError::value("priority.cell_m", expected, format_args!("up to {pieces:.0}")));
     }
     Ok(())
 }

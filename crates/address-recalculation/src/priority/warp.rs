@@ -1,8 +1,8 @@
 //! Region warping: vertices near the border to a slower memory are moved, so that the images of both memories meet at
 //! the border.
 
-use crate::priority::error::PriorityError;
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 /// Falloff: how the displacement of vertices decreases with the distance from the border.
@@ -55,10 +55,10 @@ impl RegionWarp {
     ///
     /// # Errors
     ///
-    /// Returns [`PriorityError`] if the distance over which the displacement decreases is not positive and finite.
-    pub fn new(falloff: Falloff, length_m: f64, drawn_from: DVec3, slower_from: DVec3) -> Result<Self, PriorityError> {
+    /// Returns a [`SettingError`] if the distance over which the displacement decreases is not positive and finite.
+    pub fn new(falloff: Falloff, length_m: f64, drawn_from: DVec3, slower_from: DVec3) -> Result<Self, SettingError> {
         if !(length_m > 0.0 && length_m.is_finite()) {
-            return Err(PriorityError(format!("priority.falloff_m: expected a length above 0, found {length_m}")));
+            return Err(SettingError::value("priority.falloff_m", "a length above 0", length_m));
         }
         Ok(Self { falloff, length_m, displacement: drawn_from - slower_from })
     }

@@ -38,11 +38,11 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// All rules. The name of a rule turns the warnings of this rule off.
+    /// All rules with their names. A user turns the warnings of a rule off by this name.
     pub const NAMES: [(&'static str, Self); 3] =
         [("alignment", Self::Alignment), ("multiply-source", Self::MultiplySource), ("lost-result", Self::LostResult)];
 
-    /// Returns the name that turns off the warnings of this rule.
+    /// Returns the name of this rule, by which a user turns off the rule's warnings.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, rule)| *rule == self).map_or("", |(name, _)| name)
@@ -88,7 +88,7 @@ impl PipeFill {
     }
 }
 
-/// Effect of an instruction on the pipe of the adder, then on the pipe of the multiplier.
+/// Effects of an instruction on the pipes: first elements for the adder's pipe, second elements for the multiplier's.
 #[derive(Clone, Copy, Default)]
 struct PipeUse {
     scalar: [bool; 2],
@@ -124,8 +124,8 @@ impl PipeUse {
     }
 }
 
-/// Finds results that are read from a pipe after a scalar operation has destroyed them. The contents of the pipes are
-/// unknown after each label and branch.
+/// Finds results that are read from a pipe after a scalar operation has destroyed these results. The contents of the
+/// pipes are unknown after each label and branch.
 fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut pipes = [PipeFill::default(); 2];
@@ -255,7 +255,8 @@ fn fault(second: bool, reason: &str) -> Option<(bool, String)> {
     Some((second, reason.to_owned()))
 }
 
-/// Returns the rule that a pair breaks. The boolean is true if the second half causes the error.
+/// Returns the description of the rule that a pair breaks, or `None`. The boolean is true if the second half of the
+/// pair causes the error.
 fn pair(low: &Instruction, high: &Instruction) -> Option<(bool, String)> {
     let compares = matches!(low.op, Op::Pfgt | Op::Pfle | Op::Pfeq);
     match () {

@@ -1,35 +1,36 @@
 //! Conditional assembly: `.if`, `.elseif`, `.else` and `.endif`.
 //!
-//! The conditions are evaluated before macros are expanded and before linear code is scheduled. They use the constants
-//! that the lines above define.
+//! The conditions are evaluated before macros are expanded and before linear code is scheduled. The conditions use the
+//! constants that the lines above define.
 
 use super::expression::{Symbols, evaluate};
 use super::source::is_name;
 use std::borrow::Cow;
 
-/// An open `.if`.
+/// A `.if` directive whose `.endif` was not read yet.
 struct Open {
     /// Line number of the `.if`.
     line: usize,
-    /// True if the lines around this `.if` are selected.
+    /// True if the lines around this `.if` are assembled.
     outer: bool,
-    /// True while the current branch is selected.
+    /// True while lines of the current branch are assembled.
     selected: bool,
-    /// True once a branch was selected; later branches are then excluded.
+    /// True once a branch of this `.if` was selected. Later branches of the `.if` are then excluded.
     done: bool,
-    /// True after `.else`.
+    /// True after the `.else` of this `.if`.
     ended: bool,
 }
 
 impl Open {
-    /// Begins the next branch, whose condition is true if `holds`.
+    /// Begins the next branch of the `.if`. `holds` is the value of the condition of this branch.
     const fn branch(&mut self, holds: bool) {
         self.selected = self.outer && holds && !self.done;
         self.done |= self.selected;
     }
 }
 
-/// Replaces the lines that conditions exclude, and the conditions, by empty lines. Line numbers stay the same.
+/// Replaces two kinds of lines by empty lines: lines that a condition excludes, and lines with conditions. Line numbers
+/// stay the same.
 ///
 /// # Errors
 /// Returns the line number and the reason.
@@ -77,8 +78,8 @@ pub(crate) fn select(source: &str) -> Result<Cow<'_, str>, (usize, String)> {
     }
 }
 
-/// Stores the constant that a line defines. A line with an unknown name is no constant for conditions: it may be linear
-/// code, or use a label, whose address is not known yet.
+/// Stores the constant that a line defines. A line with an unknown name defines no constant for conditions. Such a line
+/// may be linear code, or may use a label whose address is not known yet.
 fn define(code: &str, constants: &mut Symbols) {
     let equ = code.strip_prefix(".equ").or_else(|| code.strip_prefix(".set"));
     let parts = equ.map_or_else(|| code.split_once('='), |rest| rest.split_once(','));

@@ -5,14 +5,21 @@ use std::fmt;
 
 /// An error in an assembler source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}:{line}: {reason}")]
+#[error("{}{line}: {reason}", if file.is_empty() { "line ".to_owned() } else { format!("{file}:") })]
 pub struct AssemblyError {
-    /// File name as given to [`assemble`](crate::assemble).
+    /// File name as given to [`assemble`](crate::assemble). Empty for code of [`linear`](crate::linear).
     pub file: String,
     /// Line number of the error, counted from 1. For text from a macro, this is the line of the macro call.
     pub line: usize,
     /// Description of the error, with the expected and the found text.
     pub reason: String,
+}
+
+impl AssemblyError {
+    /// Creates the error of a line of a text without a file.
+    pub(crate) const fn in_line(line: usize, reason: String) -> Self {
+        Self { file: String::new(), line, reason }
+    }
 }
 
 /// A warning that the program breaks a rule. The program can nevertheless be right.

@@ -28,7 +28,8 @@ pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     }
 }
 
-/// Binary operators by precedence, the weakest level first. The strongest level is [`PRODUCTS`].
+/// Binary operators by precedence, the operators that bind most weakly first. [`PRODUCTS`] has the operators that bind
+/// most strongly.
 const LEVELS: [&[&str]; 6] = [&["|"], &["^"], &["&"], &["==", "!="], &["<<", ">>"], &["+", "-"]];
 const PRODUCTS: &[&str] = &["*", "/", "%"];
 

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 const TEXT_COLUMNS: usize = 30;
 
 impl Program {
-    /// Returns the data directive that covers an address, or `None` for an instruction.
+    /// Returns the data directive whose bytes include an address, or `None` if the address belongs to an instruction.
     #[must_use]
     pub fn data_at(&self, address: u32) -> Option<&Data> {
         let after = self.data.partition_point(|data| data.address <= address);
@@ -45,7 +45,7 @@ impl Program {
         rows.text
     }
 
-    /// Returns the little-endian number in up to eight bytes at an address.
+    /// Returns the little-endian number in the `bytes` (at most eight) bytes at an address.
     fn number(&self, address: u32, bytes: u32) -> u64 {
         let from = address.wrapping_sub(self.base) as usize;
         let bytes = self.bytes.iter().skip(from).take(bytes as usize);
@@ -100,7 +100,7 @@ impl Rows<'_> {
     }
 }
 
-/// Returns the assembler directive, as text, that produces the data.
+/// Returns the text of the assembler directive that produces the number.
 fn text(kind: DataKind, number: u64, bytes: u32) -> String {
     match kind {
         DataKind::Doubles => format!(".double {:?}", f64::from_bits(number)),

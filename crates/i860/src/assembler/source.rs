@@ -1,4 +1,5 @@
-//! Preprocessor of assembler sources. It removes comments, splits lines at `;`, and expands macros and repetitions.
+//! Preprocessor of assembler sources. The preprocessor removes comments, splits lines at `;`, and expands macros and
+//! repetitions.
 
 use super::error::AssemblyError;
 use super::operand::split;
@@ -12,10 +13,10 @@ pub(super) struct Line {
 }
 
 /// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. The value is
-/// assumed. It permits a million repetitions of one line.
+/// assumed, and permits a million repetitions of one line.
 const MOST_STEPS: usize = 1 << 21;
-/// Greatest size of the expanded text, in bytes. The value is assumed. It permits four bytes for each byte of the
-/// longest program.
+/// Greatest size of the expanded text, in bytes. The value is assumed, and permits four bytes for each byte of
+/// the longest program.
 const MOST_TEXT: usize = 64 << 20;
 /// Greatest nesting depth of macros and repetitions.
 const MOST_DEPTH: u32 = 32;
@@ -36,7 +37,7 @@ impl Budget {
         Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), largest_user: (0, 0) }
     }
 
-    /// Returns the remaining budget as one number in bytes. The line budget is scaled to bytes.
+    /// Returns the remaining budget of lines and bytes as one number in bytes. The line budget is scaled to bytes.
     const fn left(&self) -> usize {
         self.steps * (MOST_TEXT / MOST_STEPS) + self.text
     }
@@ -62,7 +63,7 @@ impl Budget {
     }
 }
 
-/// An error, as the number of the source line and a description.
+/// An error of the preprocessor: number of the source line, and description.
 type AssemblyFault = (usize, String);
 
 fn spent() -> String {

@@ -4,8 +4,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Adder,
-    /// The multiplier. Its pipe has two stages for double-precision sources, and three stages for single-precision
-    /// sources.
+    /// The multiplier. The multiplier's pipe has two stages for double-precision sources, and three stages for
+    /// single-precision sources.
     Multiplier {
         double: bool,
     },
@@ -24,7 +24,7 @@ impl Unit {
     }
 }
 
-/// Register file and register count of a value.
+/// Register file of a value, and number of registers that the value takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Width {
     Integer,
@@ -49,7 +49,7 @@ pub(super) struct Name {
     pub(super) unit: Unit,
     pub(super) mnemonic: &'static str,
     pub(super) result: Option<Width>,
-    /// Number of source operands, without the address.
+    /// Number of source operands of the operation, without a memory address.
     pub(super) sources: usize,
     /// True if the operation has a memory address.
     pub(super) addresses: bool,

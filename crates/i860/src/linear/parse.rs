@@ -1,9 +1,9 @@
 //! Parser of *linear stretches* of an assembler source. A linear stretch is straight-line code without registers and
 //! without an order.
 
-use super::LinearError;
 use super::machine::{self, Name, Width};
 use super::settings::Settings;
+use crate::AssemblyError;
 use std::collections::HashMap;
 
 /// An operand in linear code: a value of an earlier line, or a text.
@@ -21,11 +21,12 @@ pub(super) enum Source {
 pub(super) struct Operation {
     pub(super) name: Name,
     pub(super) sources: Vec<Source>,
-    /// Offset and base register of a memory address.
+    /// Offset and base register of the operation's memory address, if any.
     pub(super) address: Option<(String, Source)>,
     /// Indices of the stores that must precede this operation.
     pub(super) after: Vec<usize>,
-    /// Register in which later code expects the result, if any. No other line of the linear code reads this register.
+    /// Register in which the code after the stretch expects the result, if any. No other line of the linear code
+    /// reads this register.
     pub(super) register: Option<u8>,
 }
 
@@ -40,19 +41,19 @@ impl Operation {
     }
 }
 
-fn error<T>(line: usize, reason: impl Into<String>) -> Result<T, LinearError> {
-    Err(LinearError { line, reason: reason.into() })
+fn error<T>(line: usize, reason: impl Into<String>) -> Result<T, AssemblyError> {
+    Err(AssemblyError::in_line(line, reason.into()))
 }
 
 /// Parses the registers of a `.pool` line, which lists the integer registers that the scheduler can use.
-pub(super) fn pool(line: usize, registers: &[&str]) -> Result<Vec<u8>, LinearError> {
+pub(super) fn pool(line: usize, registers: &[&str]) -> Result<Vec<u8>, AssemblyError> {
     let number = |text: &&str| text.strip_prefix('r').and_then(|n| n.parse().ok()).filter(|n| (1..32).contains(n));
     let found: Option<Vec<u8>> = registers.iter().map(number).collect();
     found.map_or_else(|| error(line, format!("expected r1 to r31, found {registers:?}")), Ok)
 }
 
 /// Parses the parameters of a `.linear` line, the start of linear code.
-pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, LinearError> {
+pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, AssemblyError> {
     let numbers: Option<Vec<u32>> = words.iter().map(|word| word.parse().ok()).collect();
     match numbers.as_deref() {
         Some([]) => Ok(Settings::default()),
@@ -68,7 +69,7 @@ pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, LinearEr
 }
 
 /// Parses the operations of one stretch of linear code.
-pub(super) fn operations(block: &[(usize, &str)]) -> Result<Vec<Operation>, LinearError> {
+pub(super) fn operations(block: &[(usize, &str)]) -> Result<Vec<Operation>, AssemblyError> {
     let mut parser = Parser::default();
     for (line, text) in repeated(block)? {
         parser.line(line, &text)?;
@@ -81,12 +82,12 @@ fn without_comment(text: &str) -> &str {
 }
 
 /// Expands the `for` loops in a stretch of linear code.
-fn repeated(block: &[(usize, &str)]) -> Result<Vec<(usize, String)>, LinearError> {
+fn repeated(block: &[(usize, &str)]) -> Result<Vec<(usize, String)>, AssemblyError> {
     let lines: Vec<(usize, String)> = block.iter().map(|(n, text)| (*n, without_comment(text).to_owned())).collect();
     repeat(&lines)
 }
 
-fn repeat(lines: &[(usize, String)]) -> Result<Vec<(usize, String)>, LinearError> {
+fn repeat(lines: &[(usize, String)]) -> Result<Vec<(usize, String)>, AssemblyError> {
     let mut out = Vec::new();
     let mut at = 0;
     while let Some((line, text)) = lines.get(at) {
@@ -98,7 +99,7 @@ fn repeat(lines: &[(usize, String)]) -> Result<Vec<(usize, String)>, LinearError
                 // Find the `endfor` of this loop, then repeat the body of the loop for each value.
                 let end = at
                     + matching_end(&lines[at..])
-                        .ok_or_else(|| LinearError { line: *line, reason: "`for` without `endfor`".to_owned() })?;
+                        .ok_or_else(|| AssemblyError::in_line(*line, "`for` without `endfor`".to_owned()))?;
                 for value in values {
                     let name = format!("${variable}");
                     let body: Vec<_> =
@@ -134,7 +135,7 @@ struct Parser {
 }
 
 impl Parser {
-    fn line(&mut self, line: usize, text: &str) -> Result<(), LinearError> {
+    fn line(&mut self, line: usize, text: &str) -> Result<(), AssemblyError> {
         // Split off the mark of a store, the result, and the stores to wait for.
         let (text, mark) = split_mark(text);
         let (dest, text) = match text.split_once('=') {
@@ -166,7 +167,7 @@ impl Parser {
         Ok(())
     }
 
-    fn operation(&self, line: usize, name: Name, operands: &str, awaited: &[&str]) -> Result<Operation, LinearError> {
+    fn operation(&self, line: usize, name: Name, operands: &str, awaited: &[&str]) -> Result<Operation, AssemblyError> {
         let mut operands: Vec<&str> = operands.split(',').map(str::trim).filter(|text| !text.is_empty()).collect();
         // The address is the last operand.
         let address = match name.addresses {
@@ -186,13 +187,13 @@ impl Parser {
         Ok(Operation { name, sources, address, after, register: None })
     }
 
-    fn address(&self, line: usize, text: &str) -> Result<(String, Source), LinearError> {
+    fn address(&self, line: usize, text: &str) -> Result<(String, Source), AssemblyError> {
         let parts = text.strip_suffix(')').and_then(|text| text.rsplit_once('('));
         let Some((offset, base)) = parts else { return error(line, format!("expected offset(base), found `{text}`")) };
         Ok((offset.to_owned(), self.source(line, base)?))
     }
 
-    fn source(&self, line: usize, text: &str) -> Result<Source, LinearError> {
+    fn source(&self, line: usize, text: &str) -> Result<Source, AssemblyError> {
         // A part after a dot selects one register of a value.
         let (name, part) = match text.rsplit_once('.') {
             Some((name, part)) => (name, part.parse().ok()),

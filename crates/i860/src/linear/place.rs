@@ -14,7 +14,7 @@ const PREFETCH: u32 = 18;
 /// Greatest number of stores that can wait for the bus. A store also occupies the bus for this number of clocks.
 const STORES: u32 = 2;
 const STORE: u32 = 3;
-/// Number of clocks without progress after which the scheduler fails.
+/// Number of clocks without an issued operation after which the scheduler fails.
 const PATIENCE: u32 = 80;
 
 /// The instruction pairs of a schedule. Each pair holds the text of its floating-point half and of its core half.
@@ -64,7 +64,7 @@ impl File {
     }
 
     /// Finds `count` consecutive free registers and returns the first of them. For one or two registers, the function
-    /// prefers a gap beside used registers. The register `but` is not used.
+    /// prefers a gap beside used registers. The result never contains register `but`.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
         // The first register of a value is a multiple of its number of registers.
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
@@ -114,8 +114,8 @@ struct Placer<'a> {
     multiplier: Vec<Option<usize>>,
     multiplies_double: bool,
     multiplier_free: u32,
-    /// First register and register count of the floating-point result of the previous clock. Freeze row 9 needs these
-    /// registers.
+    /// First register and register count of the floating-point result of the previous clock. Row 9 of the freeze table
+    /// delays a multiplication whose first source is this result.
     last_result: Option<(u8, usize)>,
     last_result_at: u32,
     last_store: Option<u32>,
@@ -180,7 +180,7 @@ impl<'a> Placer<'a> {
         self.adder.iter().chain(&self.multiplier).any(Option::is_some)
     }
 
-    /// Advances [`Placer::first`] past the operations that were already issued.
+    /// Advances [`Placer::first`] to the first operation that was not issued yet.
     fn skip_issued(&mut self) {
         while self.first < self.operations.len() && self.issued[self.first].is_some() {
             self.first += 1;
@@ -242,8 +242,8 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns true if a push into the pipe is possible. The value that leaves the pipe needs free registers other than
-    /// `but`.
+    /// Returns true if a push into the pipe is possible. A push is possible if the value that leaves the pipe finds
+    /// free registers other than `but`.
     fn can_push(&self, pipe: &[Option<usize>], stages: usize, but: Option<u8>) -> bool {
         match pipe[STAGES - stages] {
             Some(value) => self.floats.find(self.width(value).registers(), self.now, but).is_some(),
@@ -255,8 +255,9 @@ impl<'a> Placer<'a> {
         self.operations[value].name.result.unwrap_or(Width::Integer)
     }
 
-    /// Returns true if both sources are the result of the previous operation. Freeze row 9 would then delay the
-    /// multiplication. If only one source is this result, the two operands are swapped instead.
+    /// Returns true if both sources of a multiplication are the result of the previous operation. Row 9 of the freeze
+    /// table would then delay the multiplication. If only one source is this result, the scheduler swaps the two
+    /// operands instead.
     fn waits_for_first_source(&self, n: usize) -> bool {
         let sources = &self.operations[n].sources;
         self.is_last_result(&sources[0]) && self.is_last_result(&sources[1])
@@ -323,7 +324,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Returns the unit (adder or multiplier) whose pipe holds the most urgent value, if this pipe can be pushed. The
-    /// number is the urgency in clocks.
+    /// number is the urgency of this value in clocks.
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
@@ -342,7 +343,8 @@ impl<'a> Placer<'a> {
             .max_by_key(|(height, _)| *height)
     }
 
-    /// Returns the urgency of a pipe, in clocks: the longest path from one of its values to the end of the program.
+    /// Returns the urgency of a pipe, in clocks: the longest path from one of the pipe's values to the end of the
+    /// linear code.
     fn urgency(&self, pipe: &[Option<usize>]) -> Option<u32> {
         pipe.iter().flatten().map(|n| self.heights[*n].saturating_sub(self.operations[*n].name.latency)).max()
     }
@@ -460,7 +462,7 @@ impl<'a> Placer<'a> {
         self.leave(leaving, first_source)
     }
 
-    /// Moves a value from a pipe to registers. Returns the assembler text of the destination register.
+    /// Moves a value from a pipe to registers other than `but`. Returns the assembler text of the destination register.
     fn leave(&mut self, value: Option<usize>, but: Option<u8>) -> String {
         self.last_result = None;
         let Some(value) = value else { return "f0".to_owned() };
@@ -556,7 +558,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Records the issue of an operation and frees the registers whose last reader is this operation. The registers are
-    /// free from the next clock on, or one clock later after a store (freeze row 24).
+    /// free from the next clock on. After a store, the registers are free one clock later (row 24 of the freeze table).
     fn finish_issue(&mut self, n: usize) {
         self.issued[n] = Some(self.now);
         if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {
@@ -584,8 +586,8 @@ impl<'a> Placer<'a> {
     }
 }
 
-/// Returns the longest path from each operation to the end, in clocks. If `shake` is not 0, the function adds
-/// pseudo-random noise, which leads to other schedules.
+/// Returns the longest path from each operation to the end of the linear code, in clocks. If `shake` is not 0, the
+/// function adds pseudo-random noise, which leads to other schedules.
 fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut heights = vec![0; operations.len()];
     let mut state = u64::from(shake);

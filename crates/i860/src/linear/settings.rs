@@ -3,12 +3,12 @@
 /// Parameters of the scheduler for straight-line code.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
-    /// Number of lines from which the scheduler chooses, counted from the first unissued line.
+    /// Number of lines from which the scheduler chooses the next operation, counted from the first unissued line.
     pub(super) window: usize,
     /// Threshold in clocks. A pipe is drained if one of its values is more urgent than the best operation by more than
     /// this number of clocks.
     pub(super) eagerness: u32,
-    /// Number of registers in each file that only the first unissued line can use.
+    /// Number of registers in each register file that only the first unissued line can use.
     pub(super) reserve: usize,
     /// Number of additional reserved registers for each 64 lines of distance from the first unissued line. Distant
     /// lines therefore wait if few registers are free.

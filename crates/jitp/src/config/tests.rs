@@ -39,20 +39,21 @@ fn blocks(block: u32) -> JitpConfig {
 
 #[test]
 fn sizes_are_those_that_a_renderer_has() {
+    let refusal = |config: JitpConfig| config.check().expect_err("refused").to_string();
     for rows in [1, 128] {
         assert_eq!(strips(rows).check(), Ok(()));
     }
     for rows in [0, 129] {
-        assert_eq!(strips(rows).check(), Err(JitpConfigError::Size { expected: (1, 128), found: rows }));
+        assert_eq!(refusal(strips(rows)), format!("strips or blocks must have 1 to 128 lines, found {rows}"));
     }
     for block in [4, 128] {
         assert_eq!(blocks(block).check(), Ok(()));
     }
     for block in [3, 129] {
-        assert_eq!(blocks(block).check(), Err(JitpConfigError::Size { expected: (4, 128), found: block }));
+        assert_eq!(refusal(blocks(block)), format!("strips or blocks must have 4 to 128 lines, found {block}"));
     }
     let no_slave = JitpConfig { slaves: Vec::new(), ..strips(64) };
-    assert_eq!(no_slave.check(), Err(JitpConfigError::NoSlave));
+    assert_eq!(refusal(no_slave), "just-in-time pixels need a master and at least one slave GP, found no slave");
 }
 
 #[test]

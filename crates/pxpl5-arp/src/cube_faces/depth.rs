@@ -1,7 +1,7 @@
 //! Depths of 24 bits. All faces have the same near and far plane.
 
 use address_recalculation::DEPTH_FARTHEST;
-use thiserror::Error;
+use pxpl5_sim::parameters::SettingError;
 
 /// Range of the distances that are drawn, measured along the axis of a face, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,25 +10,17 @@ pub struct DepthRange {
     far_m: f64,
 }
 
-/// The error for an invalid range of depths.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("depth range: expected 0 < near < far, both finite, found near {near_m} m and far {far_m} m")]
-pub struct DepthError {
-    /// Distance of the near plane in metres.
-    pub near_m: f64,
-    /// Distance of the far plane in metres.
-    pub far_m: f64,
-}
-
 impl DepthRange {
     /// Creates the range between a near and a far plane, given in metres.
     ///
     /// # Errors
     ///
-    /// Returns [`DepthError`] unless 0 < near < far and far is finite.
-    pub fn new(near_m: f64, far_m: f64) -> Result<Self, DepthError> {
+    /// Returns a [`SettingError`] unless 0 < near < far and far is finite.
+    pub fn new(near_m: f64, far_m: f64) -> Result<Self, SettingError> {
         let is_range = near_m > 0.0 && far_m > near_m && far_m.is_finite();
-        if is_range { Ok(Self { near_m, far_m }) } else { Err(DepthError { near_m, far_m }) }
+        let found = format_args!("near {near_m} m and far {far_m} m");
+        SettingError::require(is_range, "depth range", "0 < near < far, both finite", found)?;
+        Ok(Self { near_m, far_m })
     }
 
     #[must_use]

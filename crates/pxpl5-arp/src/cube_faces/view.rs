@@ -17,7 +17,7 @@ pub struct Corner {
 
 /// Counts of triangles and texels of a drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Drawing {
+pub struct DrawCounts {
     /// Number of triangles given to the drawing.
     pub triangles: u64,
     /// Sum, over all triangles, of the number of faces that the triangle can touch. A real machine transforms a
@@ -27,7 +27,7 @@ pub struct Drawing {
     pub texels: u64,
 }
 
-impl Drawing {
+impl DrawCounts {
     /// Adds the counts of another drawing.
     pub const fn add(&mut self, other: Self) {
         self.triangles += other.triangles;
@@ -63,10 +63,15 @@ impl CubeView {
     /// # Panics
     ///
     /// Panics if the faces have another number of texels than `geometry`.
-    pub fn draw(&self, eye: DVec3, triangles: impl IntoIterator<Item = [Corner; 3]>, faces: &mut FaceSet) -> Drawing {
+    pub fn draw(
+        &self,
+        eye: DVec3,
+        triangles: impl IntoIterator<Item = [Corner; 3]>,
+        faces: &mut FaceSet,
+    ) -> DrawCounts {
         assert_eq!(faces.texels(), self.geometry.texels, "faces of another size");
         let views = CubeFace::ALL.map(|face| self.face(face));
-        let mut drawing = Drawing::default();
+        let mut drawing = DrawCounts::default();
         for corners in triangles {
             drawing.triangles += 1;
             let seen = corners.map(|corner| corner.place - eye);

@@ -1,17 +1,17 @@
 //! Comparisons of pictures that must be bit-identical.
 
-use crate::error::WalkError;
-use crate::look::Faces;
-use crate::settings::{Settings, SourceKind};
+use crate::look::WalkFaces;
+use crate::settings::{SourceKind, WalkSettings};
 use crate::simulation::Simulation;
 use crate::world::World;
 use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use glam::{DQuat, DVec3};
+use pxpl5_sim::parameters::SettingError;
 
 /// Number of texels along the edge of the compared faces.
 const TEXELS: u32 = 128;
 
-fn small(settings: &Settings) -> Settings {
+fn small(settings: &WalkSettings) -> WalkSettings {
     let mut settings = settings.clone();
     settings.display.timing.face_texels = u64::from(TEXELS);
     settings
@@ -21,12 +21,12 @@ fn small(settings: &Settings) -> Settings {
 ///
 /// All memories are drawn at once from one position. The single memory draws the same segments in the order of the
 /// memories.
-pub(super) fn composite_differs(world: &World, settings: &Settings, eye: DVec3) -> Result<u64, WalkError> {
+pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, SettingError> {
     let settings = small(settings);
     // Draw all memories from one position.
     let mut simulation = Simulation::new(world, &settings)?;
     simulation.frame(eye)?;
-    let faces = Faces::of(&simulation)?;
+    let faces = WalkFaces::of(&simulation)?;
     // Draw the same segments in the same order into one memory.
     let in_order: Vec<usize> =
         simulation.shown().iter().flatten().flat_map(|content| content.segments.clone()).collect();
@@ -48,18 +48,18 @@ const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 
 /// Counts the pixels that differ between the pictures of an ideal renderer and of a stalled renderer, while a head at a
 /// fixed position rotates.
-pub(super) fn turned_differ(world: &World, settings: &Settings, eye: DVec3) -> Result<u64, WalkError> {
+pub(super) fn turned_differ(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, SettingError> {
     // Simulate both renderers with the eye at rest until the slow one has drawn all memories.
     let ideal = small(settings);
     let source = SourceKind::Timed { triangles_per_s: STALLED_TRIANGLES_PER_S };
-    let stalled = Settings { source, ..ideal.clone() };
+    let stalled = WalkSettings { source, ..ideal.clone() };
     let mut seen = Vec::new();
     for settings in [ideal, stalled] {
         let mut simulation = Simulation::new(world, &settings)?;
         for _ in 0..FRAMES {
             simulation.frame(eye)?;
         }
-        seen.push(Faces::of(&simulation)?);
+        seen.push(WalkFaces::of(&simulation)?);
     }
     // Rotate the head and compare the pictures.
     let mut differ = 0;

@@ -4,25 +4,15 @@
 use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;
 use address_recalculation::priority::{draws_per_s, saved_percent};
-use serde::Serialize;
+use pxpl5_sim::figures::Definition;
+use pxpl5_sim::parameters::Provenance;
 
 /// Number of segments (parts of objects) in each display memory, with and without cutting objects at the borders of
 /// cells (table 2).
 pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
 
-/// A number computed from printed numbers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Definition {
-    /// Name of the number in the specification.
-    pub id: &'static str,
-    /// Description of the number and of its inputs.
-    pub statement: String,
-    pub value: f64,
-    pub unit: &'static str,
-}
-
 fn definition(id: &'static str, statement: String, value: f64, unit: &'static str) -> Definition {
-    Definition { id, statement, value, unit }
+    Definition { id, statement: statement.into(), source: "derived", value, unit, provenance: Provenance::Derived }
 }
 
 /// Returns all definitions.

@@ -1,18 +1,20 @@
 //! The published figures and the simulated values as a Markdown document.
 
 use super::definitions::{SEGMENTS, definitions};
-use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, NamedWalk, SizeLimit, SlowRendererResult};
+use super::experiments::{CellFit, EXPERIMENT_FRAMES, Experiments, NamedWalk, SizeLimit, SlowRendererResult};
 use super::fit::RATES_HZ;
 use super::interpretations::{Interpretations, LeftOutRate, RankedRules, Situation, ThresholdRow, Trial};
-use super::row::{Provenance, Row};
+use super::row::verdict;
 use super::rules::Rules;
 use crate::pictures::OF_FIGURES;
+use pxpl5_sim::figures::column::{ERROR, NUMBER, four};
+use pxpl5_sim::figures::{self, Basis, Definition, FigureRow, TableColumn};
 use std::fmt::Write as _;
 
 /// Returns the text of docs/address-recalculation.md: the rows with the provenance of each number, then the detailed
 /// tables.
 #[must_use]
-pub fn markdown(all: &Experiments, rows: &[Row]) -> String {
+pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
     let mut text = String::new();
     head(&mut text, rows);
     text.push_str(&table(rows));
@@ -61,10 +63,10 @@ fn pictures(text: &mut String) {
     );
 }
 
-fn head(text: &mut String, rows: &[Row]) {
-    let numbers = rows.iter().filter(|row| row.provenance != Provenance::Shape);
+fn head(text: &mut String, rows: &[FigureRow]) {
+    let numbers = rows.iter().filter(|row| row.basis != Basis::Shape);
     let met = numbers.clone().filter(|row| row.is_met).count();
-    let shapes = rows.iter().filter(|row| row.provenance == Provenance::Shape);
+    let shapes = rows.iter().filter(|row| row.basis == Basis::Shape);
     let shown = shapes.clone().filter(|row| row.is_met).count();
     let _ = write!(
         text,
@@ -89,62 +91,52 @@ fn head(text: &mut String, rows: &[Row]) {
     );
 }
 
+const COLUMNS: [TableColumn<FigureRow>; 9] = [
+    ("", |row| row.experiment.to_owned()),
+    NUMBER,
+    ("statement", |row| row.statement.to_string()),
+    ("published", |row| four(row.published)),
+    ("ours", |row| four(row.simulated)),
+    ("unit", |row| row.unit.to_owned()),
+    ERROR,
+    ("provenance", |row| if row.basis == Basis::Free { "checked" } else { row.basis.name() }.to_owned()),
+    ("", |row| verdict(row).to_owned()),
+];
+
 /// Returns the rows as a Markdown table with a heading.
 #[must_use]
-pub fn table(rows: &[Row]) -> String {
-    let mut text =
-        "| | # | statement | published | ours | unit | error | provenance | |\n|---|---|---|---|---|---|---|---|---|\n"
-            .to_owned();
-    rows.iter().for_each(|row| line(&mut text, row));
-    text
-}
-
-fn line(text: &mut String, row: &Row) {
-    let error = row.error_percent().map_or_else(|| "-".to_owned(), |error| format!("{error:+.1} %"));
-    let mark = if row.is_met { row.verdict() } else { "**missed**" };
-    let _ = writeln!(
-        text,
-        "| {} | {} | {} | {} | {} | {} | {error} | {} | {mark} |",
-        row.experiment,
-        row.id,
-        row.statement,
-        number(row.published),
-        number(row.ours),
-        row.unit,
-        row.provenance.text()
-    );
+pub fn table(rows: &[FigureRow]) -> String {
+    figures::table(&COLUMNS, rows)
 }
 
 /// Returns as a Markdown list the rows whose simulated numbers miss the published numbers, with their known causes.
 #[must_use]
-pub fn missed(rows: &[Row]) -> String {
+pub fn missed(rows: &[FigureRow]) -> String {
     let mut text = String::new();
     for row in rows.iter().filter(|row| !row.is_met) {
-        let both = [row.published, row.ours].map(number);
+        let both = [row.published, row.simulated].map(four);
         let _ = writeln!(
             text,
             "- Row **{}** (\"{}\") is missed. The papers print {} {}, and the model gives {}. {}\n",
-            row.id,
-            row.statement,
-            both[0],
-            row.unit,
-            both[1],
-            row.cause()
+            row.id, row.statement, both[0], row.unit, both[1], row.cause
         );
     }
     text
 }
 
 fn defined(text: &mut String) {
-    text.push_str(
+    let columns: [TableColumn<Definition>; 4] = [
+        ("#", |one| one.id.to_owned()),
+        ("what", |one| one.statement.to_string()),
+        ("value", |one| four(one.value)),
+        ("unit", |one| one.unit.to_owned()),
+    ];
+    let _ = write!(
+        text,
         "\n## Definitions\n\nThe numbers of this table follow from printed or assumed numbers alone. No simulation could change these numbers, so\n\
-         they are not called met or missed.\n\n\
-         | # | what | value | unit |\n|---|---|---|---|\n",
+         they are not called met or missed.\n\n{}",
+        figures::table(&columns, &definitions())
     );
-    for definition in definitions() {
-        let value = number(definition.value);
-        let _ = writeln!(text, "| {} | {} | {value} | {} |", definition.id, definition.statement, definition.unit);
-    }
 }
 
 /// Returns the relative errors of the update rates of display memories 1 to 3 as text, in percent.
@@ -166,7 +158,7 @@ fn fits(text: &mut String, all: &Experiments) {
          | published | | {} | |\n",
         rates(&RATES_HZ)
     );
-    for Fit { rules, cell_m, rates_hz } in &all.fits {
+    for CellFit { rules, cell_m, rates_hz } in &all.fits {
         let _ = writeln!(text, "| {} | {cell_m:.1} m | {} | {} |", rules.text(), rates(rates_hz), errors(rates_hz));
     }
 }
@@ -403,19 +395,6 @@ fn sizes(text: &mut String, all: &Experiments) {
         let _ =
             writeln!(text, "| {} | {translation} | {disc} | {sphere} | {} |", row.size_over_distance, who.join(", "));
     }
-}
-
-/// Formats a number with at least four significant digits and without trailing zeros.
-fn number(value: f64) -> String {
-    if !value.is_finite() {
-        return "none".to_owned();
-    }
-    if value.abs() < 1e-6 {
-        return "0".to_owned();
-    }
-    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 8) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// Writes the ratio of size to distance above which an object's growth on the screen decides how long its image is

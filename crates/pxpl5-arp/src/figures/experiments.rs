@@ -6,14 +6,14 @@ use super::gallery::gallery;
 use super::interpretations::{Interpretations, ThresholdRow, threshold_rows};
 use super::lens::straight_edge;
 use super::rules::Rules;
-use crate::error::WalkError;
-use crate::report::Report;
-use crate::settings::{Settings, SourceKind};
+use crate::report::ArpReport;
+use crate::settings::{SourceKind, WalkSettings};
 use crate::walk::{WalkTally, at_frames, walk};
 use crate::world::World;
 use address_recalculation::Lens;
 use address_recalculation::priority::{Objects, PriorityTiming, SizeRule, Threshold};
 use glam::{DMat3, DQuat, DVec3};
+use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// Number of frames of each walk: two minutes, or four fifths of a round on the gallery's path. The specification asks
@@ -25,14 +25,14 @@ pub const EXPERIMENT_FRAMES: u64 = 7_200;
 pub struct NamedWalk {
     /// Name of the viewer's walk in tables and documents.
     pub name: &'static str,
-    pub settings: Settings,
+    pub settings: WalkSettings,
     pub tally: WalkTally,
-    pub report: Report,
+    pub report: ArpReport,
 }
 
 /// The side of a cell (square of the floor), fitted to one update rate of table 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fit {
+pub struct CellFit {
     /// Rules with which the cell side was fitted.
     pub rules: Rules,
     /// Fitted side of a cell, in metres.
@@ -56,7 +56,7 @@ pub struct SlowRendererResult {
 #[derive(Clone, Debug)]
 pub struct Experiments {
     /// Two fits of the cell side in the gallery: with this project's rules, and with rings of equal width.
-    pub fits: [Fit; 2],
+    pub fits: [CellFit; 2],
     /// All interpretations of table 1.
     pub interpretations: Interpretations,
     /// Thresholds of the image error, each with the cell side that fits table 1.
@@ -95,29 +95,32 @@ impl Experiments {
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError`] if a scene or a number is invalid. The built-in scenes and numbers are valid.
-    pub fn run() -> Result<Self, WalkError> {
+    /// Returns a [`SettingError`] if a scene or a number is invalid. The built-in scenes and numbers are valid.
+    pub fn run() -> Result<Self, SettingError> {
         // Fit the cell size first: all other experiments use it.
         let (scene, path) = gallery()?;
-        let fit = |rules: Rules| -> Result<Fit, WalkError> {
+        let fit = |rules: Rules| -> Result<CellFit, SettingError> {
             let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, &rules, EXPERIMENT_FRAMES)?;
-            Ok(Fit { rules, cell_m, rates_hz })
+            Ok(CellFit { rules, cell_m, rates_hz })
         };
         let fits = [fit(Rules::USUAL)?, fit(Rules { ring_growth: 1, ..Rules::USUAL })?];
         let side = fits[0].cell_m;
         let world = World::new(&scene, side)?;
-        let cells = Settings::CELLS.with_cells(side);
+        let cells = WalkSettings::CELLS.with_cells(side);
         // Walk four times with the fitted cells.
         let kinds = [
             ("cut, torn", cells.clone()),
-            ("cut, warped", Settings::WARPED.with_cells(side)),
-            ("uncut", Settings { is_segmented: false, ..cells.clone() }),
-            ("cut, warped without cascade", Settings { has_cascade: false, ..Settings::WARPED.with_cells(side) }),
+            ("cut, warped", WalkSettings::WARPED.with_cells(side)),
+            ("uncut", WalkSettings { is_segmented: false, ..cells.clone() }),
+            (
+                "cut, warped without cascade",
+                WalkSettings { has_cascade: false, ..WalkSettings::WARPED.with_cells(side) },
+            ),
         ];
         let mut walks = Vec::new();
         for (name, settings) in kinds {
             let tally = walk(&world, &settings, EXPERIMENT_FRAMES, at_frames(&path, 1.0, 60.0))?;
-            let report = Report::of(&world, &settings, &tally, None);
+            let report = ArpReport::of(&world, &settings, &tally, None);
             walks.push(NamedWalk { name, settings, tally, report });
         }
         Ok(Self {
@@ -138,10 +141,10 @@ impl Experiments {
 }
 
 /// Repeats the walk with tears (gaps between memories) for renderers of decreasing speed.
-fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<SlowRendererResult>, WalkError> {
+fn slowed(world: &World, settings: &WalkSettings, path: &Walk) -> Result<Vec<SlowRendererResult>, SettingError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
-        let settings = Settings { source: SourceKind::Timed { triangles_per_s }, ..settings.clone() };
+        let settings = WalkSettings { source: SourceKind::Timed { triangles_per_s }, ..settings.clone() };
         let tally = walk(world, &settings, 1_800, at_frames(path, 1.0, 60.0))?;
         let missed = tally.memories.iter().map(|memory| memory.missed).collect();
         all.push(SlowRendererResult { triangles_per_s, rates_hz: tally.rates_hz(60.0), missed });

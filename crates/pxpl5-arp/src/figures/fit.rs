@@ -1,12 +1,12 @@
 //! The side of a cell (square of the floor), fitted to one update rate of table 1. The other rates serve as checks.
 
 use super::rules::Rules;
-use crate::error::WalkError;
 use crate::walk::at_frames;
 use crate::world::World;
 use address_recalculation::priority::{Cell, Cells, PriorityTiming};
 use glam::DVec3;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// Mean update rates of display memories 0 to 3, in Hz, as printed (table 1).
@@ -30,7 +30,7 @@ pub fn policy_rates_hz(
     numbers: &PriorityTiming,
     has_cascade: bool,
     frames: u64,
-) -> Result<Vec<f64>, WalkError> {
+) -> Result<Vec<f64>, SettingError> {
     let world = World::new(scene, numbers.cell_m)?;
     Ok(rates_hz(world.cells(), at_frames(path, 1.0, numbers.frame_hz), numbers, has_cascade, frames))
 }
@@ -62,7 +62,7 @@ pub(super) fn rates_hz(
 /// # Errors
 ///
 /// Fails in the same cases as [`policy_rates_hz`].
-pub fn fitted_cell_m(scene: &Scene, path: &Walk, rules: &Rules, frames: u64) -> Result<(f64, Vec<f64>), WalkError> {
+pub fn fitted_cell_m(scene: &Scene, path: &Walk, rules: &Rules, frames: u64) -> Result<(f64, Vec<f64>), SettingError> {
     // Keep the side, its rates and its error.
     let mut best = (f64::NAN, Vec::new(), f64::INFINITY);
     for tenths in TENTHS {

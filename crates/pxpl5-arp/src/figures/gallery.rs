@@ -1,8 +1,8 @@
 //! The gallery, the scene of all experiments.
 
-use crate::error::WalkError;
 use crate::hall::{Route, path_of, scaled};
 use pxpl5_scene::{Scene, builtin};
+use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// Scale of the gallery in the experiments. The scaled gallery is 20 m wide: eight cells of 2.5 m. The gallery then has
@@ -10,12 +10,8 @@ use tracking::motion::Walk;
 const HALL_SCALE: f64 = 0.5;
 
 /// Returns the scaled gallery and its path.
-pub(crate) fn gallery() -> Result<(Scene, Walk), WalkError> {
-    let scene = builtin("gallery").map_err(|error| WalkError::Scene {
-        scene: "gallery".to_owned(),
-        expected: "a built-in scene",
-        found: error.to_string(),
-    })?;
+pub(crate) fn gallery() -> Result<(Scene, Walk), SettingError> {
+    let scene = builtin("gallery")?;
     let scene = scaled(&scene, HALL_SCALE)?;
     let path = path_of(&scene, Route::Scene)?;
     Ok((scene, path))

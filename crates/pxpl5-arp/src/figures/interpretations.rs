@@ -8,10 +8,10 @@
 use super::fit::{RATES_HZ, policy_rates_hz, rates_hz};
 use super::gallery::gallery;
 use super::rules::Rules;
-use crate::error::WalkError;
 use crate::walk::at_frames;
 use address_recalculation::priority::{Cell, PriorityTiming};
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use tracking::motion::Walk;
 
@@ -63,7 +63,7 @@ impl Situation {
     }
 
     /// Returns the updates per second of each display memory for a viewer's walk at 1 m/s.
-    fn rates(self, rules: &Rules, cell_m: f64) -> Result<[f64; 4], WalkError> {
+    fn rates(self, rules: &Rules, cell_m: f64) -> Result<[f64; 4], SettingError> {
         let numbers = rules.numbers(cell_m);
         let rates = if self == Self::Gallery {
             let (scene, path) = gallery()?;
@@ -171,11 +171,11 @@ impl Tried {
     /// # Errors
     ///
     /// Fails in the same cases as [`policy_rates_hz`].
-    pub fn of(rules: Rules, situation: Situation) -> Result<Self, WalkError> {
+    pub fn of(rules: Rules, situation: Situation) -> Result<Self, SettingError> {
         let trial = |cell_m| Ok(Trial { cell_m, rates_hz: situation.rates(&rules, cell_m)? });
         // First pass with coarse steps.
         let coarse = (0..STEPS).map(|step| trial(FIRST_SIDE_M * STEP.powi(step)));
-        let mut trials = coarse.collect::<Result<Vec<Trial>, WalkError>>()?;
+        let mut trials = coarse.collect::<Result<Vec<Trial>, SettingError>>()?;
         let middle = best_of(&trials, &COMPARED).map_or(FIRST_SIDE_M, |best| best.cell_m);
         // Second pass around the best side.
         for factor in [0.96, 0.98, 1.02, 1.04] {
@@ -210,7 +210,7 @@ impl Interpretations {
     /// # Errors
     ///
     /// Fails in the same cases as [`policy_rates_hz`].
-    pub fn run(finished: impl Fn(u64, u64)) -> Result<Self, WalkError> {
+    pub fn run(finished: impl Fn(u64, u64)) -> Result<Self, SettingError> {
         let all = Rules::all();
         let runs = (all.len() * Situation::ALL.len()) as u64;
         let mut ranked = Vec::new();

@@ -1,9 +1,9 @@
 //! A straight edge seen through a lens, to test the lens correction.
 
 use crate::cube_faces::{Corner, CubeView, DepthRange};
-use crate::error::WalkError;
 use address_recalculation::{ArpConfig, FaceSet, Lens, Lookup, Orientation};
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 
 /// Returns the bend of an upright edge on the screen and as seen through the lens, in pixels of the picture's middle.
 ///
@@ -12,8 +12,8 @@ use glam::DVec3;
 ///
 /// # Errors
 ///
-/// Returns [`WalkError`] if the lens is invalid.
-pub fn straight_edge(lens: Lens) -> Result<[f64; 2], WalkError> {
+/// Returns a [`SettingError`] if the lens is invalid.
+pub fn straight_edge(lens: Lens) -> Result<[f64; 2], SettingError> {
     let config = ArpConfig { lens, ..ArpConfig::IDEAL };
     let config =
         ArpConfig { timing: address_recalculation::ArpTiming { display_memories: 1, ..config.timing }, ..config };

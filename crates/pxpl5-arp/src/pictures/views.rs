@@ -3,18 +3,18 @@
 use super::colours::MEMORY_COLOURS;
 use crate::content::angle;
 use crate::cube_faces::CubeView;
-use crate::error::WalkError;
-use crate::look::{Faces, picture, rgb};
+use crate::look::{WalkFaces, picture, rgb};
 use crate::simulation::Simulation;
-use address_recalculation::{ArpConfig, Lens, Picture};
+use address_recalculation::{ArpConfig, Lens, LensPicture};
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
+use pxpl5_sim::parameters::SettingError;
 
 /// A view of the cube faces of all memories.
 #[derive(Clone, Debug)]
-pub struct Views<'a> {
+pub struct MemoryViews<'a> {
     /// Faces of all memories.
-    pub faces: &'a Faces,
+    pub faces: &'a WalkFaces,
     /// Orientation of the head.
     pub orientation: DQuat,
     /// Lens through which the eye looks.
@@ -27,13 +27,13 @@ pub(crate) fn without_lens(display: &ArpConfig) -> Lens {
     if Lens::Flat.check(&display.picture()).is_ok() { Lens::Flat } else { display.lens.clone() }
 }
 
-impl Views<'_> {
+impl MemoryViews<'_> {
     /// Returns the picture that the eye sees.
     ///
     /// # Errors
     ///
-    /// Returns [`WalkError::Display`] if the lens is invalid.
-    pub fn seen(&self) -> Result<RgbImage, WalkError> {
+    /// Returns a [`SettingError`] if the lens is invalid.
+    pub fn seen(&self) -> Result<RgbImage, SettingError> {
         Ok(self.faces.clone().through(self.lens.clone()).seen(self.orientation)?.0)
     }
 
@@ -41,8 +41,8 @@ impl Views<'_> {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Views::seen`].
-    pub fn memories(&self) -> Result<RgbImage, WalkError> {
+    /// Fails in the same cases as [`MemoryViews::seen`].
+    pub fn memories(&self) -> Result<RgbImage, SettingError> {
         let mut seen = self.seen()?;
         let (width, winners) = self.faces.clone().through(self.lens.clone()).winners(self.orientation)?;
         let tints =
@@ -61,8 +61,8 @@ impl Views<'_> {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`Views::seen`].
-    pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, WalkError> {
+    /// Fails in the same cases as [`MemoryViews::seen`].
+    pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, SettingError> {
         let view = simulation.settings().view()?;
         let screen = simulation.settings().display.picture();
         let bar = 24;
@@ -93,7 +93,7 @@ impl Views<'_> {
 }
 
 /// Returns the number of pixels per radian in the middle of a picture.
-fn pixels_per_radian(lens: &Lens, screen: &Picture) -> f64 {
+fn pixels_per_radian(lens: &Lens, screen: &LensPicture) -> f64 {
     let view = |x: u32| DVec3::from_array(lens.view(screen, x.min(screen.width - 1), screen.height / 2));
     let middle = screen.width / 2;
     1.0 / angle(view(middle.saturating_sub(1)), view(middle)).max(f64::MIN_POSITIVE)

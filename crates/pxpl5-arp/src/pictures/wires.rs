@@ -1,7 +1,7 @@
 //! Wireframe drawing of the cuts that the segmentation makes, as the eye sees them.
 
 use crate::world::World;
-use address_recalculation::Picture;
+use address_recalculation::LensPicture;
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -13,7 +13,7 @@ const NEAR_M: f64 = 0.05;
 ///
 /// Edges of the scene are grey. Edges that result from cuts at the borders of cells with side `side_m` are red.
 #[must_use]
-pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, screen: &Picture) -> String {
+pub fn cuts_svg(world: &World, side_m: f64, eye: DVec3, orientation: DQuat, screen: &LensPicture) -> String {
     let [width, height] = [screen.width, screen.height].map(f64::from);
     let focal = width / 2.0 / libm::tan(screen.horizontal_deg.to_radians() / 2.0);
     let mut svg = format!(

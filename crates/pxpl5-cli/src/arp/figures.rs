@@ -2,7 +2,7 @@
 
 use super::settings::put;
 use crate::error::CliError;
-use crate::figures::{family_rows, fresh};
+use crate::figures::{fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
 use crate::terminal::{print, progress};
 use clap::Args;
@@ -56,8 +56,8 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
         fresh(path, &markdown, "arp figures")?;
     }
     match (args.json, args.quiet) {
-        (true, _) => print(&format!("{:#}\n", json!({ "schema": "pxpl5-arp-figures/1", "figures": rows }))),
+        (true, _) => print(&format!("{:#}\n", json!({ "schema": "pxpl5-arp-figures/2", "figures": rows }))),
         (false, true) => Ok(()),
-        (false, false) => print(&family_rows(&rows)),
+        (false, false) => print(&rows_text(&rows)),
     }
 }

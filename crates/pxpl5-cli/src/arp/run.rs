@@ -8,7 +8,7 @@ use crate::terminal::{advance, print, progress};
 use crate::version::{VERSION, commit_text};
 use clap::Args;
 use pxpl5::arp::pictures::of_walk;
-use pxpl5::arp::{MemoryReport, Percentiles, Report, WalkOutcome};
+use pxpl5::arp::{ArpReport, TearWidths, WalkMemoryReport, WalkOutcome};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -75,8 +75,8 @@ fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Returns the text of frames.csv. Each line has the position of the eye in one frame. For each display memory it has 1
-/// or 0 for an update that was due, shown or missed.
+/// Returns the text of frames.csv. Each line has the position of the eye in one frame. For each display memory, the
+/// line has three columns with 1 or 0: update due, update shown, update missed.
 fn frames_csv(outcome: &WalkOutcome) -> String {
     let memories = outcome.tally.memories.len();
     let columns = (0..memories).map(|k| format!(",due_{k},shown_{k},missed_{k}")).collect::<String>();
@@ -139,15 +139,16 @@ fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
     text
 }
 
-/// Returns the mean latency from a step of the head to the display of each memory's picture, in ms.
-fn steps(report: &Report) -> String {
+/// Returns the mean latency from a step (translation) of the head until the picture of each display memory is lit, in
+/// ms, as text.
+fn steps(report: &ArpReport) -> String {
     let totals = report.memories.iter().map(|memory| memory.translation_latency_ms.total);
     let totals: Vec<String> = totals.map(|total| or_none(total.map(|ms| format!("{ms:.1}")))).collect();
     format!("{} ms", totals.join(", "))
 }
 
-fn line(text: &mut String, number: usize, memory: &MemoryReport) {
-    let MemoryReport { updates_hz, segments, missed, eye_age_mm, .. } = memory;
+fn line(text: &mut String, number: usize, memory: &WalkMemoryReport) {
+    let WalkMemoryReport { updates_hz, segments, missed, eye_age_mm, .. } = memory;
     let triangles = or_none(memory.triangles.map(|triangles| format!("{triangles:.0}")));
     let _ = writeln!(
         text,
@@ -161,7 +162,7 @@ fn or_none(text: Option<String>) -> String {
 
 /// Formats the median, the 95th percentile and the maximum of a set of widths. Widths below 1e-6 are rounding errors
 /// and appear as 0.
-pub(super) fn widths(widths: Option<Percentiles>) -> String {
+pub(super) fn widths(widths: Option<TearWidths>) -> String {
     let number = |width: f64| if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") };
-    or_none(widths.map(|Percentiles { p50, p95, max }| [p50, p95, max].map(number).join(", ")))
+    or_none(widths.map(|TearWidths { p50, p95, max }| [p50, p95, max].map(number).join(", ")))
 }

@@ -3,15 +3,16 @@
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::{Estimate, WalkWork};
-use crate::leaves::{leaves, plain};
+use crate::numbers::plain;
 use crate::output::OutputFolder;
 use crate::scenes;
 use crate::terminal::warn;
 use clap::Args;
-use pxpl5::arp::Plan;
+use pxpl5::arp::WalkPlan;
 use pxpl5::arp::address_recalculation::{ArpConfig, Lens};
-use pxpl5::arp::pictures::Picture;
+use pxpl5::arp::pictures::ArpPicture;
 use pxpl5::scene::{Placement, Scene};
+use pxpl5::sweep::leaves;
 use pxpl5::views::png_bytes;
 use pxpl5::{MotionChoice, Parameter, SceneChoice};
 use pxpl5_sim::parameters::text_of;
@@ -75,9 +76,9 @@ impl WalkArgs {
     /// # Errors
     ///
     /// Returns an error that names the wrong file, option or setting, the expected value and the value found.
-    pub(super) fn gather(&self) -> Result<(Arc<Scene>, Plan), CliError> {
+    pub(super) fn gather(&self) -> Result<(Arc<Scene>, WalkPlan), CliError> {
         let (scene, given) = self.given()?;
-        let mut plan = Plan::usual();
+        let mut plan = WalkPlan::usual();
         let mut table = None;
         // A lens table is read last, because its size depends on the picture that the other settings choose.
         for (path, value, place) in &given {
@@ -104,7 +105,7 @@ impl WalkArgs {
     /// # Errors
     ///
     /// Returns the estimate and advice on how to reduce the work.
-    pub(super) fn admit(&self, plan: &Plan, scene: &Scene, walks: u64) -> Result<(), CliError> {
+    pub(super) fn admit(&self, plan: &WalkPlan, scene: &Scene, walks: u64) -> Result<(), CliError> {
         let one = WalkWork::of(plan, scene).estimate();
         let all = Estimate { seconds: walks as f64 * one.seconds, ..one };
         self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
@@ -116,7 +117,7 @@ impl WalkArgs {
     ///
     /// Fails in the same cases as [`WalkArgs::gather`].
     pub(super) fn of_display(lens: Option<&String>, sets: &[String]) -> Result<ArpConfig, CliError> {
-        let mut plan = Plan::usual();
+        let mut plan = WalkPlan::usual();
         lens.map(|lens| plan.set(LENS, lens, "--lens")).transpose()?;
         for assignment in sets {
             plan.assign(assignment, "--set")?;
@@ -165,13 +166,13 @@ impl WalkArgs {
     }
 }
 
-fn read_lens(path: &Path, plan: &Plan) -> Result<Lens, CliError> {
+fn read_lens(path: &Path, plan: &WalkPlan) -> Result<Lens, CliError> {
     let failed = |error: &dyn std::fmt::Display| CliError::failure(format!("{}: {error}", path.display()));
     let file = File::open(path).map_err(|error| failed(&error))?;
     Lens::read(BufReader::new(file), &plan.picture()).map_err(|error| failed(&error))
 }
 
-fn warnings(plan: &Plan) -> Vec<String> {
+fn warnings(plan: &WalkPlan) -> Vec<String> {
     let numbers = plan.numbers().into_iter().filter(|(_, entry)| !entry.is_in_range());
     let parameters =
         numbers.map(|(path, entry)| Parameter { path, info: *entry.info, value: entry.value, read_only: false });
@@ -190,23 +191,23 @@ fn load(name: &str) -> Result<Arc<Scene>, CliError> {
     Ok(choice.load()?)
 }
 
-/// Writes pictures into a folder. Each PNG file also holds the settings that reproduce it.
+/// Writes pictures into a folder. Each PNG file also holds the settings that reproduce the picture.
 ///
 /// # Errors
 ///
 /// Fails when a picture cannot be encoded or written.
 pub(super) fn put(
     folder: &mut OutputFolder,
-    pictures: &[Picture],
+    pictures: &[ArpPicture],
     origin: &[(&'static str, String)],
 ) -> Result<(), CliError> {
     for picture in pictures {
         match picture {
-            Picture::Pixels(name, pixels) => {
+            ArpPicture::Pixels(name, pixels) => {
                 let png = png_bytes(pixels, origin).map_err(CliError::failure)?;
                 folder.put(&format!("{name}.png"), &png)?;
             }
-            Picture::Drawing(name, text) => folder.put(&format!("{name}.svg"), text.as_bytes())?,
+            ArpPicture::Drawing(name, text) => folder.put(&format!("{name}.svg"), text.as_bytes())?,
         }
     }
     Ok(())

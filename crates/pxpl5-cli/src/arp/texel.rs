@@ -4,7 +4,6 @@ use super::settings::WalkArgs;
 use crate::error::CliError;
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::arp::WalkError;
 use pxpl5::arp::address_recalculation::{ArpConfig, Footprint, Orientation, TexelAddress};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -45,7 +44,7 @@ pub(super) fn run(args: TexelArgs) -> Result<(), CliError> {
     let display = WalkArgs::of_display(args.lens.as_ref(), &args.sets)?;
     let orientation = Orientation::from_quaternion(quaternion([args.yaw, args.pitch, args.roll]));
     let found = orientation.and_then(|orientation| display.footprint(args.x, args.y, &orientation));
-    let Some(footprint) = found.map_err(WalkError::from)? else {
+    let Some(footprint) = found? else {
         let picture = display.picture();
         let [width, height] = [picture.width, picture.height];
         let found = format!("pixel {} {}", args.x, args.y);
@@ -64,7 +63,7 @@ fn quaternion(degrees: [f64; 3]) -> [f64; 4] {
 }
 
 /// Returns the four texels that a pixel shows, with weights that sum to 1. At a cube corner the fourth texel does not
-/// exist (`None`). Its weight then applies to the mean of the other three.
+/// exist (`None`). The weight of the fourth texel then applies to the mean of the other three texels.
 fn texels(display: &ArpConfig, footprint: &Footprint) -> [(Option<TexelAddress>, f64); 4] {
     let weights = footprint.weights(display.timing.weight_bits);
     let one = f64::from(1_u32 << (2 * display.timing.weight_bits));

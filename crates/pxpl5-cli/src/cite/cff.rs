@@ -5,7 +5,7 @@ use super::{AUTHOR, REPOSITORY, TITLE};
 use crate::version::VERSION;
 use std::fmt::Write;
 
-/// Returns the file.
+/// Returns the text of the file CITATION.cff.
 pub(super) fn file() -> String {
     let mut text = format!(
         "# Written by: pxpl5 cite --format cff

@@ -23,7 +23,7 @@ pub(super) struct Work {
     pub(super) authors: &'static [Name],
     pub(super) title: &'static str,
     pub(super) venue: &'static str,
-    /// Number of a report.
+    /// Number of a technical report.
     pub(super) number: Option<&'static str>,
     pub(super) year: u16,
     pub(super) pages: Option<[u16; 2]>,

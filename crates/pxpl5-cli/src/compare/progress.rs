@@ -21,7 +21,8 @@ pub(super) struct CompareProgress {
 const LINES: u64 = 10;
 
 impl CompareProgress {
-    /// Begins the progress of a comparison of which some rows are finished already.
+    /// Shows the progress of a comparison of `rows` rows. If the comparison is resumed, `found` of these rows were
+    /// already finished.
     pub(super) fn new(found: usize, rows: usize, quiet: bool) -> Self {
         let progress = Self {
             bar: terminal::progress(0, "runs", quiet),
@@ -36,7 +37,7 @@ impl CompareProgress {
         progress
     }
 
-    /// Reports that `done` of `of` runs have ended.
+    /// Shows that `done` of the `of` planned runs have ended.
     pub(super) fn finished(&self, done: u64, of: u64) {
         self.bar.set_length(of);
         self.bar.set_position(done);
@@ -49,7 +50,7 @@ impl CompareProgress {
         }
     }
 
-    /// Reports that all runs of a row have ended.
+    /// Shows that all runs of a row have ended.
     pub(super) fn ended(&self, row: &ComparisonRow) {
         let done = self.rows.0.fetch_add(1, Ordering::Relaxed) + 1;
         self.line(&format!("pxpl5: row {done} of {}, {}; {}\n", self.rows.1, result(row), self.left()));
@@ -59,7 +60,8 @@ impl CompareProgress {
         self.bar.finish_and_clear();
     }
 
-    /// Returns the time left, if the remaining runs take as long as the runs that have ended.
+    /// Returns the estimated time left as text. The estimate assumes that the remaining runs take as long as the
+    /// finished runs.
     fn left(&self) -> String {
         let [done, of] = [&self.runs.0, &self.runs.1].map(|count| count.load(Ordering::Relaxed));
         let left = self.begun.elapsed().as_secs_f64() / done.max(1) as f64 * of.saturating_sub(done) as f64;

@@ -20,9 +20,12 @@ const COLUMNS: [(&str, &str, usize); 15] = [
     ("90 %", "px", 7),
     ("99 %", "px", 8),
     ("n", "", 8),
-    ("best with", "px", 19),
+    (BEST_WITH, "px", 19),
     ("triangles", "possible", 10),
 ];
+
+/// Name of the column with the best predictor.
+const BEST_WITH: &str = "best with";
 
 /// Width in characters of the column with the pipelines' names.
 const NAME: usize = 24;
@@ -30,25 +33,27 @@ const NAME: usize = 24;
 /// Returns the comparison as text for the terminal.
 pub(super) fn text(comparison: &Comparison) -> String {
     let mut text = heading(comparison);
-    let _ = writeln!(text, "\n{}", header());
+    let _ = writeln!(text, "\n{}", header(comparison));
     comparison.pipelines.iter().for_each(|row| text.push_str(&line(comparison, row)));
     text.push_str(&best(comparison));
     text.push_str(&intervals(comparison));
     text.push_str(&imprecise(comparison));
-    text.push_str(&causes(comparison));
+    if comparison.pipelines.iter().any(|row| !row.causes.is_empty()) {
+        text.push_str(&causes(comparison));
+    }
     text.push_str(
         "\nto light: time from the head's pose until the middle of the picture is lit; turn: the same for an orientation that a display with\n\
          faces reads at scan-out; figure 19: sum of two means as in the papers, from the pose to its report and from an eye's TRANSFORM to\n\
          the swap, without the wait for the pipeline, SEND, EDIT and the scan; predicts: time from the newest measurement to the instant\n\
          for which a picture is drawn; updates: new pictures per second (frameless rendering: passes over all blocks of the screen,\n\
-         docs/results.md); interval: range of the mean; n: evaluated pixels; best with: the predictor with the least error for the first\n\
-         seed; - : no sample was evaluated; ! : some due pictures were not shown, so the error covers only the others; + : evaluated from\n\
+         docs/results.md); interval: range of the mean; n: evaluated pixels; best with (--predictors): the predictor with the least error for\n\
+         the first seed; - : no sample was evaluated; ! : some due pictures were not shown, so the error covers only the others; + : evaluated from\n\
          a later field on than the other rows. Rows with a mark are never the best.\n",
     );
     text
 }
 
-/// Returns a sentence for each method of the intervals, with the rows that use the method.
+/// Returns a sentence for each statistical method of confidence intervals, with the rows that use the method.
 fn intervals(comparison: &Comparison) -> String {
     let confidence = percent(comparison.confidence);
     let mut text = String::new();
@@ -62,19 +67,21 @@ fn intervals(comparison: &Comparison) -> String {
     text
 }
 
-/// Returns a share in percent, with the digits that it needs.
+/// Converts a share from 0 to 1 into percent, rounded to six decimals, so that rounding errors of the product do not
+/// appear.
 fn percent(share: f64) -> f64 {
     (share * 1e8).round() / 1e6
 }
 
-/// Returns the name of a row, with the lengths of the series and of the blocks of a bootstrap.
+/// Returns the name of a row. If a bootstrap gave the confidence interval of the row, the lengths of the row's series
+/// and of its blocks follow, in fields.
 fn with_blocks(row: &ComparisonRow) -> String {
     let blocks =
         row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));
     format!("{}{}", row.pipeline, blocks.unwrap_or_default())
 }
 
-/// Returns sentences about the seeds of the rows, if the comparison added seeds for a precision.
+/// Returns sentences about the number of seeds of each row, if the comparison added seeds to reach a given precision.
 fn imprecise(comparison: &Comparison) -> String {
     let Some(width) = &comparison.until_precision else { return String::new() };
     let rows = |precise: bool| {
@@ -107,10 +114,16 @@ fn heading(comparison: &Comparison) -> String {
     )
 }
 
-fn header() -> String {
-    let names: String = COLUMNS.iter().map(|(name, _, width)| format!(" {name:>width$}")).collect();
-    let units: String = COLUMNS.iter().map(|(_, unit, width)| format!(" {unit:>width$}")).collect();
+fn header(comparison: &Comparison) -> String {
+    let shown = || COLUMNS.iter().filter(|(name, ..)| is_shown(comparison, name));
+    let names: String = shown().map(|(name, _, width)| format!(" {name:>width$}")).collect();
+    let units: String = shown().map(|(_, unit, width)| format!(" {unit:>width$}")).collect();
     format!("{:<NAME$}{names}\n{:<NAME$}{units}", "pipeline", "")
+}
+
+/// Returns true if the table has this column. The predictors have a column only if the comparison ran them.
+fn is_shown(comparison: &Comparison, column: &str) -> bool {
+    column != BEST_WITH || comparison.pipelines.iter().any(|row| !row.predictors.is_empty())
 }
 
 /// Returns the name of a row, followed by its marks (symbols that refer to remarks).
@@ -160,7 +173,8 @@ fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
         row.best_predictor().map_or_else(|| "-".to_owned(), |best| format!("{} {:.2}", best.kind.name(), best.mean_px)),
         row.triangles_possible.map_or_else(|| "-".to_owned(), |n| n.to_string()),
     ];
-    let cells: String = COLUMNS.iter().zip(values).map(|((_, _, width), value)| format!(" {value:>width$}")).collect();
+    let shown = COLUMNS.iter().zip(values).filter(|((name, ..), _)| is_shown(comparison, name));
+    let cells: String = shown.map(|((_, _, width), value)| format!(" {value:>width$}")).collect();
     format!("{:<NAME$}{cells}\n", name(comparison, row))
 }
 

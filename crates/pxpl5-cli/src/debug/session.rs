@@ -145,7 +145,8 @@ impl Session {
         })
     }
 
-    /// Resumes the run by calling `piece`. Returns the reason and the simulated time of the next stop.
+    /// Resumes the run by a call of `piece`, which runs to the next stop. Returns the reason for this stop and its
+    /// simulated time as text.
     fn go(&mut self, piece: impl FnOnce(&mut Stepper) -> Pause) -> String {
         let mut text = match piece(&mut self.stepper) {
             Pause::Reached => String::new(),

@@ -19,7 +19,7 @@ pub(super) struct RunOptions {
 /// Default number of changed memory words that the report lists.
 const CHANGED_SHOWN: usize = 64;
 
-/// A range of consecutive memory words, with the address of the first.
+/// A range of consecutive memory words, with the address of the first word.
 struct Span {
     address: u32,
     words: Vec<u32>,
@@ -92,7 +92,7 @@ fn known(program: &Program, text: &str) -> Result<u32, String> {
     })
 }
 
-/// Parses a memory range: `PLACE` or `PLACE:WORDS`. Returns its address and its number of words.
+/// Parses a memory range: `PLACE` or `PLACE:WORDS`. Returns the address of the range and the number of words.
 fn span(program: &Program, text: &str) -> Result<(u32, usize), String> {
     let Some((at, words)) = text.rsplit_once(':') else { return Ok((known(program, text)?, 1)) };
     let count = words.parse().ok().filter(|count| (1..=65_536).contains(count));
@@ -106,7 +106,8 @@ fn read(ram: &Ram, (address, count): (u32, usize)) -> Result<Span, String> {
     Ok(Span { address, words })
 }
 
-/// Returns the first changed memory words, joined into ranges, and the number of changed words beyond the limit.
+/// Returns the first [`CHANGED_SHOWN`] changed memory words, joined into ranges, and the number of further changed
+/// words.
 fn changed(before: &Ram, after: &Ram) -> (Vec<Span>, usize) {
     let words = |ram: &'_ Ram| -> Vec<u32> {
         ram.bytes().chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()

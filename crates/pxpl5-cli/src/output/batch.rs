@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Output files that are complete but do not have their final names yet.
 #[derive(Debug)]
 pub(super) struct Batch {
-    /// Place of the output, for error messages.
+    /// Description of the output and of its option, for error messages.
     place: Place,
     files: Vec<Staged>,
     /// Files of the previous run. These files are deleted after all new files have their names.
@@ -195,8 +195,8 @@ impl Drop for Batch {
     }
 }
 
-/// Keeps the current contents of the file `name` under a second name. Copies the permissions of `name` to the file
-/// `next`.
+/// Keeps the current contents of the file `name` under a second name, so that a failed commit can restore them. Copies
+/// the permissions of `name` to the file `next`. Returns the second name, or `None` if `name` does not exist.
 fn kept(name: &Path, next: &Path) -> io::Result<Option<PathBuf>> {
     match name.symlink_metadata() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),

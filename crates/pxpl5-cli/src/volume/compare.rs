@@ -10,7 +10,7 @@ use clap::Args;
 use pxpl5::views::charts::{ChartAxes, Curve, curve_chart};
 use pxpl5::views::png_bytes;
 use pxpl5::views::results::csv_table;
-use pxpl5::volume::compare::{VariantRow, Viewpoint, VolumeComparison, compare, variant_count};
+use pxpl5::volume::compare::{ComparePoint, VariantRow, VolumeComparison, compare, variant_count};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -44,7 +44,8 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     let scene = args.volume.load_scene()?;
     options.admit(&settings, &scene, variant_count() as usize)?;
     // Pictures are rendered only for an output folder.
-    let viewpoint = folder.is_some().then_some(Viewpoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: args.size });
+    let viewpoint =
+        folder.is_some().then_some(ComparePoint { azimuth_deg: 40.0, elevation_deg: 25.0, side: args.size });
     let bar = progress(variant_count(), "volumes", options.quiet);
     let comparison = compare(&settings, &scene, viewpoint, &options.threads(), |done, of| advance(&bar, done, of));
     bar.finish_and_clear();

@@ -2,13 +2,13 @@
 
 use super::settings::load;
 use crate::error::CliError;
-use crate::figures::fresh;
+use crate::figures::{fresh, rows_text};
 use crate::output::{OutputFile, OutputFolder};
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::scene::Scene;
 use pxpl5::views::png_bytes;
-use pxpl5::volume::figures::{Drawing, FigureRow, Figures, all, drawings, markdown};
+use pxpl5::volume::figures::{FigureDrawing, VolumeFigures, all, drawings, markdown};
 use pxpl5::volume::spatialgl::Threads;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -78,45 +78,17 @@ fn draw(folder: &mut OutputFolder, scenes: &[Arc<Scene>]) -> Result<(), CliError
         folder.put(&format!("figure-{:02}.png", drawing.number), &png)?;
     }
     let texts = [("about", "figures 4 to 12, row by row".to_owned())];
-    folder.put("figures.png", &png_bytes(&Drawing::sheet(&drawn), &texts).map_err(CliError::failure)?)
+    folder.put("figures.png", &png_bytes(&FigureDrawing::sheet(&drawn), &texts).map_err(CliError::failure)?)
 }
 
-fn text(figures: &Figures) -> String {
-    let mut text = format!(
-        "{:<9} {:>16} {:>16}  {:<9} {:>9}  {:<10} {:<6} {}\n",
-        "#", "expected", "model", "unit", "error", "provenance", "", "what"
-    );
-    figures.figures.iter().for_each(|row| line(&mut text, row));
+fn text(figures: &VolumeFigures) -> String {
+    let mut text = rows_text(&figures.figures);
     text.push_str("\nStated without numbers:\n");
     // Statements without a number are checked for their shape.
     for shown in &figures.shown {
         let mark = if shown.holds { "shown" } else { "NOT SHOWN" };
         let _ = writeln!(text, "  {mark:<9} {}: {}", shown.statement, shown.evidence);
     }
-    let missed = figures.figures.iter().filter(|row| !row.is_met).count();
-    let defined = figures.definitions.len();
-    let _ = writeln!(text, "\n{} rows, {missed} missed; {defined} definitions are not compared", figures.figures.len());
+    let _ = writeln!(text, "\n{} definitions are not compared", figures.definitions.len());
     text
-}
-
-fn line(text: &mut String, row: &FigureRow) {
-    let figure = &row.figure;
-    let scene = row.scene.as_ref().map_or_else(String::new, |scene| format!(" ({scene})"));
-    let mark = if row.is_met { "met" } else { "MISSED" };
-    let _ = writeln!(
-        text,
-        "{:<9} {:>16} {:>16}  {:<9} {:>+8.2}%  {:<10} {mark:<6} {}{scene}",
-        figure.id,
-        compact(figure.published),
-        compact(figure.computed),
-        figure.unit,
-        if figure.published == 0.0 { 0.0 } else { row.error_percent },
-        figure.provenance,
-        figure.statement
-    );
-}
-
-/// Formats a whole number without decimals, and other numbers with seven decimals.
-fn compact(value: f64) -> String {
-    if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.7}") }
 }

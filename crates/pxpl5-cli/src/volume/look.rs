@@ -87,7 +87,7 @@ pub(super) struct FilmArgs {
     out: PathBuf,
 }
 
-/// Parses two angles separated by a colon.
+/// Parses the value of `--cut`: two angles separated by a colon, such as `0:90`.
 fn cut(text: &str) -> Result<[f64; 2], String> {
     let angles = text.split_once(':').and_then(|(from, to)| Some([from.parse().ok()?, to.parse().ok()?]));
     let finite = angles.filter(|angles: &[f64; 2]| angles.iter().all(|angle| angle.is_finite()));

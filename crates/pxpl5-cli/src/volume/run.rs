@@ -59,7 +59,8 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns the work of the renderers, and the part of the machine that limits the number of volumes per second.
+/// Returns a text about the work of the renderers, and about the part of the machine that limits the number of volumes
+/// per second.
 fn bounds(planes: &PixelPlanesReport) -> String {
     let work = &planes.counts.work;
     let mut text = format!(

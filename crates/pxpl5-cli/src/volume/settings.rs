@@ -167,15 +167,19 @@ impl VolumeSettingArgs {
 
 /// Loads a scene by name or file, and scales it to fit into the display.
 pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, CliError> {
-    let choice = SceneChoice {
+    Ok(scene_choice(name, triangles).load()?)
+}
+
+/// Returns the choice of a scene that is scaled to fit into the display.
+pub(super) fn scene_choice(name: &str, triangles: Option<u64>) -> SceneChoice {
+    SceneChoice {
         name: name.to_owned(),
         placement: Placement::Fitted,
         triangles: triangles.map(|triangles| triangles as usize),
         culled: false,
         motion: MotionChoice::default(),
         contents: None,
-    };
-    Ok(choice.load()?)
+    }
 }
 
 /// Returns a picture as PNG, with the settings that reproduce it.

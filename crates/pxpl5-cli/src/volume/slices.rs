@@ -84,7 +84,7 @@ pub(super) fn slice(args: SliceArgs) -> Result<(), CliError> {
     say(args.volume.settings.quiet, &args.out, &format!("slice {slice} of {}", volume.scene))
 }
 
-/// Returns the tiling of the volume. A volume without tiling counts as a single tile.
+/// Returns the division of each slice into tiles. A volume that is not drawn in tiles counts as a single tile.
 fn tiling(volume: &Volume) -> Tiling {
     let size = volume.settings.tile.size as u32;
     Tiling { tile: (size > 0).then_some(size), batch: 1 }

@@ -1,28 +1,26 @@
 //! The command `pxpl5 volume sweep`, which draws a volume at every point of a parameter space. The output folder, the
-//! rows and `--resume` work as in `pxpl5 sweep`.
+//! rows, the shards and `--resume` are those of `pxpl5 sweep`.
 
-use super::settings::{SMALLER, load};
-use super::space::VolumeSpace;
+use super::settings::{SMALLER, scene_choice};
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::estimate::{Estimate, VolumeWork};
-use crate::leaves::plain;
-use crate::numbers::whole;
-use crate::sweep::{report_failures, report_rows_path, shard};
-use crate::terminal::progress;
+use crate::numbers::{plain, whole};
+use crate::sweep::{SweepCommand, SweepFolderArgs};
 use crate::version::VERSION;
 use clap::Args;
-use pxpl5::Fingerprint;
-use pxpl5::scene::Scene;
-use pxpl5::sweep::{Header, Shard, Status, Store, SweepRow};
+use pxpl5::sweep::{Header, PointResults, SceneCache, SweepSpace, Swept, leaves};
 use pxpl5::volume::spatialgl::{CommandBuffer, OneThread, Threads};
 use pxpl5::volume::{Volume, VolumeSettings};
-use serde_json::{Value, json};
+use pxpl5::{Fingerprint, SettingError};
+use pxpl5_sim::parameters::text_of;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::num::NonZero;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
+use std::sync::atomic::AtomicBool;
+use toml::Table;
 
 /// Draw a volume at every point of a parameter space.
 ///
@@ -38,86 +36,174 @@ The file has `scene`, `triangles`, `title`, `measure` and any setting by its pat
 pxpl5-volume/1, such as lit_voxels or model_ms.gpu.ms. The tables [sweep.grid] and [sweep.together] and the key sweep.seeds are those of
 files for `pxpl5 sweep`.")]
 pub(super) struct SweepArgs {
-    /// File with a table `sweep`.
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
-    /// Folder for rows.jsonl, times.jsonl and results.csv.
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-    /// Keep the finished points and draw only the others.
-    #[arg(long)]
-    resume: bool,
-    /// Draw only share I of N disjoint shares of the points.
-    #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
-    shard: Shard,
+    #[command(flatten)]
+    folder: SweepFolderArgs,
     /// Number of worker threads for each volume; default: one for each core. Volumes are drawn one after the other.
     #[arg(long, value_name = "N", value_parser = whole::<u64>(1, 1024))]
     threads: Option<u64>,
-    /// Set any key of the file for all points; may be repeated.
-    #[arg(long = "set", value_name = "PATH=VALUE")]
-    sets: Vec<String>,
     #[command(flatten)]
     budget: BudgetArgs,
-    /// Print nothing but errors.
-    #[arg(long, short)]
-    quiet: bool,
 }
 
 pub(super) fn run(args: SweepArgs) -> Result<(), CliError> {
-    let space = VolumeSpace::load(&args.file, &args.sets)?;
-    let definitions = definitions(&space)?;
-    let mut store = Store::open(&args.out, header(&space, definitions)?, args.resume)?;
     let threads = args.threads.and_then(|threads| NonZero::new(threads as usize)).map_or_else(Threads::all, Threads);
-    let ours: Vec<u64> = (0..space.points).filter(|point| args.shard.holds(*point)).collect();
-    let bar = progress(ours.len() as u64, "volumes", args.quiet);
-    let mut scenes = Scenes::default();
-    // Draw every point of this shard that has no row yet. Volumes use all threads, so they follow each other.
-    for point in &ours {
-        if !store.holds(*point) {
-            let begun = Instant::now();
-            let row = row(&space, *point, &mut scenes, (&threads, args.budget));
-            store.append(&row, begun.elapsed().as_secs_f64())?;
-        }
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    let total = ours.len() as u64;
-    let failed = report_failures(&store, args.shard, total, "drawn")?;
-    report_rows_path(&args.out, total, args.quiet)?;
-    store.finish()?;
-    if failed >= total { Err(CliError::failure("no point could be drawn")) } else { Ok(()) }
+    let sweep = VolumeSweep::load(&args.folder.file, &args.folder.sets, threads, args.budget)?;
+    let header = sweep.header()?;
+    // A volume uses all threads, so volumes follow each other.
+    let command = SweepCommand { name: "volume sweep", verb: "drawn", parallel: 1, threads: args.threads };
+    args.folder.run(&sweep, header, &command)
 }
 
-/// Returns the measured quantities with their definitions.
-///
-/// # Errors
-///
-/// Fails if a report lacks one of the quantities.
-fn definitions(space: &VolumeSpace) -> Result<BTreeMap<String, String>, CliError> {
-    // A tiny volume without primitives yields a report with all names.
-    let mut settings = VolumeSettings::paper();
-    for (path, text) in [("display.slices", "4"), ("display.width", "8"), ("display.height", "8")] {
-        settings.set(path, text, "a dark volume")?;
+/// Keys of the file that are not settings of a volume.
+const OWN: [&str; 2] = ["scene", "triangles"];
+
+/// Quantities of a volume that are measured by default.
+const MEASURED: [&str; 6] = [
+    "fragments_accepted",
+    "tile_occupancy_percent",
+    "lit_voxels",
+    "connected_percent",
+    "volumes_hz_serial",
+    "volumes_hz_overlapped",
+];
+
+/// A sweep of volumes: the settings that all points share, and the space of the settings that change.
+#[derive(Debug)]
+struct VolumeSweep {
+    title: Option<String>,
+    /// Paths of the measured quantities in the JSON report.
+    measure: Vec<String>,
+    /// Settings that all points share, including `scene` and `triangles`.
+    settings: BTreeMap<String, toml::Value>,
+    space: SweepSpace,
+    scenes: SceneCache,
+    threads: Threads,
+    budget: BudgetArgs,
+}
+
+impl VolumeSweep {
+    /// Reads a file. `sets` are settings of the command line, which override settings of the file.
+    fn load(path: &Path, sets: &[String], threads: Threads, budget: BudgetArgs) -> Result<Self, CliError> {
+        let place = path.display().to_string();
+        let bytes =
+            std::fs::read(path).map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
+        let text = text_of(&bytes).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+        let mut file: Table = toml::from_str(text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+        let title = file.remove("title").map(|title| plain(&title));
+        let measure = measure(file.remove("measure"), &place)?;
+        let sweep = file.remove("sweep");
+        let mut settings: BTreeMap<String, toml::Value> = leaves(file).into_iter().collect();
+        // Settings of the command line override the file.
+        for assignment in sets {
+            let (path, value) = assignment
+                .split_once('=')
+                .ok_or_else(|| SettingError::value("PATH=VALUE", "an equals sign", assignment).at("--set"))?;
+            settings.insert(path.trim().to_owned(), toml::Value::from(value.trim()));
+        }
+        // Every path must exist before any volume is drawn.
+        let keys = VolumeSettings::paper().keys();
+        let key_of = |path: &str, place: &str| known_key(&keys, path, place);
+        settings.keys().try_for_each(|path| key_of(path, &place).map(|_| ()))?;
+        let space = SweepSpace::read(sweep.as_ref(), (&place, &BTreeMap::new()), key_of)?;
+        Ok(Self { title, measure, settings, space, scenes: SceneCache::default(), threads, budget })
     }
-    let dark = Volume::draw_commands(&settings, "dark", CommandBuffer::default(), &OneThread)?;
-    let report = serde_json::to_value(dark.report()).map_err(CliError::failure)?;
-    let known = |name: &str| {
-        let top = name.split('.').next().unwrap_or_default();
-        let is_number = value_of(&report, name).is_some_and(|value| value.is_number() || value.is_null());
-        // Quantities that only some volumes have are null in the report of an empty volume.
-        let is_of_some = report.get(top).is_some_and(Value::is_null);
-        name != "host_seconds" && (is_number || is_of_some)
-    };
-    for name in &space.measure {
-        if !known(name) {
+
+    fn header(&self) -> Result<Header, CliError> {
+        let json_of = |value: &toml::Value| serde_json::to_value(value).unwrap_or_default();
+        let definitions = self.definitions()?;
+        let header = Header {
+            schema: Header::SCHEMA.to_owned(),
+            version: VERSION.to_owned(),
+            machine: "perspecta".to_owned(),
+            config_hash: String::new(),
+            level: "volume".to_owned(),
+            seed: self.settings.get("seed").and_then(toml::Value::as_integer).map_or(1, |seed| seed as u64),
+            title: self.title.clone(),
+            points: self.space.points(),
+            measure: definitions,
+            settings: self.settings.iter().map(|(path, value)| (path.clone(), json_of(value))).collect(),
+            axes: self.space.records(),
+        };
+        // The hash also covers the contents of model files, so that a changed file is not resumed.
+        let scenes = self.settings.get("scene").into_iter().chain(self.space.listed("scene")).map(plain);
+        let files = scenes.filter_map(|name| Some((Fingerprint::of(&std::fs::read(&name).ok()?), name)));
+        let inputs = files.map(|(contents, name)| (name, contents)).collect();
+        Ok(header.with_hash("", self.measure.iter().map(String::as_str), &inputs))
+    }
+
+    /// Returns the measured quantities with their definitions.
+    ///
+    /// # Errors
+    ///
+    /// Fails if a report lacks one of the quantities.
+    fn definitions(&self) -> Result<BTreeMap<String, String>, CliError> {
+        // A tiny volume without primitives yields a report with all names.
+        let mut settings = VolumeSettings::paper();
+        for (path, text) in [("display.slices", "4"), ("display.width", "8"), ("display.height", "8")] {
+            settings.set(path, text, "a dark volume")?;
+        }
+        let dark = Volume::draw_commands(&settings, "dark", CommandBuffer::default(), &OneThread)?;
+        let report = serde_json::to_value(dark.report()).map_err(CliError::failure)?;
+        let known = |name: &str| {
+            let top = name.split('.').next().unwrap_or_default();
+            let is_number = value_of(&report, name).is_some_and(|value| value.is_number() || value.is_null());
+            // Quantities that only some volumes have are null in the report of an empty volume.
+            let is_of_some = report.get(top).is_some_and(Value::is_null);
+            name != "host_seconds" && (is_number || is_of_some)
+        };
+        if let Some(name) = self.measure.iter().find(|name| !known(name)) {
             let numbers = report.as_object().into_iter().flatten().filter(|(_, value)| value.is_number());
             let names: Vec<&str> =
                 numbers.map(|(name, _)| name.as_str()).filter(|name| *name != "host_seconds").collect();
             let names = names.join(", ");
             return Err(CliError::usage(format!("measure: expected numbers of the report ({names}), found {name}")));
         }
+        Ok(self.measure.iter().map(|name| (name.clone(), "as in the report pxpl5-volume/1".to_owned())).collect())
     }
-    Ok(space.measure.iter().map(|name| (name.clone(), "as in the report pxpl5-volume/1".to_owned())).collect())
+
+    /// Draws the volume at a point.
+    fn draw(&self, all: &BTreeMap<String, toml::Value>, point: u64) -> Result<Volume, CliError> {
+        let mut settings = VolumeSettings::paper();
+        let place = format!("point {point}");
+        // `scene` and `triangles` are not settings of the volume.
+        for (path, value) in all.iter().filter(|(path, _)| !OWN.contains(&path.as_str())) {
+            settings.set(path, &plain(value), &place)?;
+        }
+        let name = all.get("scene").map_or_else(|| "mig".to_owned(), plain);
+        let triangles = match all.get("triangles").map(plain) {
+            None => None,
+            Some(text) => Some(text.parse::<u64>().ok().filter(|count| *count > 0).ok_or_else(|| {
+                CliError::usage(format!("{place}: triangles: expected a whole number from 1 on, found {text}"))
+            })?),
+        };
+        let scene = self.scenes.load(&scene_choice(&name, triangles))?;
+        settings.swept_display()?;
+        // Each point has to fit the budget by itself.
+        let one = VolumeWork::of(&settings, &scene, self.threads.0.get()).estimate();
+        let seconds = one.seconds / self.threads.0.get() as f64;
+        self.budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)?;
+        Ok(Volume::draw(&settings, &scene, &self.threads)?)
+    }
+}
+
+impl Swept for VolumeSweep {
+    fn space(&self) -> &SweepSpace {
+        &self.space
+    }
+
+    fn simulate(&self, point: u64, _stop: &Arc<AtomicBool>) -> Result<PointResults, String> {
+        let mut all = self.settings.clone();
+        all.extend(self.space.settings(point));
+        let volume = self.draw(&all, point).map_err(|error| error.message().to_owned())?;
+        let report = serde_json::to_value(volume.report()).unwrap_or_default();
+        let of = |name: &String| (name.clone(), value_of(&report, name).and_then(Value::as_f64));
+        let named: Vec<String> = all.iter().map(|(path, value)| format!("{path}={}", plain(value))).collect();
+        Ok(PointResults {
+            measured: self.measure.iter().map(of).collect(),
+            config_hash: Fingerprint::of(named.join("\n").as_bytes()).to_string(),
+            trace_hash: report["volume_hash"].as_str().map(str::to_owned),
+        })
+    }
 }
 
 /// Returns the value in a JSON report at a path of names separated by dots.
@@ -125,129 +211,19 @@ fn value_of<'a>(report: &'a Value, path: &str) -> Option<&'a Value> {
     path.split('.').try_fold(report, |value, name| value.get(name))
 }
 
-fn header(space: &VolumeSpace, measure: BTreeMap<String, String>) -> Result<Header, CliError> {
-    let json_of = |value: &toml::Value| serde_json::to_value(value).unwrap_or_default();
-    let settings: BTreeMap<&String, Value> =
-        space.settings.iter().map(|(path, value)| (path, json_of(value))).collect();
-    let axes: Vec<Value> = space
-        .axes
-        .iter()
-        .map(|axis| {
-            let steps: Vec<Vec<Value>> = (0..axis.len()).map(|n| axis.step(n).iter().map(json_of).collect()).collect();
-            json!({ "paths": axis.paths, "steps": steps })
-        })
-        .collect();
-    // The hash also covers the contents of model files, so that a changed file is not resumed.
-    let version = VERSION;
-    let inputs: Vec<String> = scene_files(space).iter().map(|path| of_contents(path)).collect();
-    // The hash covers everything that determines the rows.
-    let named = json!([version, settings, axes, measure, inputs]).to_string();
-    let seed = space.settings.get("seed").and_then(toml::Value::as_integer).unwrap_or(1);
-    serde_json::from_value(json!({
-        "schema": Header::SCHEMA,
-        "version": version,
-        "machine": "perspecta",
-        "config_hash": Fingerprint::of(named.as_bytes()).to_string(),
-        "level": "volume",
-        "seed": seed,
-        "title": space.title,
-        "points": space.points,
-        "measure": measure,
-        "settings": settings,
-        "axes": axes,
-    }))
-    .map_err(CliError::failure)
+fn measure(value: Option<toml::Value>, place: &str) -> Result<Vec<String>, SettingError> {
+    let Some(value) = value else { return Ok(MEASURED.map(str::to_owned).to_vec()) };
+    let names = value.as_array().and_then(|list| list.iter().map(|name| name.as_str().map(str::to_owned)).collect());
+    names
+        .filter(|names: &Vec<String>| !names.is_empty())
+        .ok_or_else(|| SettingError::value("measure", "a list of names of the report's numbers", &value).at(place))
 }
 
-/// Returns the paths of all model files that points of the sweep name.
-fn scene_files(space: &VolumeSpace) -> Vec<PathBuf> {
-    let of_axes = space.axes.iter().flat_map(|axis| {
-        let at = axis.paths.iter().position(|path| path == "scene");
-        at.into_iter().flat_map(move |at| (0..axis.len()).map(move |n| plain(&axis.step(n)[at])))
-    });
-    let all = space.settings.get("scene").map(plain).into_iter().chain(of_axes);
-    all.map(PathBuf::from).filter(|path| path.is_file()).collect()
-}
-
-fn of_contents(path: &Path) -> String {
-    let contents = std::fs::read(path).map(|bytes| Fingerprint::of(&bytes).to_string());
-    format!("{}={}", path.display(), contents.unwrap_or_default())
-}
-
-/// A cache of loaded scenes by name and number of primitives.
-#[derive(Default)]
-struct Scenes(BTreeMap<(String, Option<u64>), Arc<Scene>>);
-
-impl Scenes {
-    fn get(&mut self, name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, CliError> {
-        let key = (name.to_owned(), triangles);
-        if let Some(scene) = self.0.get(&key) {
-            return Ok(Arc::clone(scene));
-        }
-        let scene = load(name, triangles)?;
-        self.0.insert(key, Arc::clone(&scene));
-        Ok(scene)
+/// Returns the path of a key, or an error if there is no such key.
+fn known_key(keys: &[String], path: &str, place: &str) -> Result<String, SettingError> {
+    let all = || keys.iter().map(String::as_str).chain(OWN);
+    if all().any(|key| key == path) {
+        return Ok(path.to_owned());
     }
-}
-
-/// Draws the volume at a point and returns its row. An error is stored in the row.
-fn row(space: &VolumeSpace, point: u64, scenes: &mut Scenes, how: (&Threads, BudgetArgs)) -> SweepRow {
-    let own = space.of_point(point);
-    let parameters: BTreeMap<String, Value> =
-        own.iter().map(|(path, value)| (path.clone(), serde_json::to_value(value).unwrap_or_default())).collect();
-    let mut all = space.settings.clone();
-    all.extend(own);
-    let empty = SweepRow {
-        point,
-        status: Status::Failed,
-        parameters,
-        measured: BTreeMap::new(),
-        config_hash: None,
-        trace_hash: None,
-        error: None,
-    };
-    // Errors become part of the row, so that the other points go on.
-    match drawn(&all, point, scenes, how) {
-        Ok(volume) => {
-            let report = serde_json::to_value(volume.report()).unwrap_or_default();
-            let of = |name: &String| (name.clone(), value_of(&report, name).and_then(Value::as_f64));
-            let named: Vec<String> = all.iter().map(|(path, value)| format!("{path}={}", plain(value))).collect();
-            SweepRow {
-                status: Status::Done,
-                measured: space.measure.iter().map(of).collect(),
-                config_hash: Some(Fingerprint::of(named.join("\n").as_bytes()).to_string()),
-                trace_hash: report["volume_hash"].as_str().map(str::to_owned),
-                ..empty
-            }
-        }
-        Err(error) => SweepRow { error: Some(error.message().to_owned()), ..empty },
-    }
-}
-
-fn drawn(
-    all: &BTreeMap<String, toml::Value>,
-    point: u64,
-    scenes: &mut Scenes,
-    (threads, budget): (&Threads, BudgetArgs),
-) -> Result<Volume, CliError> {
-    let mut settings = VolumeSettings::paper();
-    let place = format!("point {point}");
-    for (path, value) in all.iter().filter(|(path, _)| *path != "scene" && *path != "triangles") {
-        settings.set(path, &plain(value), &place)?;
-    }
-    let name = all.get("scene").map_or_else(|| "mig".to_owned(), plain);
-    // `scene` and `triangles` are not settings of the volume.
-    let triangles = match all.get("triangles").map(plain) {
-        None => None,
-        Some(text) => Some(text.parse::<u64>().ok().filter(|count| *count > 0).ok_or_else(|| {
-            CliError::usage(format!("{place}: triangles: expected a whole number from 1 on, found {text}"))
-        })?),
-    };
-    let scene = scenes.get(&name, triangles)?;
-    settings.swept_display()?;
-    // Each point has to fit the budget by itself.
-    let one = VolumeWork::of(&settings, &scene, threads.0.get()).estimate();
-    let seconds = one.seconds / threads.0.get() as f64;
-    budget.admit_estimate(Estimate { seconds, ..one }, SMALLER)?;
-    Ok(Volume::draw(&settings, &scene, threads)?)
+    Err(SettingError::unknown_path("key", path, all()).at(place))
 }

@@ -2,15 +2,16 @@
 
 use super::PanelNumbers;
 use image::RgbImage;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::display::{
-    BufferReceipt, Counter, Display, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer, Light,
-    Scan, Surface,
+    BufferReceipt, Counter, Display, DisplayContext, DisplayEvent, DisplayOutput, DoubleBuffer, PixelLight, ScanOrder,
+    Surface,
 };
 use pxpl5_wire::{NodeId, PeriodNumber};
 
-/// Frame buffer boards with panels that share a sync generator. Each picture that is drawn at the same time has its own
-/// board.
+/// Panels with their frame buffer boards, which share a sync generator. There is one board, or two boards for the eyes
+/// of a stereo pair.
 ///
 /// A board writes regions into the buffer that is not shown. A swap request takes effect at the next retrace.
 ///
@@ -24,8 +25,8 @@ pub struct Panel {
     surfaces: Vec<Surface>,
     /// One board for each surface. Port n belongs to the board with index n modulo the number of boards.
     boards: Vec<DoubleBuffer>,
-    /// The boards of an interlaced panel in their state of one period ago. The lines of this state are still visible
-    /// between the new lines.
+    /// Copies of the boards of an interlaced panel, made one period ago. The previous period lit the lines that the
+    /// current period skips.
     older: Vec<DoubleBuffer>,
     scans: u64,
 }
@@ -35,19 +36,20 @@ pub struct Panel {
 ///
 /// # Errors
 ///
-/// Returns [`DisplayError`] if the number of ports is not a multiple of the number of boards.
+/// Returns [`SettingError`] if the number of ports is not a multiple of the number of boards.
 pub(super) fn build(
     name: &'static str,
     numbers: PanelNumbers,
     nodes: &[NodeId],
-) -> Result<Box<dyn Display>, DisplayError> {
+) -> Result<Box<dyn Display>, SettingError> {
     let boards = nodes.len() / numbers.ports as usize;
     // Every board needs the same number of ports.
     if boards == 0 || !nodes.len().is_multiple_of(numbers.ports as usize) {
         let (ports, found) = (numbers.ports, nodes.len());
-        return Err(DisplayError(format!("{name}.ports: expected a multiple of {ports} nodes, found {found}")));
+        return Err(SettingError::value("ports", format_args!("a multiple of {ports} nodes"), found).in_table(name));
     }
-    let frame = Clock::from_hz(numbers.refresh_hz).ok_or_else(|| DisplayError(format!("{name}.refresh_hz")))?;
+    let frame = Clock::from_hz(numbers.refresh_hz)
+        .ok_or_else(|| SettingError::value("refresh_hz", "1 or more", numbers.refresh_hz).in_table(name))?;
     let [width, height] = [numbers.width as u32, numbers.height as u32];
     let surfaces = Surface::of_frame_buffers(boards, width, height);
     let boards = vec![DoubleBuffer::new(width, height); boards];
@@ -65,22 +67,23 @@ impl Panel {
         self.numbers.interlace == 1
     }
 
-    /// Returns the index of the first line that a period lights, and the distance between lit lines.
+    /// Returns the index of the first line that a period lights, and the distance between lit lines (1, or 2 if
+    /// interlaced).
     const fn rows(&self, period: PeriodNumber) -> (u64, u64) {
         if self.is_interlaced() { (period.0 % 2, 2) } else { (0, 1) }
     }
 
     /// Returns the number of pixels that a rolling scan lights before pixel (x, y). For a global scan the result is the
-    /// number of all pixels.
+    /// number of all pixels, because all pixels are lit at the end of the scan.
     fn order(&self, x: u64, y: u64, rows: (u64, u64)) -> u64 {
         let [columns, lines] = [self.numbers.width, self.numbers.height / rows.1];
         let line = (y - rows.0) / rows.1;
         match self.light().scan {
-            Scan::Down => line * columns + x,
-            Scan::Up => (lines - 1 - line) * columns + x,
-            Scan::Right => x * lines + line,
-            Scan::Left => (columns - 1 - x) * lines + line,
-            Scan::Global => lines * columns,
+            ScanOrder::Down => line * columns + x,
+            ScanOrder::Up => (lines - 1 - line) * columns + x,
+            ScanOrder::Right => x * lines + line,
+            ScanOrder::Left => (columns - 1 - x) * lines + line,
+            ScanOrder::Global => lines * columns,
         }
     }
 
@@ -94,7 +97,8 @@ impl Panel {
         picture
     }
 
-    /// Returns the times at which the corner pixels of a surface are lit in a period.
+    /// Returns the times at which the corner pixels of a surface are lit in a period. The first and the last light of
+    /// the surface are among these times for every direction of the scan.
     fn corners(&self, surface: usize, period: PeriodNumber) -> impl Iterator<Item = Time> {
         let [right, low] = [self.numbers.width as u32 - 1, (self.numbers.height as u32).saturating_sub(2)];
         let bottom = self.numbers.height as u32 - 1;
@@ -197,7 +201,7 @@ impl Display for Panel {
         (first as u32, distance as u32)
     }
 
-    fn light(&self) -> Light {
+    fn light(&self) -> PixelLight {
         self.numbers.light()
     }
 

@@ -1,9 +1,9 @@
 //! The parameters that all kinds of panels share.
 
 use pxpl5_sim::Span;
-use pxpl5_sim::parameters::{ParameterTable, Value};
+use pxpl5_sim::parameters::{ParameterTable, SettingError, Value};
 use pxpl5_wire::REGION_SIZE;
-use pxpl5_wire::display::{DisplayError, Light, Scan};
+use pxpl5_wire::display::{PixelLight, ScanOrder};
 
 /// Greatest number of regions in a picture. The region masks of `pxpl5-geometry` have this number of bits.
 const MOST_REGIONS: u64 = 128;
@@ -11,8 +11,8 @@ const MOST_REGIONS: u64 = 128;
 /// Number of microseconds in a second.
 const US_PER_S: u64 = 1_000_000;
 
-/// The parameters of a panel, a display without NTSC timing. A table of parameters need not have all parameters. Each
-/// missing parameter has a default.
+/// The parameters of a panel, a display without NTSC timing. [`PanelNumbers::of`] reads these parameters from a table
+/// and uses a default for each missing parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelNumbers {
     /// Width of the panel: visible pixels in each line.
@@ -23,7 +23,7 @@ pub struct PanelNumbers {
     pub refresh_hz: u64,
     /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
     pub interlace: u64,
-    /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all pixels are lit at once (global).
+    /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at the same time (global).
     pub scan: u64,
     /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
     pub direction: u64,
@@ -72,26 +72,26 @@ impl PanelNumbers {
 
     /// Returns the order in which pixels are lit, and how long each pixel shines.
     #[must_use]
-    pub const fn light(&self) -> Light {
+    pub const fn light(&self) -> PixelLight {
         let scan = match (self.scan, self.direction) {
-            (1, _) => Scan::Global,
-            (_, 1) => Scan::Up,
-            (_, 2) => Scan::Right,
-            (_, 3) => Scan::Left,
-            _ => Scan::Down,
+            (1, _) => ScanOrder::Global,
+            (_, 1) => ScanOrder::Up,
+            (_, 2) => ScanOrder::Right,
+            (_, 3) => ScanOrder::Left,
+            _ => ScanOrder::Down,
         };
         let [persistence, response] = [Span::from_us(self.persistence_us), Span::from_us(self.response_us)];
-        Light { scan, persistence, response }
+        PixelLight { scan, persistence, response }
     }
 
     /// Checks rules that relate several parameters. `table` is the prefix of parameter names in error messages.
     ///
     /// # Errors
     ///
-    /// Returns a [`DisplayError`] with the name of the parameter, the expected range and the found value.
-    pub fn check(&self, table: &str) -> Result<(), DisplayError> {
+    /// Returns a [`SettingError`] with the name of the parameter, the expected range and the found value.
+    pub fn check(&self, table: &str) -> Result<(), SettingError> {
         let wrong = |name: &str, expected: String, found: String| {
-            Err(DisplayError(format!("{table}.{name}: expected {expected}, found {found}")))
+            Err(SettingError::value(name, expected, found).in_table(table))
         };
         for (name, number) in [("width", self.width), ("height", self.height), ("refresh_hz", self.refresh_hz)] {
             if number == 0 {

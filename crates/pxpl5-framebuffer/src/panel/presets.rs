@@ -2,9 +2,9 @@
 
 use super::PanelNumbers;
 use super::board::build;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_wire::NodeId;
-use pxpl5_wire::display::{Display, DisplayConfig, DisplayError};
+use pxpl5_wire::display::{Display, DisplayConfig};
 
 pxpl5_sim::parameters::parameter_table! {
     /// The high-resolution frame buffer of Pixel-Planes 5: 1280 x 1024 pixels at 72 Hz. Each scan shows every line.
@@ -35,7 +35,7 @@ pxpl5_sim::parameters::parameter_table! {
         refresh_hz: 90, "Hz", Published, 90..=90 in 1..=1000, "data sheets of HTC Vive and Oculus Rift (2016)";
         /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
         interlace: 0, "1", Assumed, 0..=0 in 0..=1, "no headset of these years is interlaced";
-        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at once (global).
+        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at the same time (global).
         scan: 0, "1", Assumed, 0..=1 in 0..=1, "rolling, as the OLED of the Oculus Rift DK2";
         /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
         direction: 0, "1", Assumed, 0..=3 in 0..=3, "down. A panel that is mounted on its side scans to the right or to the left";
@@ -69,7 +69,7 @@ pxpl5_sim::parameters::parameter_table! {
         refresh_hz: 120, "Hz", Assumed, 80..=144 in 1..=1000, "an assumed panel: 80, 90, 120 and 144 Hz in Valve Index (2019), 80 Hz in Oculus Rift S (2019)";
         /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
         interlace: 0, "1", Assumed, 0..=0 in 0..=1, "no headset of these years is interlaced";
-        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at once (global).
+        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at the same time (global).
         scan: 1, "1", Assumed, 1..=1 in 0..=1, "an assumed panel: global backlight illumination in Valve Index (2019)";
         /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
         direction: 0, "1", Assumed, 0..=3 in 0..=3, "without effect while the scan is global";
@@ -99,7 +99,7 @@ pxpl5_sim::parameters::parameter_table! {
         refresh_hz: 60, "Hz", Assumed, 1..=1000, "an experiment's own";
         /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
         interlace: 0, "1", Assumed, 0..=1, "an experiment's own";
-        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at once (global).
+        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at the same time (global).
         scan: 0, "1", Assumed, 0..=1, "an experiment's own";
         /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
         direction: 0, "1", Assumed, 0..=3, "an experiment's own";
@@ -143,12 +143,12 @@ macro_rules! panel {
                 pictures * self.ports as usize
             }
 
-            fn check(&self) -> Result<(), DisplayError> {
-                ParameterTable::check(self).map_err(|error| DisplayError(format!("{}.{error}", $name)))?;
+            fn check(&self) -> Result<(), SettingError> {
+                ParameterTable::check(self).map_err(|error| error.in_table($name))?;
                 PanelNumbers::of(self).check($name)
             }
 
-            fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
+            fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
                 DisplayConfig::check(self)?;
                 build($name, PanelNumbers::of(self), nodes)
             }

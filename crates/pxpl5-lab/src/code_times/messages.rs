@@ -1,5 +1,5 @@
 //! Measures the mean software time of a message. The measurement covers all messages that a board receives and sends
-//! around its passes over a scene. The time of bin entries is subtracted.
+//! around its passes over a scene. The additional time of each bin entry in a sent message is subtracted.
 
 use super::{BOARDS, CodeUse, Rig, VIEWS, parts, picture, solve};
 use pphigs::{BinHandoffWork, FrameView, Pass, RegionEnvelope, region_messages};
@@ -37,7 +37,8 @@ pub(super) fn token_entry_ns(scenes: &[Traffic]) -> f64 {
 }
 
 impl Traffic {
-    /// Returns the mean time of a message in nanoseconds. For each bin entry, `token_entry_ns` is subtracted.
+    /// Returns the mean time of a message in nanoseconds. `token_entry_ns` is the time to send one bin entry, which is
+    /// subtracted for each entry of a sent bin.
     pub(super) fn message_ns(&self, token_entry_ns: f64) -> f64 {
         let [entries, ns] = self.handed.iter().fold([0.0; 2], |[n, sum], [entries, ns]| [n + entries, sum + ns]);
         (self.span.0 as f64 / 1e3 + ns - token_entry_ns * entries) / self.messages as f64
@@ -69,7 +70,7 @@ fn commands(list: CommandList) -> (u32, Body) {
     (list.words(), Body::Commands(list))
 }
 
-/// Measures the messages of one board while it processes a scene.
+/// Measures the messages of one board while the board processes a scene.
 pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<Traffic, ExperimentError> {
     let mut rig = Rig::new(version, scene, BOARDS)?;
     let mut traffic = Traffic::default();
@@ -93,7 +94,7 @@ pub(super) fn traffic(version: CodeVersion, of: CodeUse, scene: &str) -> Result<
 ///
 /// - The slave receives the frame's head pose from the host.
 /// - The slave receives permission for EDIT and for TRANSFORM, and reports the end of each.
-/// - For each eye, the slave receives the token of every region and passes it on.
+/// - For each eye, the slave receives the token of every region and passes the token on.
 fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     // The host's view, then the master's permission, then the slave's report.
@@ -115,8 +116,8 @@ fn slave(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) ->
     Ok(())
 }
 
-/// Executes the messages of one token. The slave is in the middle of the chain of slaves, so the region neither begins
-/// nor ends there.
+/// Executes the messages of one token: the slave receives the token, sends the bin of the region, and passes the token
+/// on. The slave is neither the first nor the last slave that gets the token.
 fn token(
     processor: &mut Processor,
     pass: &Arc<Pass>,
@@ -136,8 +137,8 @@ fn token(
 }
 
 /// Executes the messages of one display field on a board under Slats. The board receives the head pose. The board then
-/// sends a chain of messages for each clump (group of triangles) to the regions of both eyes. Finally it sends two
-/// chains of copy commands to all renderers.
+/// sends a chain of messages for each clump (group of triangles) to the regions of both eyes. Finally, the board sends
+/// two chains of copy commands to all renderers.
 fn field(rig: &mut Rig, of: CodeUse, view: &FrameView, traffic: &mut Traffic) -> Result<(), Fault> {
     let regions = picture(of).viewport.grid().regions() as u16;
     traffic.receive(&mut rig.processor, view.to_words().len() as u32)?;

@@ -1,5 +1,5 @@
-//! Measures the processor times of just-in-time pixels and frameless rendering by executing their code. The times of
-//! TRANSFORM are measured elsewhere.
+//! Measures the processor times of just-in-time pixels and frameless rendering by executing their code. The parent
+//! module measures the times of TRANSFORM.
 
 use super::{ExperimentError, Rig, fault, mean};
 use pphigs::{
@@ -14,8 +14,8 @@ use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
 /// Scene that is searched for triangles that meet a strip (a group of scan lines).
 const SCENE: &str = "mig";
-/// Number of boards that share the scene in the second measurement. The difference from the measurement of the whole
-/// scene gives the time of one triangle.
+/// Number of boards that share the scene in the second measurement. The first measurement gives one board the whole
+/// scene. The difference between both measurements gives the time of one triangle.
 const SMALLER: usize = 12;
 
 /// Time between two head poses in picoseconds: one NTSC field.
@@ -24,9 +24,9 @@ const FIELD_PS: u64 = 16_683_333_333;
 /// Memory address at which display lists begin. The commands in messages lie above this address.
 const COMMANDS: u32 = 1 << 20;
 
-/// Sizes in words of four kinds of order messages. The messages are for a strip (group of scan lines), a strip with a
-/// head pose, blocks, and a field between two head poses. The second number of each pair counts the words before the
-/// poses.
+/// Sizes in words of four kinds of order messages. The messages order a strip (group of scan lines), a strip with a
+/// head pose, blocks of pixels, and a field. An order of blocks has one head pose, and an order of a field has two head
+/// poses for interpolation. The second number of each pair counts the words before the head poses.
 const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 
 /// Times in nanoseconds of the search for triangles in strips (groups of scan lines), and of interpolation between two
@@ -35,10 +35,12 @@ const ORDERS: [(usize, usize); 4] = [(6, 6), (59, 6), (58, 5), (110, 4)];
 pub struct StripTimes {
     /// Time to compare one triangle's bounding box with a strip (group of scan lines) that the box does not meet.
     pub box_ns: f64,
-    /// Additional time of a bin entry for a triangle that meets one of a strip's five windows. The time includes
-    /// finding and sending the entry, and also covers nearby triangles that miss the strip.
+    /// Additional time of a bin entry for a triangle that meets one of a strip's five windows (sections of 128 pixels).
+    /// The time includes the search and the transfer of the entry. Nearby triangles that miss the strip also add to
+    /// this time.
     pub entry_ns: f64,
-    /// Time to create and send the five windows of a strip (group of scan lines) when no triangle meets them.
+    /// Time to create and send the five windows (sections of 128 pixels) of a strip that no triangle meets. A strip is
+    /// a group of scan lines.
     pub windows_ns: f64,
     /// Time to compute the positions of a triangle on the screen for two successive head poses.
     pub ends_ns: f64,
@@ -48,8 +50,8 @@ pub struct StripTimes {
     /// Additional time to interpolate one triangle that is near a strip (group of scan lines). The first number is for
     /// interpolation on the screen, the second for interpolation in eye space.
     pub interpolated_ns: [f64; 2],
-    /// Times to assemble four kinds of order messages. The messages are for a strip (group of scan lines), a strip with
-    /// a head pose, blocks, and a field between two head poses.
+    /// Times to assemble four kinds of order messages. The messages order a strip (group of scan lines), a strip with a
+    /// head pose, blocks of pixels, and a field that is interpolated between two head poses.
     pub order_ns: [f64; 4],
 }
 
@@ -125,7 +127,8 @@ fn ns(span: Span) -> f64 {
     span.0 as f64 / 1e3
 }
 
-/// Returns the number of bin entries and the search time for every strip. A strip is one scan line here.
+/// Returns the number of bin entries and the search time for every strip. In this measurement, a strip is one scan
+/// line.
 fn searches(rig: &mut Rig) -> Result<Vec<[f64; 2]>, ProcessorFault> {
     let pass = rig.share.transform(&rig.view(0), 0, PICTURE);
     pass.keep(&GpTiming::PAPERS, &mut rig.processor, MemoryPart::WHOLE)?;

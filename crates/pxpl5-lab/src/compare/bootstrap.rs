@@ -16,8 +16,8 @@ use serde::{Deserialize, Serialize};
 /// Number of resampled means.
 pub const RESAMPLES: usize = 2_000;
 
-/// Minimum number of values for an interval. Assumed: shorter series hide their own dependence, and the intervals of
-/// series with a known dependence were much too narrow.
+/// Minimum number of values for an interval. Assumed, because a shorter series does not show how its values depend on
+/// each other. In tests with a known dependence, the intervals of shorter series were much too narrow.
 pub const MIN_BOOTSTRAP_VALUES: usize = 100;
 
 /// Minimum number of blocks in a series for an interval (assumed).
@@ -80,13 +80,14 @@ impl BlockBootstrap {
     ///
     /// The ends are percentiles of the resampled means, with two corrections:
     ///
-    /// - Values at the ends of the series are in fewer blocks than other values. The percentiles are therefore moved to
-    ///   the given mean. If the mean is positive and all resampled means are at least 0, they are multiplied by a
-    ///   factor; otherwise a difference is added. The interval of a quantity that is never negative has no negative
-    ///   end.
-    /// - A series of k blocks gives the variance as imprecisely as k independent values do. The distance of the ends is
-    ///   therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees of freedom to the
-    ///   normal distribution. The second is the root of k / (k - 1).
+    /// - Values at the ends of the series are in fewer blocks than other values. The percentiles are therefore shifted,
+    ///   so that the mean of the resampled means becomes the given mean. If the given mean is positive and all
+    ///   resampled means are at least 0, a factor shifts the percentiles; otherwise an added difference does. With the
+    ///   factor, the interval of a quantity that is never negative has no negative end.
+    /// - A series of k blocks gives the variance as imprecisely as k independent values do. The distance of both ends
+    ///   from the mean is therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees
+    ///   of freedom to the normal distribution. The second is the root of k / (k - 1). If a factor shifts the
+    ///   percentiles, the distance is a difference of logarithms.
     #[must_use]
     pub fn interval(&self, mean: f64, confidence: f64) -> (f64, f64) {
         let centre = self.centre();
@@ -99,7 +100,7 @@ impl BlockBootstrap {
         }
     }
 
-    /// Returns the factor by which few blocks widen an interval, at least 1.
+    /// Returns the factor by which an interval is widened because the series has few blocks. The factor is at least 1.
     fn widening(&self, confidence: f64) -> f64 {
         let blocks = self.size.fields as f64 / self.size.block_fields as f64;
         let quantile = 0.5 + confidence / 2.0;
@@ -117,7 +118,7 @@ impl BlockBootstrap {
     }
 }
 
-/// Returns the sums of the first 0, 1, 2, ... numbers.
+/// Returns the sums of the first 0, 1, 2, ... numbers. The difference of two sums is the sum of a block.
 fn running_sums(series: &[f64]) -> Vec<f64> {
     let mut sums = vec![0.0];
     let mut sum = 0.0;
@@ -129,7 +130,7 @@ fn running_sums(series: &[f64]) -> Vec<f64> {
 }
 
 /// Returns the mean of values from random blocks. The number of values is the length of the series, so the last block
-/// may be cut.
+/// may be shortened.
 fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     let n = sums.len() - 1;
     let starts = (n - block + 1) as u64;
@@ -147,8 +148,8 @@ fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     sum / n as f64
 }
 
-/// Returns the block length with the least mean square error of the variance (Politis and White). The length is at least
-/// 1 and at most a third of the series.
+/// Returns the number of values in a block, chosen for the least mean square error of the resampled variance (Politis
+/// and White). The length is at least 1 and at most a third of the length of the series.
 fn block_length(series: &[f64]) -> usize {
     let n = series.len() as f64;
     let log = n.log10();
@@ -178,7 +179,7 @@ fn block_length(series: &[f64]) -> usize {
     if length.is_finite() { length.ceil().clamp(1.0, most) as usize } else { most as usize }
 }
 
-/// Returns the covariance of values that are `lag` places apart.
+/// Returns the covariance between each value of a series and the value `lag` places later.
 fn covariance(series: &[f64], lag: usize) -> f64 {
     let mean = series.iter().sum::<f64>() / series.len() as f64;
     let products = series.iter().zip(&series[lag..]).map(|(one, later)| (one - mean) * (later - mean));
@@ -215,7 +216,8 @@ mod tests {
         variance / n * correlated
     }
 
-    /// The estimate is too small by about slope / (level block): 6 % at phi 0.3 to 12 % at phi 0.8 (Künsch 1989).
+    /// The bootstrap estimates the variance too small, because blocks cut the dependence between values (Künsch 1989).
+    /// The estimate is 6 % too small at phi 0.3 and 12 % at phi 0.8.
     #[test]
     fn the_variance_of_the_mean_of_an_ar1_series_is_that_of_the_closed_form() {
         const N: usize = 2_000;
@@ -228,7 +230,7 @@ mod tests {
         }
     }
 
-    /// Values that are taken as independent have an interval that is too narrow: at phi 0.8, by a factor of 3.
+    /// An interval that treats the values as independent would be too narrow: at phi 0.8, by a factor of 3.
     #[test]
     fn intervals_of_correlated_series_cover_the_true_mean_about_as_often_as_they_claim() {
         const SERIES: u64 = 200;

@@ -13,11 +13,12 @@ pub(super) struct ComparedPipeline {
 }
 
 /// Settings with which Slats sends each clump (group of triangles) only to the regions that the clump touches. As
-/// published, every clump goes to all regions. This limits the scene to little more than 100 triangles, too few to
-/// evaluate the raster offset.
+/// published, every clump goes to all regions. The published rule limits the scene to little more than 100 triangles,
+/// too few to evaluate the raster offset.
 const TOUCHED: &[(&str, &str)] = &[("binning", "touched")];
 
-/// Settings of [`TOUCHED`] with a raster that is shifted by the error of the predicted pose.
+/// Settings of [`TOUCHED`] with a raster offset: the display shifts each picture during the scan by the error of the
+/// predicted pose.
 const SHIFTED: &[(&str, &str)] = &[("binning", "touched"), ("head.raster", "vdrt")];
 
 /// Settings of [`TOUCHED`] without prediction. Instead, the video of the real world is delayed until the picture for
@@ -52,7 +53,7 @@ pub fn usual_rows(registry: &Registry) -> Vec<String> {
 }
 
 /// Returns a row for every compared pipeline of the registry, in the order of the registry. The variants of Slats
-/// (touched regions, raster offset, delayed video, reference) follow Slats.
+/// (touched regions, raster offset, delayed video, ideal pictures) follow Slats.
 pub(super) fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
     let mut all = Vec::new();
     for entry in registry.pipelines().iter().filter(|entry| entry.compared) {

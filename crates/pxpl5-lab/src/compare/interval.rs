@@ -12,7 +12,7 @@ pub enum IntervalMethod {
     None,
     /// Student's t over the means of the seeds.
     StudentT,
-    /// Student's t over the means of the seeds, for the logarithm (delta method).
+    /// Student's t over the means of the seeds, with an interval for the logarithm of the mean (delta method).
     StudentTOfLogarithm,
     /// Moving-block bootstrap over the fields of one motion ([`BlockBootstrap`](super::BlockBootstrap)).
     MovingBlockBootstrap,
@@ -59,10 +59,10 @@ impl MeanInterval {
     /// Computes the mean and its interval from one number for each seed, at a confidence between 0 and 1. The quantity
     /// must not be negative.
     ///
-    /// The interval is computed for the logarithm (delta method), so that its lower end stays positive. The interval
-    /// reaches from `mean / f` to `mean * f` with `f = exp(t sd / (sqrt(n) mean))`. If a number is 0, the result is the
-    /// symmetric interval of [`MeanInterval::of_signed`], cut at 0. If a number is negative, the symmetric interval is
-    /// not cut.
+    /// The interval is computed for the logarithm of the mean (delta method), so that the lower end stays positive. The
+    /// interval reaches from `mean / f` to `mean * f` with `f = exp(t sd / (sqrt(n) mean))`. If a number is 0, the
+    /// result is the symmetric interval of [`MeanInterval::of_signed`], cut at 0. If a number is negative, the
+    /// symmetric interval is not cut.
     #[must_use]
     pub fn of(values: &[f64], confidence: f64) -> Self {
         let symmetric = Self::of_signed(values, confidence);
@@ -97,7 +97,7 @@ impl MeanInterval {
         Some(self.high - self.low).filter(|width| width.is_finite())
     }
 
-    /// Returns the mean alone.
+    /// Returns the same mean without its confidence interval.
     pub(super) const fn without_interval(self) -> Self {
         Self { low: f64::NAN, high: f64::NAN, method: IntervalMethod::None, ..self }
     }

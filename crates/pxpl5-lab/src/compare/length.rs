@@ -1,4 +1,4 @@
-//! The length of a comparison along a recording.
+//! The number of fields of a comparison in which the head replays a recording.
 
 use super::query::CompareQuery;
 use crate::error::StudyError;
@@ -11,7 +11,8 @@ use pxpl5_wire::NodeId;
 pub struct RecordedLength {
     /// Number of whole display periods in the recording, which is the length of each run.
     pub fields: u64,
-    /// Larger number of fields in the settings, which the recording does not cover. `None` if the settings have none.
+    /// Number of fields that the settings ask for, which is more than the recording covers. `None` if the settings
+    /// state no number of fields.
     pub asked: Option<u64>,
 }
 
@@ -19,13 +20,13 @@ pub struct RecordedLength {
 const USUAL_FIELDS: i64 = 300;
 
 impl CompareQuery {
-    /// Sets the length of the runs, if the settings do not have one: the length of the recording that the head replays,
-    /// else five seconds. The runs also have the recording's length if the settings ask for more fields than the
-    /// recording covers.
+    /// Sets the number of fields of the runs if the settings state none. The number is the length of the recording that
+    /// the head replays, or five seconds without a recording. The recording's length also replaces a larger number of
+    /// fields in the settings.
     ///
-    /// Returns the length if a recording determines it. A recording that is repeated without end has no length.
-    /// Settings may ask for more fields than the recording covers if they state that the head stands still after the
-    /// last sample.
+    /// Returns the length if a recording determines the number of fields. A recording that is repeated without end has
+    /// no length. A larger number of fields stays valid if the settings state that the head stands still after the last
+    /// sample.
     ///
     /// # Errors
     ///
@@ -45,8 +46,9 @@ impl CompareQuery {
     }
 }
 
-/// Returns the number of whole display periods in the recording of a plan's head. Returns `None` if the motion is not a
-/// recording, if the recording is repeated without end, or if the display cannot be built.
+/// Returns the number of whole display periods in the recording that moves the head of a plan (checked experiment).
+/// Returns `None` if the motion is not a recording, if the recording is repeated without end, or if the display cannot
+/// be built.
 fn recorded_fields(plan: &Plan) -> Option<u64> {
     let head = plan.head.as_ref().filter(|head| head.is_recording())?.head();
     let ends = Time(head.motion().moves_until_ps()?);

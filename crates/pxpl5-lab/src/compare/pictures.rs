@@ -22,7 +22,7 @@ pub struct EdgePictures {
     pub conventional: RgbImage,
     /// The conventional picture as seen by an eye that turns during the scan. The edge is slanted.
     pub conventional_seen: RgbImage,
-    /// Picture in which each line is drawn for the instant of its display. The edge is slanted.
+    /// Picture in which each line is drawn for the instant at which the display shows the line. The edge is slanted.
     pub just_in_time: RgbImage,
     /// The just-in-time picture as seen by an eye that turns during the scan. The edge is vertical.
     pub just_in_time_seen: RgbImage,
@@ -35,7 +35,7 @@ const FIELD: PeriodNumber = PeriodNumber(40);
 const DISTANCE_M: f32 = 2.0;
 
 /// Returns a scene with a white wall on the left of a vertical edge, and nothing on the right of the edge. The edge
-/// lies straight ahead (along -z). The viewer first looks `yaw_deg` to the left of the edge.
+/// lies straight ahead (along -z). At the start, the viewer faces a direction `yaw_deg` to the left of the edge.
 #[must_use]
 pub fn edge_scene(yaw_deg: f64) -> Scene {
     let vertex =
@@ -80,9 +80,9 @@ pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictu
     Ok(EdgePictures { conventional, conventional_seen, just_in_time, just_in_time_seen })
 }
 
-/// Returns two pictures of a field: as the display scans it, and as a turning eye sees it.
+/// Returns two pictures of a field: as the display scans the field, and as a turning eye sees the field.
 fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<(RgbImage, RgbImage), ExperimentError> {
-    let video = Video::new(FrameBufferConfig::NTSC.video).map_err(|e| ExperimentError::Scene(e.to_string()))?;
+    let video = FrameBufferConfig::NTSC.video.video().map_err(|e| ExperimentError::Scene(e.to_string()))?;
     // Start the pan so that the edge is in the middle of the screen in the middle of the field.
     let middle = video.when(320, 240 + FieldParity::of_field(FIELD).first_line(), FIELD).unwrap_or_default();
     let scene = edge_scene(-deg_per_s * middle.0 as f64 * 1e-12);
@@ -103,9 +103,9 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
     Ok((picture, seen))
 }
 
-/// Returns a scanned field as an eye that turns with the head sees it. The field has one row for each of its lines.
-/// Each pixel moves to its position relative to the head at the instant when the middle of the field is lit. Pixels
-/// without content are black.
+/// Converts a scanned field to the picture that an eye sees while the eye turns with the head. The picture has one row
+/// for each line of the field. Each pixel moves to its position relative to the head at the instant when the middle of
+/// the field is lit. Pixels without content are black.
 #[must_use]
 pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &dyn Motion) -> RgbImage {
     let view = HmdView::ntsc();

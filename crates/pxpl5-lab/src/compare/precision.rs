@@ -1,6 +1,8 @@
-//! The width at which the interval of a mean is narrow enough, and the number of seeds that this width needs.
+//! The precision that a comparison requires, which is the greatest width of the interval of a mean error. The module
+//! also estimates the number of seeds that this precision needs.
 
 use super::interval::{IntervalMethod, MeanInterval};
+use pxpl5_sim::parameters::SettingError;
 use std::fmt;
 use std::str::FromStr;
 
@@ -13,7 +15,7 @@ pub enum Precision {
     Pixels(f64),
 }
 
-/// Goal of a comparison that adds seeds to a row until the interval of its mean error is narrow enough.
+/// Goal of a comparison that adds seeds to a row until the interval of the row's mean error is narrow enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UntilPrecise {
     /// Greatest width of the interval.
@@ -69,23 +71,18 @@ impl fmt::Display for Precision {
 }
 
 impl FromStr for Precision {
-    type Err = PrecisionError;
+    type Err = SettingError;
 
     /// Parses a share of the mean (`10%`) or a width in pixels (`0.2px`).
-    fn from_str(text: &str) -> Result<Self, PrecisionError> {
+    fn from_str(text: &str) -> Result<Self, SettingError> {
         let number = |digits: &str| digits.trim().parse().ok().filter(|n: &f64| n.is_finite() && *n > 0.0);
         let share = text.strip_suffix('%').and_then(number).map(|percent| Self::Share(percent / 100.0));
         let pixels = || text.strip_suffix("px").and_then(number).map(Self::Pixels);
-        share.or_else(pixels).ok_or_else(|| PrecisionError { found: text.to_owned() })
+        share.or_else(pixels).ok_or_else(|| {
+            let expected = "a width above 0 of the interval, as a share of the mean (10%) or in pixels (0.2px)";
+            SettingError::value("", expected, format_args!("`{text}`"))
+        })
     }
-}
-
-/// Error of a text that does not state a precision.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected a width above 0 of the interval, as a share of the mean (10%) or in pixels (0.2px), found `{found}`")]
-pub struct PrecisionError {
-    /// Text that was found.
-    pub found: String,
 }
 
 #[cfg(test)]

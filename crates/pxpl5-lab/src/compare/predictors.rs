@@ -57,8 +57,8 @@ pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     Some(Predictors { chosen: head.predictor_kind(), best: best.map(|(kind, _)| kind), each })
 }
 
-/// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the known error of the chosen
-/// predictor, so that its run is not repeated. The mean is NaN if no error was evaluated.
+/// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the mean error with the chosen
+/// predictor, which a run has already given. The mean is NaN if no error was evaluated.
 pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chosen_px: f64) -> Vec<PredictorMean> {
     let Some(head) = experiment.tracked_head() else { return Vec::new() };
     parallel::map(&PredictorKind::ALL, |kind| {

@@ -3,6 +3,7 @@
 use super::contender::{ComparedPipeline, DELAYED_VIDEO, compared_pipelines};
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
+use super::progress::Progress;
 use super::row::{ComparisonRow, Sampling};
 use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
@@ -11,20 +12,20 @@ use crate::experiment_file::{ExperimentFile, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
 use pxpl5_measure::Showing;
-use pxpl5_run::{Goal, Pixels, WARM_UP_PERIODS};
+use pxpl5_run::{Experiment, Goal, Head, Pixels, Tunings, WARM_UP_PERIODS};
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::parameters::nearest;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Maximum number of fields of a compared run: a little over an hour. The number is limited because a comparison keeps
-/// all observations of a run in memory to evaluate its errors in several ways.
+/// all observations of a run in memory to evaluate the errors of the run in several ways.
 const MOST_FIELDS: u64 = 250_000;
 
 /// Maximum difference between the first evaluated display periods of two rows. A row with a larger difference starts
-/// late. Due pictures can be several periods apart.
+/// late. The difference is allowed because due pictures can be several periods apart.
 const MOST_PERIODS_APART: u64 = 4;
 
 /// Minimum number of seeds for meaningful confidence intervals.
@@ -42,6 +43,11 @@ pub struct CompareQuery {
     pub seeds: Vec<u64>,
     /// True if the comparison also searches for the largest number of triangles that each row can draw.
     pub limits: bool,
+    /// True if the error of each row is split by its causes ([`ComparisonRow::causes`]). Each run is then evaluated once
+    /// for each cause.
+    pub causes: bool,
+    /// True if each row also runs with every other predictor ([`ComparisonRow::predictors`]).
+    pub predictors: bool,
     /// True if the runs of the first seed compute pixels, for [`ComparisonRow::picture`].
     pub pictures: bool,
     /// Confidence of all intervals, between 0 and 1; usually [`CONFIDENCE`](super::CONFIDENCE).
@@ -85,25 +91,22 @@ pub struct Comparison {
     pub pipelines: Vec<ComparisonRow>,
 }
 
-/// Count of finished runs. The number of all runs grows when seeds are added.
-struct Progress<'a> {
-    done: AtomicU64,
-    all: AtomicU64,
-    finished: &'a (dyn Fn(u64, u64) + Sync),
+/// Data that all rows of a comparison share.
+struct Common<'a> {
+    scene: Arc<Scene>,
+    tunings: Arc<Tunings>,
+    progress: Progress<'a>,
 }
 
-impl<'a> Progress<'a> {
-    fn new(all: u64, finished: &'a (dyn Fn(u64, u64) + Sync)) -> Self {
-        Self { done: AtomicU64::new(0), all: AtomicU64::new(all), finished }
-    }
-
-    fn add(&self, runs: u64) {
-        self.all.fetch_add(runs, Ordering::Relaxed);
-    }
-
-    fn step(&self) {
-        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        (self.finished)(done, self.all.load(Ordering::Relaxed));
+impl Common<'_> {
+    /// Returns the experiment of a plan. Its head shares the tuning with the other rows, and its host can stop the run.
+    fn experiment(&self, plan: &Plan) -> Experiment {
+        let experiment = plan.experiment(Arc::clone(&self.scene)).host(self.progress.host());
+        let head = experiment.tracked_head().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
+        match head {
+            Some(head) => experiment.head(head),
+            None => experiment,
+        }
     }
 }
 
@@ -147,6 +150,23 @@ impl CompareQuery {
         finished: impl Fn(u64, u64) + Sync,
         ended: impl Fn(&ComparisonRow) + Sync,
     ) -> Result<Comparison, StudyError> {
+        self.run_stoppable(store, &Arc::default(), finished, ended)
+    }
+
+    /// Runs every row as [`CompareQuery::run_into`] does, until another thread sets `stop` to true. Runs in progress
+    /// then end after at most 60 fields, and their rows are not stored. A search for the largest number of triangles
+    /// runs to its end.
+    ///
+    /// # Errors
+    ///
+    /// Fails in the same cases as [`CompareQuery::run_into`], and with [`StudyError::Stopped`].
+    pub fn run_stoppable(
+        &self,
+        store: Option<&CompareStore>,
+        stop: &Arc<AtomicBool>,
+        finished: impl Fn(u64, u64) + Sync,
+        ended: impl Fn(&ComparisonRow) + Sync,
+    ) -> Result<Comparison, StudyError> {
         let compared_pipelines = self.compared_pipelines()?;
         // The first row serves to check the settings that all rows share.
         let any = self.any_plan(&compared_pipelines)?;
@@ -154,9 +174,11 @@ impl CompareQuery {
         let held = |contender: &ComparedPipeline| store.and_then(|store| store.row(&contender.name)).cloned();
         let missing = compared_pipelines.iter().filter(|contender| held(contender).is_none()).count();
         let runs_of_a_row = self.seeds.len() + usize::from(self.limits);
-        let progress = Progress::new((missing * runs_of_a_row) as u64, &finished);
+        let progress = Progress::new((missing * runs_of_a_row) as u64, stop, &finished);
         // No further row starts after one could not be stored.
         let is_failed = AtomicBool::new(false);
+        // Rows with the same head and prediction interval share the tuning of the predictor.
+        let common = Common { scene, tunings: Arc::default(), progress };
         // Rows and the seeds of each row execute in parallel. So each row is known as soon as its own runs have ended.
         let pipelines = parallel::map(&compared_pipelines, |contender| {
             if let Some(row) = held(contender) {
@@ -165,9 +187,12 @@ impl CompareQuery {
             if is_failed.load(Ordering::Relaxed) {
                 return Ok(None);
             }
-            let row = self.row(contender, &scene, &progress)?;
+            common.progress.check_stopped()?;
+            let row = self.row(contender, &common)?;
+            // A row whose runs were stopped is not a result.
+            common.progress.check_stopped()?;
             if self.limits {
-                progress.step();
+                common.progress.step();
             }
             let row = match store {
                 Some(store) => store.append(row).inspect_err(|_| is_failed.store(true, Ordering::Relaxed))?,
@@ -180,8 +205,8 @@ impl CompareQuery {
             schema: "pxpl5-comparison/3",
             machine: any.machine.preset.clone(),
             boards: any.machine.boards(),
-            scene: scene.name().to_owned(),
-            triangles: scene.triangles().len(),
+            scene: common.scene.name().to_owned(),
+            triangles: common.scene.triangles().len(),
             head: any.head.iter().flat_map(|head| head.settings()).map(|(key, value)| (key, plain(&value))).collect(),
             hmd: *any.hmd.config(),
             fields: any.fields,
@@ -203,15 +228,15 @@ impl CompareQuery {
         Ok(self.identity()?.1)
     }
 
-    /// Returns the plan of the first row with the first seed, and the names of all rows.
+    /// Returns the plan (checked experiment) of the first row with the first seed, and the names of all rows.
     pub(super) fn identity(&self) -> Result<(Plan, Vec<String>), StudyError> {
         let rows = self.compared_pipelines()?;
         let plan = self.any_plan(&rows)?;
         Ok((plan, rows.into_iter().map(|row| row.name).collect()))
     }
 
-    /// Returns the plan of each row with the first seed, from which the cost can be estimated. Rows that cannot run are
-    /// left out.
+    /// Returns the plan (checked experiment) of each row with the first seed, from which the cost of the comparison can
+    /// be estimated. Rows that cannot run are left out.
     ///
     /// # Errors
     ///
@@ -236,7 +261,7 @@ impl CompareQuery {
         Ok(chosen)
     }
 
-    /// Returns the plan of the first row with the first seed, without a check of its length.
+    /// Returns the plan (checked experiment) of the first row with the first seed. The number of fields is not checked.
     pub(super) fn first_plan(&self) -> Result<Plan, StudyError> {
         self.plan_of_first(&self.compared_pipelines()?)
     }
@@ -247,7 +272,8 @@ impl CompareQuery {
         Ok(first.plan(&self.shared, seed)?)
     }
 
-    /// Returns the plan of the first row with the first seed, to check the shared settings.
+    /// Checks the settings that all rows share: the head, the seeds and the number of fields. Returns the plan (checked
+    /// experiment) of the first row with the first seed.
     fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
         let plan = self.plan_of_first(compared_pipelines)?;
         if plan.head.is_none() {
@@ -265,8 +291,8 @@ impl CompareQuery {
         Ok(plan)
     }
 
-    /// Checks that all seeds differ, that experiment files can hold them, and that the maximum number of seeds is not
-    /// below the number of seeds.
+    /// Checks three conditions: all seeds differ, experiment files can hold all seeds, and the maximum number of seeds
+    /// is not below the number of seeds.
     fn check_seeds(&self) -> Result<(), StudyError> {
         let mut sorted = self.seeds.clone();
         sorted.sort_unstable();
@@ -286,46 +312,36 @@ impl CompareQuery {
         }
     }
 
-    /// Returns seeds that follow the seeds of the query and the seeds that were added before.
+    /// Returns `more` new seeds for a row that has already run with `ran` seeds. The new seeds follow all seeds of the
+    /// row.
     fn seeds_after(&self, ran: usize, more: usize) -> Vec<u64> {
         let greatest = self.seeds.iter().copied().max().unwrap_or_default();
         let added = (ran - self.seeds.len()) as u64;
         (1..=more as u64).map(|n| greatest.saturating_add(added + n)).collect()
     }
 
-    fn trials(
-        &self,
-        contender: &ComparedPipeline,
-        seeds: &[u64],
-        scene: &Arc<Scene>,
-        progress: &Progress<'_>,
-    ) -> Vec<Result<Trial, String>> {
+    fn trials(&self, contender: &ComparedPipeline, seeds: &[u64], common: &Common<'_>) -> Vec<Result<Trial, String>> {
         parallel::map(seeds, |seed| {
-            let trial = self.trial(contender, *seed, scene);
-            progress.step();
+            let trial = self.trial(contender, *seed, common);
+            common.progress.step();
             trial
         })
     }
 
-    fn trial(&self, contender: &ComparedPipeline, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
+    fn trial(&self, contender: &ComparedPipeline, seed: u64, common: &Common<'_>) -> Result<Trial, String> {
         // Pixels are needed only for the picture of the first seed.
         let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
         let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
         let plan = contender.plan(&self.shared, seed).map_err(|error| error.to_string())?;
-        contender.trial(&plan, scene, pixels)
+        contender.trial(common.experiment(&plan).pixels(pixels), self.causes)
     }
 
     /// Runs a row: once for each seed, then with more seeds while the interval of its mean is wider than the query
     /// allows.
-    fn row(
-        &self,
-        contender: &ComparedPipeline,
-        scene: &Arc<Scene>,
-        progress: &Progress<'_>,
-    ) -> Result<ComparisonRow, StudyError> {
+    fn row(&self, contender: &ComparedPipeline, common: &Common<'_>) -> Result<ComparisonRow, StudyError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
         let is_one_motion = !self.shared.has_motion_for_each_seed()?;
-        let mut trials = self.trials(contender, &self.seeds, scene, progress);
+        let mut trials = self.trials(contender, &self.seeds, common);
         let (mut row, shown) = loop {
             // Failed runs are left out, and their first error is reported below.
             let ran: Vec<&Trial> = trials.iter().flatten().collect();
@@ -335,25 +351,27 @@ impl CompareQuery {
             // More seeds do not help a row with failed runs or without an evaluation.
             let helps = ran.len() == trials.len() && row.was_evaluated();
             let until = self.until.filter(|_| helps);
+            common.progress.check_stopped()?;
             let more = until.map_or(0, |until| until.seeds_to_add(&row.error.mean_px, trials.len()));
             if more == 0 {
                 let shown: usize = ran.iter().map(|trial| trial.shown).sum();
                 break (row, shown);
             }
-            progress.add(more as u64);
+            common.progress.add(more as u64);
             let seeds = self.seeds_after(trials.len(), more);
-            trials.extend(self.trials(contender, &seeds, scene, progress));
+            trials.extend(self.trials(contender, &seeds, common));
         };
         if let Some(Ok(first)) = trials.first()
+            && self.predictors
             && !contender.is_reference()
         {
-            let experiment = plan.experiment(Arc::clone(scene)).with_dry_run(first.dry_run.clone());
+            let experiment = common.experiment(&plan).with_dry_run(first.dry_run.clone());
             // The dry run of the first trial is reused for every predictor.
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
         if self.limits && !contender.is_reference() {
             row.triangles_definition = definition(&plan);
-            row.triangles_possible = LimitQuery::of_plan(&plan).search().ok().map(|limit| limit.triangles);
+            row.triangles_possible = LimitQuery::of_plan(&plan).search_triangles().ok();
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
         // A row that showed no picture explains the reason.
@@ -381,7 +399,7 @@ fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     }
 }
 
-/// Returns the criterion of the triangle limit in words.
+/// Returns, in words, the condition under which a number of triangles counts as drawn in time.
 fn definition(plan: &Plan) -> String {
     let goal = match plan.limit.goal {
         Goal::NoMissedRetrace => "with no retrace missed".to_owned(),
@@ -397,7 +415,7 @@ impl Comparison {
     /// Four kinds of rows are never the best:
     ///
     /// - rows with pictures that were due and not shown
-    /// - the reference
+    /// - the row `ideal`, which shows ideal pictures as a reference
     /// - rows that were evaluated over other display periods
     /// - the row of delayed video, whose error leaves out the delay of the world
     #[must_use]

@@ -1,4 +1,5 @@
-//! Opening of the finished rows of a comparison, with the settings that identify them.
+//! Opens the folder with the finished rows of a comparison, and checks that the rows have the settings of this
+//! comparison.
 
 use super::query::CompareQuery;
 use super::store::{CompareStore, Header, ROWS_SCHEMA};
@@ -34,6 +35,8 @@ impl CompareQuery {
         // Options of the comparison are named as on the command line.
         put("--seeds", format!("{:?}", self.seeds));
         put("--limits", self.limits.to_string());
+        put("--causes", self.causes.to_string());
+        put("--predictors", self.predictors.to_string());
         put("--confidence", self.confidence.to_string());
         put("--until-precision", self.until.map_or_else(|| "none".to_owned(), |until| until.width.to_string()));
         put("--max-seeds", self.until.map_or_else(|| "none".to_owned(), |until| until.max_seeds.to_string()));
@@ -45,5 +48,45 @@ impl CompareQuery {
         }
         let (schema, version) = (ROWS_SCHEMA.to_owned(), env!("CARGO_PKG_VERSION").to_owned());
         Ok(Header { schema, version, rows, settings, config_hash: plan.fingerprint().to_string() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::CONFIDENCE;
+    use crate::experiment_file::ExperimentFile;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    #[test]
+    fn a_stopped_comparison_stores_no_row_of_stopped_runs_and_can_be_resumed() {
+        let text = "scene = \"full-screen:2\"\nfields = 24\nmachine.preset = \"small-hmd\"\n\
+                    head.motion = \"synthetic\"\nhead.tracker = \"optical\"\n";
+        let query = CompareQuery {
+            shared: ExperimentFile::parse(text, "test").expect("TOML"),
+            only: vec!["slats".to_owned(), "ideal".to_owned()],
+            seeds: vec![1, 2],
+            limits: false,
+            causes: false,
+            predictors: false,
+            pictures: false,
+            confidence: CONFIDENCE,
+            until: None,
+        };
+        let folder = std::env::temp_dir().join(format!("pxpl5-compare-{}-stopped", std::process::id()));
+        let _ = std::fs::remove_dir_all(&folder);
+        let stop = Arc::new(AtomicBool::new(false));
+        // The first finished run stops the comparison, so each row has at least one run without a result.
+        let stop_soon = |_, _| stop.store(true, Ordering::Relaxed);
+        let store = query.open_store(&folder, true).expect("a folder");
+        let stopped = query.run_stoppable(Some(&store), &stop, stop_soon, |row| panic!("{} ended", row.pipeline));
+        assert!(matches!(stopped, Err(StudyError::Stopped)), "{stopped:?}");
+        drop(store);
+        let store = query.open_store(&folder, true).expect("a folder");
+        assert_eq!(store.found(), 0);
+        let resumed = query.run_into(Some(&store), |_, _| {}, |_| {}).expect("it runs");
+        assert_eq!(resumed.pipelines.len(), 2);
+        let _ = std::fs::remove_dir_all(&folder);
     }
 }

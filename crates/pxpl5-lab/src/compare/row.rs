@@ -76,8 +76,8 @@ pub struct ComparisonRow {
     /// and the position of the same pose.
     pub turn_to_light_ms: Statistics,
     /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the
-    /// time from the measured pose to the arrival of its report. The second is the time from the start of an eye's
-    /// TRANSFORM to the swap.
+    /// time from the measurement of a pose to the arrival of the tracker's report. The second is the time from the
+    /// start of an eye's TRANSFORM to the swap.
     ///
     /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND,
     /// EDIT and the scan.
@@ -100,12 +100,15 @@ pub struct ComparisonRow {
     pub late_regions: Option<usize>,
     /// Error of position on the screen, over a grid of pixels and all evaluated fields.
     pub error: ErrorSpread,
-    /// Display periods over which the first seed was evaluated. `None` if there is no seed, or if the run ended before
-    /// the evaluation began.
+    /// Display periods over which the run with the first seed was evaluated. `None` if there is no seed, or if the run
+    /// ended before the evaluation began.
     pub window: Option<ResultWindow>,
-    /// Contributions of all causes to the mean error. The sum of all contributions is the mean error.
+    /// Contributions of all causes to the mean error. The sum of all contributions is the mean error. Empty unless the
+    /// query asked for them.
     pub causes: Vec<CauseShare>,
-    /// Mean error of the first seed with each predictor. Empty for the reference, which is computed without firmware.
+    /// Mean error of the first seed with each predictor. Empty unless the query asked for it, and for the row `ideal`,
+    /// whose pictures no predictor
+    /// changes.
     pub predictors: Vec<PredictorMean>,
     /// Largest number of triangles that meets the pipeline's own criterion. `None` if the query did not ask for a
     /// search, or the search failed.
@@ -210,7 +213,7 @@ pub(super) struct Sampling {
     pub(super) confidence: f64,
 }
 
-/// Returns the sum of the known values, or `None` if all values are unknown.
+/// Returns the sum of the values that are not `None`, or `None` if there is no such value.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
     let mut known = values.flatten().peekable();
     known.peek().is_some().then(|| known.sum())

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  rows/rows.jsonl    header, then one line for each finished row
-//!  rows/1-seen.png    last picture of the row in line 1 behind the header, and the ideal picture
+//!  rows/1-seen.png    last picture of the row in line 1 after the header, and the ideal picture
 //! ```
 //!
 //! A line is appended by one write, as in the store of a sweep. After a crash the last line may be incomplete. The
@@ -11,9 +11,10 @@
 use super::gallery::LastPicture;
 use super::row::ComparisonRow;
 use crate::error::StudyError;
-use crate::sweep::{ROWS_FILE, SweepError, line_of, lock, opened};
+use crate::sweep::{ROWS_FILE, line_of, lock, opened};
 use image::RgbImage;
 use pxpl5_measure::FieldMisregistration;
+use pxpl5_sim::parameters::FileError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -27,7 +28,7 @@ pub const ROWS_SCHEMA: &str = "pxpl5-comparison-rows/1";
 /// Name of the folder with the finished rows, within the folder of a comparison.
 pub const ROWS_FOLDER: &str = "rows";
 
-/// Settings of a comparison, in the first line of its file of rows.
+/// Settings that identify a comparison, in the first line of the file with its rows.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Header {
     pub(super) schema: String,
@@ -35,9 +36,9 @@ pub(super) struct Header {
     pub(super) version: String,
     /// Names of all rows of the comparison.
     pub(super) rows: Vec<String>,
-    /// Keys and options with their values, and the hashes of the files that they name.
+    /// Keys and options with their values, and the hashes of the files that the values name.
     pub(super) settings: BTreeMap<String, String>,
-    /// Hash of all effective settings of the first row, also of those from presets.
+    /// Hash of all effective settings of the first row, including the settings from presets.
     pub(super) config_hash: String,
 }
 
@@ -82,7 +83,7 @@ impl CompareStore {
     /// Opens or creates the folder of finished rows, as [`CompareQuery::open_store`](super::CompareQuery::open_store)
     /// describes.
     pub(super) fn open(folder: &Path, header: &Header, resume: bool) -> Result<Self, StudyError> {
-        fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
+        fs::create_dir_all(folder).map_err(FileError::io(folder, "cannot be made"))?;
         // The lock comes before any change to the folder.
         let lock = lock(folder)?;
         let path = folder.join(ROWS_FILE);
@@ -116,13 +117,13 @@ impl CompareStore {
         self.found.len()
     }
 
-    /// Returns the row with this name, if an earlier process has finished it.
+    /// Returns the row with this name, if an earlier process has finished this row.
     #[must_use]
     pub fn row(&self, name: &str) -> Option<&ComparisonRow> {
         self.found.iter().find(|row| row.pipeline == name)
     }
 
-    /// Appends a finished row. Returns the row with the numbers that a later process reads, so that an interruption
+    /// Appends a finished row. Returns the row as a later process reads the row from the file, so that an interruption
     /// changes no result.
     pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, StudyError> {
         let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
@@ -141,7 +142,7 @@ impl CompareStore {
             let name = format!("{number}-{what}.png");
             let path = self.folder.join(&name);
             let written = picture.save_with_format(&path, image::ImageFormat::Png).map_err(std::io::Error::other);
-            written.map_err(SweepError::io(&path, "cannot be written"))?;
+            written.map_err(FileError::io(&path, "cannot be written"))?;
             Ok::<_, StudyError>(name)
         };
         let should_be = picture.should_be.as_ref().map(|ideal| put("should-be", ideal)).transpose()?;
@@ -150,7 +151,7 @@ impl CompareStore {
 }
 
 impl Header {
-    /// Returns an error that names the first difference to the header of a file.
+    /// Compares this header with the header of a file. Returns an error that names the first difference.
     fn check(&self, path: &Path, found: Option<&Self>) -> Result<(), StudyError> {
         let Some(found) = found.filter(|found| *found != self) else { return Ok(()) };
         let value = |header: &Self, key: &str| header.settings.get(key).map_or("not set", String::as_str).to_owned();
@@ -181,7 +182,7 @@ impl Line {
         let read = |name: &String| {
             let path = folder.join(name);
             let picture = image::open(&path).map_err(std::io::Error::other);
-            Ok::<_, StudyError>(picture.map_err(SweepError::io(&path, "cannot be read"))?.into_rgb8())
+            Ok::<_, StudyError>(picture.map_err(FileError::io(&path, "cannot be read"))?.into_rgb8())
         };
         let picture = self.picture.map(|files| {
             let should_be = files.should_be.as_ref().map(read).transpose()?;
@@ -195,7 +196,7 @@ impl Line {
 fn whole_lines(path: &Path) -> Result<Vec<u8>, StudyError> {
     let mut bytes = match fs::read(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-        bytes => bytes.map_err(SweepError::io(path, "cannot be read"))?,
+        bytes => bytes.map_err(FileError::io(path, "cannot be read"))?,
     };
     let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
     bytes.truncate(whole);
@@ -215,7 +216,7 @@ impl Rows {
         if let Err(error) = self.file.write_all(line.as_bytes()) {
             // The first error is the one to report.
             let _ = self.file.set_len(self.end);
-            return Err(SweepError::io(path, "cannot be written")(error).into());
+            return Err(FileError::io(path, "cannot be written")(error).into());
         }
         self.end += line.len() as u64;
         Ok(())

@@ -2,10 +2,10 @@
 
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
-use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing, tracking_and_rendering_ms};
-use pxpl5_run::{DryRun, DuePictures, Outcome, Pixels, ResultWindow, WARM_UP_PERIODS};
-use pxpl5_scene::Scene;
+use pxpl5_run::{DryRun, DuePictures, Experiment, Outcome, ResultWindow, WARM_UP_PERIODS};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -35,8 +35,9 @@ pub(super) struct Trial {
 }
 
 impl ComparedPipeline {
-    /// Returns the plan of one run: the shared settings, the settings of this row, and a seed.
-    pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, FileError> {
+    /// Returns the plan (checked experiment) of one run, from the shared settings, the settings of this row, and a
+    /// seed.
+    pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, SettingError> {
         let mut file = shared.clone();
         file.set("pipeline", self.pipeline, "compare")?;
         for (key, value) in self.settings {
@@ -45,24 +46,25 @@ impl ComparedPipeline {
         file.resolve_for(seed)
     }
 
-    /// Runs one plan of the row. An error is returned as its message.
-    pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
-        let from = common_window_from(plan.fields);
-        let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels).results_from(from);
-        let outcome = experiment.after_dry_run().and_then(|it| it.run()).map_err(|error| error.to_string())?;
-        Ok(Trial::of(&outcome, self.showing))
+    /// Runs one experiment of the row. `causes` is true if the error is split by its causes. Returns an error as text.
+    pub(super) fn trial(&self, experiment: Experiment, causes: bool) -> Result<Trial, String> {
+        let from = common_window_from(experiment.length());
+        let outcome =
+            experiment.results_from(from).after_dry_run().and_then(|it| it.run()).map_err(|error| error.to_string())?;
+        Ok(Trial::of(&outcome, self.showing, causes))
     }
 }
 
-/// Returns the first display period in which the rows of a comparison are evaluated: after a quarter of the run.
+/// Returns the first display period in which the rows of a comparison are evaluated. This period comes after a quarter
+/// of the run and after the warm-up.
 ///
-/// All rows are thus evaluated over the same periods, although some start up later than others.
+/// All rows are thus evaluated over the same periods, although some pipelines start up later than others.
 pub(super) fn common_window_from(fields: u64) -> PeriodNumber {
     PeriodNumber(WARM_UP_PERIODS.max(fields / 4))
 }
 
 impl Trial {
-    fn of(outcome: &Outcome, showing: Showing) -> Self {
+    fn of(outcome: &Outcome, showing: Showing, causes: bool) -> Self {
         let report = outcome.report();
         // The reference has errors but no times.
         let is_timed = showing != Showing::Ideal;
@@ -75,7 +77,7 @@ impl Trial {
             tracking_and_rendering_ms: tracking_and_rendering_ms(outcome).filter(|_| is_timed),
             prediction_interval_ms: times(prediction_intervals_ms(outcome)),
             budget: Budget::of(outcome),
-            causes: ErrorCauses::of(outcome, showing, &errors),
+            causes: if causes { ErrorCauses::of(outcome, showing, &errors) } else { None },
             errors,
             updates_hz: report.updates_hz.filter(|_| is_timed),
             due: report.due.filter(|_| is_timed),
@@ -93,8 +95,9 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()).collect()
 }
 
-/// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. Cube faces
-/// get their orientation at scan-out. Other pictures are drawn for the orientation of their pose.
+/// Returns the times from the measurement of an orientation until its picture is displayed, in milliseconds. For cube
+/// faces, this orientation is chosen at scan-out. Any other picture shows the orientation of the pose for which the
+/// picture was drawn.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     if !outcome.pipeline().draws_faces() {
         return Budget::totals_ms(outcome);
@@ -102,8 +105,8 @@ fn turns_ms(outcome: &Outcome) -> Vec<f64> {
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()
 }
 
-/// Returns the prediction intervals in milliseconds. Each interval reaches from the newest measurement behind a head
-/// pose to the instant for which the picture with this pose is drawn.
+/// Returns the prediction intervals in milliseconds. Each interval begins at the newest measurement from which a head
+/// pose was predicted. The interval ends at the instant for which the picture with this pose is drawn.
 fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let Some(head) = outcome.head() else { return Vec::new() };
     // Only views whose pictures were shown completely count.

@@ -1,25 +1,25 @@
 //! The display in an experiment file: a preset by name, and parameters that change the preset.
 
-use super::read::{plain, wrong};
-use super::{ExperimentFile, FileError, Setting};
+use super::read::{plain, unknown, wrong};
+use super::{ExperimentFile, Setting};
 use pxpl5_run::DisplayEntry;
-use pxpl5_sim::parameters::{ParameterTable, Value as Number, nearest};
+use pxpl5_sim::parameters::{ParameterTable, SettingError, Value as Number};
 use pxpl5_wire::display::DisplayConfig;
 
 /// Prefix of the keys of display parameters.
 pub(super) const NUMBERS: &str = "display.";
 
-/// Name of the preset that display parameters change if the file names no preset.
+/// Name of the preset that is used if the file sets display parameters but names no preset.
 const OWN: &str = "panel";
 
-/// A display parameter in an experiment file. The parameter has one name in the file and another name in the display's
-/// table of parameters.
+/// A display parameter in an experiment file. The parameter has one name in the file (`key`) and another name in the
+/// display's table of parameters (`parameter`).
 struct NumberKey {
     key: &'static str,
     parameter: &'static str,
     per_unit: f64,
     about: &'static str,
-    /// Words that the file may contain instead of a number, each with its number.
+    /// Words that the file may contain instead of a number, each with the number that the word stands for.
     words: &'static [(&'static str, u64)],
 }
 
@@ -70,7 +70,7 @@ pub(super) fn keys() -> impl Iterator<Item = (String, &'static str)> {
 
 /// Reads the display of an experiment and its parameters. Returns `None` if the file names no display and sets no
 /// display parameter.
-pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig>>, FileError> {
+pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig>>, SettingError> {
     let displays: Vec<(&str, &DisplayEntry)> =
         file.registry().displays().iter().map(|entry| (entry.name, entry)).collect();
     let given: Vec<(&NumberKey, String, &Setting)> = KEYS
@@ -89,16 +89,16 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
     }
     if let (Err(error), Some(first)) = (config.check(), given.first()) {
         // The message names the number of the table; the place is the place of the key that sets this number.
-        let reason = error.to_string();
-        let named = given.iter().find(|(key, ..)| reason.contains(&format!(".{}:", key.parameter)));
+        let name = error.name.rsplit('.').next().unwrap_or_default();
+        let named = given.iter().find(|(key, ..)| key.parameter == name);
         let (_, path, setting) = named.unwrap_or(first);
-        return Err(FileError::Head { place: format!("{}: {path}", setting.place), reason });
+        return Err(error.at(format_args!("{}: {path}", setting.place)));
     }
     Ok(Some(config))
 }
 
 /// Sets one parameter of the display to the value in the file.
-fn set(config: &mut dyn DisplayConfig, key: &NumberKey, path: &str, setting: &Setting) -> Result<(), FileError> {
+fn set(config: &mut dyn DisplayConfig, key: &NumberKey, path: &str, setting: &Setting) -> Result<(), SettingError> {
     let name = config.name();
     let tables = config.tables_mut();
     let table = tables.into_iter().map(|(_, table)| table).find(|table| table.get(key.parameter).is_ok());
@@ -116,15 +116,13 @@ fn set(config: &mut dyn DisplayConfig, key: &NumberKey, path: &str, setting: &Se
 }
 
 /// Converts the value of a display parameter to the unit of the display's table.
-fn number(key: &NumberKey, path: &str, setting: &Setting) -> Result<Number, FileError> {
+fn number(key: &NumberKey, path: &str, setting: &Setting) -> Result<Number, SettingError> {
     let found = plain(&setting.value);
     if let Some((_, value)) = key.words.iter().find(|(word, _)| *word == found) {
         return Ok(Number::Whole(*value));
     }
     if !key.words.is_empty() {
-        let words: Vec<&str> = key.words.iter().map(|(word, _)| *word).collect();
-        let near = nearest(&found, words.iter().copied()).unwrap_or_default();
-        return Err(wrong(path, setting, &format!("one of {} (the nearest is {near})", words.join(", "))));
+        return Err(unknown(path, setting, key.words.iter().map(|(word, _)| *word)));
     }
     let value = setting.value.as_float().or(setting.value.as_integer().map(|value| value as f64));
     let scaled = value.map(|value| value * key.per_unit).filter(|value| (0.0..=1e12).contains(value));
@@ -141,7 +139,7 @@ fn unit_text(key: &NumberKey) -> String {
     }
 }
 
-/// Returns the range of a display parameter in the unit of the experiment file.
+/// Returns the range of a display parameter in the unit of the experiment file, for error messages.
 fn limits(key: &NumberKey, table: &dyn ParameterTable) -> String {
     let info = table.infos().iter().find(|info| info.name == key.parameter);
     let text = |value: Number| match value {

@@ -1,11 +1,13 @@
-//! The tracked head of an experiment: its motion, tracker and predictor, and the raster of its display.
+//! The tracked head of an experiment: its motion, tracker, predictor and raster. The raster is the correction that the
+//! display applies to pictures during the scan.
 
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;
-use super::{ExperimentFile, FileError, reprojection, tracking_numbers};
+use super::{ExperimentFile, reprojection, tracking_numbers};
 use crate::head_names::{Replay, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk};
 use pxpl5_machine::Parameter;
 use pxpl5_run::{Aim, Head, HeadPlace, Pipeline};
+use pxpl5_sim::parameters::SettingError;
 use std::sync::Arc;
 use toml::Value;
 use tracking::motion::{Axes, Columns, End, RecordingFormat};
@@ -38,7 +40,11 @@ const PREDICT: &str = "kalman";
 impl HeadChoice {
     /// Reads the settings of an experiment's head, and the recording of its motion if there is one. Returns `None` if
     /// no `head.` or `tracking.` key is set.
-    pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline, seed: u64) -> Result<Option<Self>, FileError> {
+    pub(super) fn read(
+        file: &ExperimentFile,
+        pipeline: &dyn Pipeline,
+        seed: u64,
+    ) -> Result<Option<Self>, SettingError> {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
         let raster = reprojection::read(file, pipeline)?;
         let aim = file.choice("head.aim", &Aim::ALL)?.unwrap_or_default();
@@ -70,13 +76,13 @@ impl HeadChoice {
     }
 
     /// Returns `None` for an experiment without a head motion. Returns an error if a `head.` or `tracking.` key is set.
-    fn none(file: &ExperimentFile) -> Result<Option<Self>, FileError> {
+    fn none(file: &ExperimentFile) -> Result<Option<Self>, SettingError> {
         let of_head = file.settings.keys().any(|path| path.starts_with("head.") || path.starts_with("tracking."));
         let how = "the motion of the head, such as head.motion = \"pan:200\"";
-        if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
+        if of_head { Err(SettingError::missing("head.motion", how)) } else { Ok(None) }
     }
 
-    /// Returns the head with its tracker and predictor. All runs of a plan share this head.
+    /// Returns the head with its tracker and predictor. All runs of one checked experiment share this head.
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)
@@ -136,7 +142,7 @@ fn moving(
     file: &ExperimentFile,
     name: &str,
     replay: &Replay,
-) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, FileError> {
+) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, SettingError> {
     // A recording in memory has priority over a file.
     if let Some(contents) = file.contents(name).filter(|_| is_recording(name)) {
         let recording = recording_of(&**contents, name, replay);
@@ -150,7 +156,7 @@ fn moving(
 }
 
 /// Reads the options for replaying a recording: columns, axes and the behaviour at its end.
-fn replay(file: &ExperimentFile) -> Result<Replay, FileError> {
+fn replay(file: &ExperimentFile) -> Result<Replay, SettingError> {
     let mut columns = Columns::default();
     for (path, setting) in &file.settings {
         if let Some(field) = path.strip_prefix(COLUMNS) {
@@ -162,7 +168,7 @@ fn replay(file: &ExperimentFile) -> Result<Replay, FileError> {
 }
 
 /// Returns an error if a key for recordings is set but the motion is not a recording.
-fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), FileError> {
+fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), SettingError> {
     let is_of_recordings = |path: &str| ["head.end", "head.axes"].contains(&path) || path.starts_with(COLUMNS);
     match file.settings.iter().find(|(path, _)| is_of_recordings(path) && !is_recording(motion)) {
         Some((path, setting)) => Err(wrong(path, setting, "nothing: head.motion is no recording")),
@@ -183,20 +189,20 @@ const TUNED: [&str; 7] = [
 
 /// Returns true if the predictor is tuned automatically. Tuning starts from the values of `tracking.filter`. Without
 /// `head.filter`, the predictor is tuned unless one of the [`TUNED`] parameters is set.
-fn is_tuned(file: &ExperimentFile) -> Result<bool, FileError> {
+fn is_tuned(file: &ExperimentFile) -> Result<bool, SettingError> {
     let is_given = |name: &str| file.get(&format!("tracking.filter.{name}")).is_some();
     let choice = file.choice("head.filter", &[("tuned", true), ("given", false)])?;
     Ok(choice.unwrap_or(!TUNED.iter().any(|name| is_given(name))))
 }
 
-fn evaluated(file: &ExperimentFile, head: Head) -> Result<Head, FileError> {
+fn evaluated(file: &ExperimentFile, head: Head) -> Result<Head, SettingError> {
     match file.number("head.evaluate_at")? {
         Some(metres) => head.evaluated_at(metres).map_err(|error| refused(file, "head.evaluate_at", &error)),
         None => Ok(head),
     }
 }
 
-fn refused(file: &ExperimentFile, key: &str, error: &dyn std::error::Error) -> FileError {
+fn refused(file: &ExperimentFile, key: &str, error: &dyn std::error::Error) -> SettingError {
     let place = file.get(key).map_or_else(|| key.to_owned(), |setting| format!("{}: {key}", setting.place));
-    FileError::Head { place, reason: error.to_string() }
+    SettingError::combination(error).at(place)
 }

@@ -1,9 +1,10 @@
 //! The head-mounted display of an experiment: its optics and the viewer's eyes.
 
-use super::read::wrong;
-use super::{ExperimentFile, FileError};
+use super::ExperimentFile;
+use super::read::{not_applicable, wrong};
 use pxpl5_run::Pipeline;
-use pxpl5_scene::{Hmd, HmdConfig, RangeError};
+use pxpl5_scene::{Hmd, HmdConfig};
+use pxpl5_sim::parameters::SettingError;
 use toml::Value;
 
 /// A parameter of the head-mounted display: its key, its explanation, and the functions that set and return its value.
@@ -58,19 +59,15 @@ pub(super) const NUMBERS: [Number; 6] = [
 ///
 /// Fails if a value is out of range. Also fails for a pipeline that draws cube faces around the head, because the
 /// optics of such a display are among that display's own parameters.
-pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd, FileError> {
+pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd, SettingError> {
     let mut config = HmdConfig::unc();
     for (key, _, set, _) in NUMBERS {
         let Some(setting) = file.get(key) else { continue };
         let is_parallel = key == CONVERGENCE && setting.value.as_float() == Some(f64::INFINITY);
         let Some(value) = (if is_parallel { Some(f64::INFINITY) } else { file.number(key)? }) else { continue };
         if pipeline.draws_faces() {
-            return Err(FileError::NotApplicable {
-                place: setting.place.clone(),
-                key: key.to_owned(),
-                pipeline: pipeline.name(),
-                applies_to: "pipelines that draw a picture for each eye".to_owned(),
-            });
+            let applies_to = "pipelines that draw a picture for each eye";
+            return Err(not_applicable(key, pipeline.name(), applies_to).at(&setting.place));
         }
         set(&mut config, value);
         // Each number is checked alone, so that the error names the key; near and far are checked together below.
@@ -79,16 +76,17 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
     }
     Hmd::new(config).map_err(|error| match file.get("hmd.far").or_else(|| file.get("hmd.near")) {
         Some(setting) => wrong("hmd.far", setting, expected(&error)),
-        None => FileError::Missing { key: "hmd", how: "numbers within their ranges" },
+        None => SettingError::missing("hmd", "numbers within their ranges"),
     })
 }
 
-/// Returns the range of a number in words, with the names and units of the keys.
-fn expected(error: &RangeError) -> &'static str {
-    match error.what {
+/// Returns the valid range of a parameter in words, for an error message. Names and units are those of the experiment
+/// file.
+fn expected(error: &SettingError) -> &str {
+    match &*error.name {
         "eye_separation_m" => "0 to 1000, in millimetres",
         "far_m" => "a number above hmd.near, at most 1e9",
-        _ => error.expected,
+        _ => &error.expected,
     }
 }
 

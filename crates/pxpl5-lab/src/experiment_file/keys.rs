@@ -5,7 +5,7 @@ use super::hmd;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
-use pxpl5_sim::parameters::nearest;
+use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Columns;
 
 /// A key of an experiment file, with an explanation for the user.
@@ -100,7 +100,8 @@ const COMMON: &[(&str, &str)] = &[
 ];
 
 /// Former names of keys, each with the current name.
-const RENAMED: [(&str, &str); 2] = [("head.display", "head.raster"), ("display.preset", "display")];
+const RENAMED: [(&str, &str); 3] =
+    [("head.display", "head.raster"), ("head.evaluate_at", "head.evaluate_at"), ("display.preset", "display")];
 
 /// Returns all keys except the keys of the machine's parameters. A parameter's key is `machine.` followed by a path of
 /// [`MachineConfig::set`].
@@ -153,7 +154,7 @@ fn is_key(registry: &Registry, path: &str) -> bool {
     keys(registry).iter().any(|key| key.path == path)
 }
 
-/// Returns true if the path is a parameter of a machine with some registered display.
+/// Returns true if the path is a parameter of a machine with any display of the registry.
 fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
     let Some(path) = path.strip_prefix("machine.") else { return false };
     parameters(registry).iter().any(|known| known == path)
@@ -166,13 +167,13 @@ fn parameters(registry: &Registry) -> Vec<String> {
     machine.settings().into_iter().map(|(path, _)| path).collect()
 }
 
-/// Returns the valid path with the smallest edit distance to an invalid path. For a parameter of the machine, the
+/// Creates the error of an invalid path, with the most similar valid path. For a parameter of the machine, the
 /// prefix `machine.` is added only if the invalid path is closer to that form.
-pub(super) fn nearest_key(registry: &Registry, found: &str) -> String {
+pub(super) fn unknown(registry: &Registry, found: &str) -> SettingError {
     let parameters = parameters(registry);
     let long = parameters.iter().map(|path| format!("machine.{path}"));
     let own = keys(registry).into_iter().map(|key| key.path);
     let of_trackers = tracking_parameters().into_iter().map(|parameter| parameter.path);
-    let all: Vec<String> = own.chain(long).chain(parameters.iter().cloned()).chain(of_trackers).collect();
-    nearest(found, all.iter().map(String::as_str)).unwrap_or_default().to_owned()
+    let all = own.chain(long).chain(parameters.iter().cloned()).chain(of_trackers);
+    SettingError::unknown_path("key", found, all)
 }

@@ -1,10 +1,11 @@
 //! The head motion of an experiment in which the head has no tracker.
 
+use super::ExperimentFile;
 use super::read::wrong;
-use super::{ExperimentFile, FileError};
 use glam::Vec3;
 use pxpl5_scene::config::FIT_DISTANCE_RADII;
 use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway};
+use pxpl5_sim::parameters::SettingError;
 
 /// The motion of a head without a tracker, in front of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,7 +24,7 @@ pub enum PathChoice {
         /// Distance from the scene's centre in metres. `None` fits the scene into the view.
         distance: Option<f64>,
     },
-    /// The head looks at the scene and walks back and forth.
+    /// The head faces the scene and moves back and forth.
     Look {
         /// Distance from the scene's centre in metres. `None` fits the scene into the view.
         distance: Option<f64>,
@@ -46,7 +47,7 @@ pub enum PathChoice {
 const DEG_PER_S: f64 = pxpl5_scene::config::MEAN_HEAD_SPEED_DEG_PER_S;
 
 impl MotionChoice {
-    pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
+    pub(super) fn read(file: &ExperimentFile) -> Result<Self, SettingError> {
         let distance = file.number("motion.distance")?;
         let rate = file.number("motion.deg_per_s")?;
         let deg_per_s = rate.unwrap_or(DEG_PER_S);
@@ -70,7 +71,7 @@ impl MotionChoice {
     }
 
     /// Returns the head motion in front of a scene.
-    pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, FileError> {
+    pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, SettingError> {
         let own = scene.motion();
         let path = self.path.map_or(*own.path(), |path| path.around(scene));
         // A replaced path loses the scene's own sway.
@@ -79,7 +80,7 @@ impl MotionChoice {
             Some(PathChoice::Look { .. }) => self.sway.unwrap_or(1.0),
             _ => self.sway.unwrap_or(own_scale),
         };
-        Ok(HeadMotion::new(path, Sway { seed: own.sway().seed, scale })?)
+        HeadMotion::new(path, Sway { seed: own.sway().seed, scale }).map_err(|error| error.at("motion"))
     }
 }
 

@@ -1,21 +1,21 @@
-//! The checked plan of one experiment.
+//! The plan of one experiment: all settings, with values that were checked together.
 
 use super::head::HeadChoice;
 use super::hmd;
-use super::read::{plain, wrong};
+use super::read::{not_applicable, plain, wrong};
 use super::scene::SceneChoice;
-use super::{ExperimentFile, FileError, Setting, display};
+use super::{ExperimentFile, Setting, display};
 use crate::Workstation;
 use crate::levels::summarise;
 use pxpl5_gp::CodeVersion;
-use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
+use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, Host, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
     PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
-use pxpl5_sim::parameters::{ParameterError, Value as Number};
+use pxpl5_sim::parameters::{SettingError, Value as Number};
 use std::sync::Arc;
 
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
@@ -45,22 +45,20 @@ pub struct Published {
 }
 
 impl Published {
-    fn read(file: &ExperimentFile) -> Result<Option<Self>, FileError> {
+    fn read(file: &ExperimentFile) -> Result<Option<Self>, SettingError> {
         let Some(value) = file.number("published.value")? else { return Ok(None) };
-        let missing = FileError::Missing { key: "published.quantity", how: "the published quantity" };
-        let name = file.text("published.quantity")?.ok_or(missing)?;
+        let missing = || SettingError::missing("published.quantity", "the published quantity");
+        let name = file.text("published.quantity")?.ok_or_else(missing)?;
         let quantity = measure(file, "published.quantity", name)?;
         let source = file.text("published.source")?.map(str::to_owned);
         Ok(Some(Self { figure: file.integer("published.figure", 0..=999)?, source, quantity, value }))
     }
 }
 
-fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, FileError> {
+fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, SettingError> {
     Measure::named(name).map_err(|error| match file.get(key) {
-        Some(setting) => {
-            wrong(key, setting, &format!("a quantity that is measured (the nearest is {})", error.nearest()))
-        }
-        None => FileError::Missing { key: "measure", how: "quantities that are measured" },
+        Some(setting) => error.at(format_args!("{}: {key}", setting.place)),
+        None => SettingError::missing("measure", "quantities that are measured"),
     })
 }
 
@@ -71,7 +69,7 @@ pub struct Plan {
     pub title: Option<String>,
     /// Registry of the pipelines and displays that the experiment can name.
     pub registry: Arc<Registry>,
-    /// Pipeline, built from the settings that it reads from the file.
+    /// Pipeline, built with the values of the pipeline's keys in the file.
     pub pipeline: Arc<dyn Pipeline>,
     /// Criterion for searching the largest number of triangles that are drawn in time.
     pub limit: LimitCriterion,
@@ -107,8 +105,8 @@ impl ExperimentFile {
     ///
     /// # Errors
     ///
-    /// Returns a [`FileError`] that names the first setting that is wrong or missing.
-    pub fn resolve(&self) -> Result<Plan, FileError> {
+    /// Returns a [`SettingError`] that names the first setting that is wrong or missing.
+    pub fn resolve(&self) -> Result<Plan, SettingError> {
         // The pipeline comes first, because other settings depend on it.
         let (entry, given) = self.pipeline()?;
         let pipeline = (entry.build)(&given);
@@ -138,7 +136,7 @@ impl ExperimentFile {
     }
 
     /// Returns the quantities that the key `measure` names, or the default quantities.
-    fn measures(&self) -> Result<Vec<Measure>, FileError> {
+    fn measures(&self) -> Result<Vec<Measure>, SettingError> {
         match self.texts("measure")? {
             Some(names) => names.iter().map(|name| measure(self, "measure", name)).collect(),
             None => Ok(Measure::usual()),
@@ -146,11 +144,11 @@ impl ExperimentFile {
     }
 
     /// Returns the pipeline's registry entry, and the values of the pipeline's keys in the file.
-    fn pipeline(&self) -> Result<(&PipelineEntry, PipelineSettings), FileError> {
+    fn pipeline(&self) -> Result<(&PipelineEntry, PipelineSettings), SettingError> {
         let names: Vec<(&str, &PipelineEntry)> =
             self.registry().pipelines().iter().map(|entry| (entry.name, entry)).collect();
-        let missing = FileError::Missing { key: "pipeline", how: "a pipeline, such as slats" };
-        let entry = self.choice("pipeline", &names)?.ok_or(missing)?;
+        let missing = || SettingError::missing("pipeline", "a pipeline, such as slats");
+        let entry = self.choice("pipeline", &names)?.ok_or_else(missing)?;
         self.refuse_keys_of_others(entry)?;
         let mut given = PipelineSettings::default();
         // Collect the values of the pipeline's own keys.
@@ -162,7 +160,7 @@ impl ExperimentFile {
         Ok((entry, given))
     }
 
-    fn pipeline_key(&self, key: &Key) -> Result<Option<KeyValue>, FileError> {
+    fn pipeline_key(&self, key: &Key) -> Result<Option<KeyValue>, SettingError> {
         Ok(match key.values {
             KeyValues::Flag => self.flag(key.name)?.map(KeyValue::Flag),
             KeyValues::Whole(low, high) => self.integer(key.name, low..=high)?.map(KeyValue::Whole),
@@ -174,28 +172,23 @@ impl ExperimentFile {
         })
     }
 
-    fn lens(&self, key: &Key) -> Result<Option<KeyValue>, FileError> {
+    fn lens(&self, key: &Key) -> Result<Option<KeyValue>, SettingError> {
         let Some(setting) = self.get(key.name) else { return Ok(None) };
         let lens = KeyValues::lens(&plain(&setting.value));
         lens.map(Some).map_err(|_| wrong(key.name, setting, &KeyValues::Lens.to_string()))
     }
 
     /// Returns an error for a key that belongs to another pipeline.
-    fn refuse_keys_of_others(&self, entry: &PipelineEntry) -> Result<(), FileError> {
+    fn refuse_keys_of_others(&self, entry: &PipelineEntry) -> Result<(), SettingError> {
         for (key, families) in self.registry().keys() {
             if let Some(setting) = self.get(key.name).filter(|_| !families.contains(&entry.family)) {
-                return Err(FileError::NotApplicable {
-                    place: setting.place.clone(),
-                    key: key.name.to_owned(),
-                    pipeline: entry.name,
-                    applies_to: families.join(", "),
-                });
+                return Err(not_applicable(key.name, entry.name, &families.join(", ")).at(&setting.place));
             }
         }
         Ok(())
     }
 
-    fn level(&self, entry: &PipelineEntry, has_head: bool) -> Result<Level, FileError> {
+    fn level(&self, entry: &PipelineEntry, has_head: bool) -> Result<Level, SettingError> {
         let choices = Level::ALL.map(|level| (level.name(), level));
         let level = self.choice("level", &choices)?.unwrap_or(Level::Transaction);
         // A closed form does not cover tracked heads.
@@ -207,16 +200,16 @@ impl ExperimentFile {
     }
 
     // The order matters: the preset, then the display, then the pipeline's adaptation, then single parameters.
-    fn machine(&self, entry: &PipelineEntry, pipeline: &dyn Pipeline) -> Result<MachineConfig, FileError> {
+    fn machine(&self, entry: &PipelineEntry, pipeline: &dyn Pipeline) -> Result<MachineConfig, SettingError> {
         let preset = self.text("machine.preset")?.unwrap_or(entry.preset);
         let place = self.get("machine.preset").map_or("machine", |setting| &setting.place);
-        let machine = MachineConfig::preset(preset).map_err(|error| refused(place, error))?;
+        let machine = MachineConfig::preset(preset).map_err(|error| error.at(place))?;
         // Start from the preset, with the parameters of every pipeline's firmware.
         let mut machine = self.registry().machine_of(machine);
         if let Some(display) = display::read(self)? {
             machine.displays = vec![display];
             let place = self.get("display").map_or("display", |setting| &setting.place);
-            check_faces(&machine, pipeline).map_err(|error| refused(place, error))?;
+            check_faces(&machine, pipeline).map_err(|error| error.at(place))?;
         }
         // The pipeline adapts the machine to its needs.
         let mut machine = pipeline.adapt(machine);
@@ -234,40 +227,31 @@ impl ExperimentFile {
             {
                 let value = self.parameter_value(path, setting)?;
                 self.refuse_twice(entry, &adapted, (path, parameter, setting), value)?;
-                machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
+                machine.set(parameter, value).map_err(|error| error.at(&setting.place))?;
             }
         }
         // Parameters are valid one by one, but may contradict each other.
-        machine.check().map_err(|error| refused(self.place_of_error(&error), error))?;
+        machine.check().map_err(|error| {
+            let place = self.get(&format!("machine.{}", error.name)).map_or("machine", |setting| &setting.place);
+            error.at(place)
+        })?;
         Ok(machine)
     }
 
-    /// Returns the origin (line or option) of the setting that caused an error of the machine.
-    fn place_of_error(&self, error: &ConfigError) -> &str {
-        let key = match error {
-            ConfigError::Value { what, .. } => format!("machine.{what}"),
-            ConfigError::Parameter { board, error: ParameterError::OutOfLimits { name, .. } } => {
-                format!("machine.{board}.{name}")
-            }
-            _ => return "machine",
-        };
-        self.get(&key).map_or("machine", |setting| &setting.place)
-    }
-
-    /// Returns an error for a parameter that a key of the pipeline also sets, unless both values are the same.
+    /// Returns an error if a machine parameter and a key of the pipeline set different values for the same number.
     fn refuse_twice(
         &self,
         entry: &PipelineEntry,
         adapted: &MachineConfig,
         (path, parameter, setting): (&str, &str, &Setting),
         value: Number,
-    ) -> Result<(), FileError> {
+    ) -> Result<(), SettingError> {
         let changed = adapted.parameters().iter().any(|own| own.path == parameter && own.value != value);
         for key in entry.keys.iter().filter(|key| changed && key.sets.contains(&parameter)) {
             if let Some(given) = self.get(key.name) {
-                let place = setting.place.clone();
                 let other = format!("{} = {}", key.name, plain(&given.value));
-                return Err(FileError::Conflict { place, key: path.to_owned(), other });
+                let reason = format_args!("{path} and {other} set the same numbers; leave one out");
+                return Err(SettingError::combination(reason).at(&setting.place));
             }
         }
         Ok(())
@@ -281,12 +265,8 @@ const CODES: [(&str, Option<CodeVersion>); 4] = [
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
 
-/// Possible origins of primitive times, by name. The value is true for the times of executed code.
+/// Names of the possible origins of primitive times: the papers, or executed code (true).
 const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
-
-fn refused(place: &str, error: ConfigError) -> FileError {
-    FileError::Config { place: place.to_owned(), error }
-}
 
 impl PartialEq for Plan {
     fn eq(&self, other: &Self) -> bool {
@@ -300,7 +280,7 @@ impl Plan {
     /// # Errors
     ///
     /// Fails in the same cases as [`SceneChoice::load`].
-    pub fn load_scene(&self) -> Result<Arc<Scene>, FileError> {
+    pub fn load_scene(&self) -> Result<Arc<Scene>, SettingError> {
         self.scene.load()
     }
 
@@ -370,11 +350,11 @@ impl Plan {
         self.run_on(Workstation::with_threads(1), scene)
     }
 
-    /// Like [`run`](Self::run), on another host. A host can stop the run.
+    /// Runs the experiment as [`run`](Self::run) does, but on the given host, which can stop the run.
     ///
     /// # Errors
     ///
-    /// Like [`run`](Self::run), and [`ExperimentError::Stopped`] if the host stops the run.
+    /// Fails in the same cases as [`run`](Self::run). Returns [`ExperimentError::Stopped`] if the host stops the run.
     pub fn run_on(&self, host: impl Host + 'static, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
         let experiment = self.experiment(scene).pixels(Pixels::Off).host(host);
         match self.level {

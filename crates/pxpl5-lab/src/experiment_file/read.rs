@@ -1,7 +1,8 @@
 //! Typed access to the settings of an experiment file.
 
-use super::{ExperimentFile, FileError, Setting};
-use pxpl5_sim::parameters::{Value as Number, nearest};
+use super::{ExperimentFile, Setting};
+use crate::head_names;
+use pxpl5_sim::parameters::{SettingError, Value as Number};
 use std::ops::RangeInclusive;
 use std::path::Path;
 use toml::Value;
@@ -11,17 +12,17 @@ impl ExperimentFile {
         self.settings.get(key)
     }
 
-    pub(super) fn text(&self, key: &str) -> Result<Option<&str>, FileError> {
+    pub(super) fn text(&self, key: &str) -> Result<Option<&str>, SettingError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         setting.value.as_str().map(Some).ok_or_else(|| wrong(key, setting, "text in quotes"))
     }
 
-    pub(super) fn flag(&self, key: &str) -> Result<Option<bool>, FileError> {
+    pub(super) fn flag(&self, key: &str) -> Result<Option<bool>, SettingError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         setting.value.as_bool().map(Some).ok_or_else(|| wrong(key, setting, "true or false"))
     }
 
-    pub(super) fn integer(&self, key: &str, range: RangeInclusive<u64>) -> Result<Option<u64>, FileError> {
+    pub(super) fn integer(&self, key: &str, range: RangeInclusive<u64>) -> Result<Option<u64>, SettingError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         let value = setting.value.as_integer().and_then(|value| u64::try_from(value).ok());
         value
@@ -32,7 +33,7 @@ impl ExperimentFile {
 
     /// Converts the value of a setting to a parameter. A TOML value with a fraction becomes a real number. Any other
     /// value must be a whole number.
-    pub(super) fn parameter_value(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
+    pub(super) fn parameter_value(&self, path: &str, setting: &Setting) -> Result<Number, SettingError> {
         match &setting.value {
             Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
             // The largest whole number of TOML is `i64::MAX`.
@@ -40,13 +41,13 @@ impl ExperimentFile {
         }
     }
 
-    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, FileError> {
+    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, SettingError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         let value = setting.value.as_float().or(setting.value.as_integer().map(|value| value as f64));
         value.filter(|value| value.is_finite()).map(Some).ok_or_else(|| wrong(key, setting, "a number"))
     }
 
-    pub(super) fn texts(&self, key: &str) -> Result<Option<Vec<String>>, FileError> {
+    pub(super) fn texts(&self, key: &str) -> Result<Option<Vec<String>>, SettingError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         let list: Option<Option<Vec<String>>> =
             setting.value.as_array().map(|list| list.iter().map(|v| v.as_str().map(str::to_owned)).collect());
@@ -55,15 +56,13 @@ impl ExperimentFile {
 
     /// Returns the named value that a key selects. A number selects the name with the same digits, so that `code =
     /// 1994` needs no quotes.
-    pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Result<Option<T>, FileError> {
+    pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Result<Option<T>, SettingError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         let found = plain(&setting.value);
         if let Some((_, value)) = choices.iter().find(|(name, _)| *name == found) {
             return Ok(Some(*value));
         }
-        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-        let near = nearest(&found, names.iter().copied()).unwrap_or_default();
-        Err(wrong(key, setting, &format!("one of {} (the nearest is {near})", names.join(", "))))
+        Err(unknown(key, setting, choices.iter().map(|(name, _)| *name)))
     }
 }
 
@@ -72,9 +71,25 @@ pub(crate) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-pub(super) fn wrong(key: &str, setting: &Setting, expected: &str) -> FileError {
+pub(super) fn wrong(key: &str, setting: &Setting, expected: &str) -> SettingError {
     let found: String = setting.value.to_string().chars().take(60).collect();
-    FileError::Value { place: setting.place.clone(), key: key.to_owned(), expected: expected.to_owned(), found }
+    SettingError::value(key, expected, found).at(&setting.place)
+}
+
+/// Creates the error of a key whose value is not one of the valid names.
+pub(super) fn unknown<'a>(key: &str, setting: &Setting, valid: impl IntoIterator<Item = &'a str>) -> SettingError {
+    let what = key.rsplit('.').next().unwrap_or(key);
+    let found: String = plain(&setting.value).chars().take(60).collect();
+    let names: Vec<&str> = valid.into_iter().collect();
+    let error = head_names::unknown(what, &found, names.iter().copied(), &format!("one of {}", names.join(", ")));
+    error.at(format_args!("{}: {key}", setting.place))
+}
+
+/// Creates the error of a key that the chosen pipeline does not have. `applies_to` names the pipelines that have it.
+pub(super) fn not_applicable(key: &str, pipeline: &str, applies_to: &str) -> SettingError {
+    SettingError::combination(format_args!(
+        "{key} does not apply to the pipeline {pipeline}; leave it out (it is for {applies_to})"
+    ))
 }
 
 /// Returns the path of a file whose name is relative to a folder.

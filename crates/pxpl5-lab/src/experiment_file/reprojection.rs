@@ -1,26 +1,29 @@
-//! The raster in a tracked head's display: plain, the raster offset of VDRT, or a device that moves pictures.
+//! The raster of a tracked head's display: the correction that the display applies to pictures during the scan. The
+//! raster is plain (no correction), the raster offset of VDRT, or a device that moves pictures.
 
-use super::read::wrong;
-use super::{ExperimentFile, FileError};
+use super::ExperimentFile;
+use super::read::{not_applicable, wrong};
 use pxpl5_run::{Every, Pipeline, Raster, Reprojection, Warp};
+use pxpl5_sim::parameters::SettingError;
 use toml::Value;
 
-/// Key for the parameter `every` of a device that moves pictures.
+/// Key of the part of a scan for which a device takes a new pose to move pictures: a field, a strip or a line.
 pub(super) const EVERY: &str = "head.reprojection.every";
 pub(super) const LATENCY: &str = "head.reprojection.latency_us";
 
 /// Key that selects the raster.
 const RASTER: &str = "head.raster";
 
-/// A raster as selected by its name: a raster without parameters, or a device that moves pictures.
+/// The choice of a raster by its name: a raster without parameters, or a device that moves pictures.
 #[derive(Clone, Copy)]
 enum Named {
     Raster(Raster),
     Device(Warp),
 }
 
-/// Reads the raster of an experiment. A raster offset requires a pipeline in which each picture has one head pose.
-pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Raster, FileError> {
+/// Reads the raster of an experiment (the correction of pictures during the scan). A raster offset requires a pipeline
+/// in which each picture has one head pose.
+pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Raster, SettingError> {
     let plain = Raster::ALL.map(|(name, raster)| (name, Named::Raster(raster)));
     let devices = Warp::ALL.map(|(name, by)| (name, Named::Device(by)));
     let names: Vec<(&str, Named)> = plain.into_iter().chain(devices).collect();
@@ -30,8 +33,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
         let place = file.get(RASTER).map(|setting| setting.place.clone()).unwrap_or_default();
         let key =
             format!("{RASTER} = {}", file.get(RASTER).map(|it| super::read::plain(&it.value)).unwrap_or_default());
-        let applies_to = applies_to.to_owned();
-        Err(FileError::NotApplicable { place, key, pipeline: pipeline.name(), applies_to })
+        Err(not_applicable(&key, pipeline.name(), applies_to).at(place))
     };
     match named {
         Named::Raster(Raster::Vdrt) if !pipeline.has_one_pose() => {
@@ -54,8 +56,8 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
     }
 }
 
-/// Returns an error if a parameter of a device is set without a device that moves pictures.
-fn refuse_numbers(file: &ExperimentFile) -> Result<(), FileError> {
+/// Returns an error if the file sets a parameter of a device that moves pictures, but selects no such device.
+fn refuse_numbers(file: &ExperimentFile) -> Result<(), SettingError> {
     for key in [EVERY, LATENCY] {
         if let Some(setting) = file.get(key) {
             return Err(wrong(key, setting, "nothing: head.raster is no shift, rotation or depth"));
@@ -64,7 +66,7 @@ fn refuse_numbers(file: &ExperimentFile) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Returns the settings that select a raster, as keys and values.
+/// Returns the keys and values that select a raster in an experiment file.
 pub(super) fn settings(raster: Raster) -> Vec<(String, Value)> {
     let Raster::Reprojected(Reprojection { by, every, latency_us }) = raster else {
         return vec![(RASTER.to_owned(), Value::from(raster.to_string()))];

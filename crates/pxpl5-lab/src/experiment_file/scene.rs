@@ -1,9 +1,10 @@
 //! The scene of an experiment.
 
+use super::ExperimentFile;
 use super::motion::MotionChoice;
 use super::read::{beside, wrong};
-use super::{ExperimentFile, FileError};
 use pxpl5_scene::{Format, Placement, Scene};
+use pxpl5_sim::parameters::SettingError;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,9 +27,9 @@ pub struct SceneChoice {
 }
 
 impl SceneChoice {
-    pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
+    pub(super) fn read(file: &ExperimentFile) -> Result<Self, SettingError> {
         let how = "a built-in scene (`pxpl5 scenes` lists them) or a model file (.ply, .obj, .stl, .pdb, .gltf, .glb)";
-        let name = file.text("scene")?.ok_or(FileError::Missing { key: "scene", how })?;
+        let name = file.text("scene")?.ok_or_else(|| SettingError::missing("scene", how))?;
         let folder = file.get("scene").map(|setting| setting.folder.clone()).unwrap_or_default();
         let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };
         let triangles = file.integer("triangles", 1..=u64::from(u32::MAX))?.map(|n| n as usize);
@@ -46,17 +47,17 @@ impl SceneChoice {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError`] for an unknown scene or an unusable file.
-    pub fn load(&self) -> Result<Arc<Scene>, FileError> {
+    /// Returns a [`SettingError`] for an unknown scene or an unusable file.
+    pub fn load(&self) -> Result<Arc<Scene>, SettingError> {
         self.prepared(Arc::new(self.load_whole()?))
     }
 
     /// Returns the corners of the scene's closed path. The list is empty for a model file, which has no path.
-    pub(super) fn path(&self) -> Result<Vec<glam::Vec3>, FileError> {
+    pub(super) fn path(&self) -> Result<Vec<glam::Vec3>, SettingError> {
         if is_file(&self.name) { Ok(Vec::new()) } else { Ok(pxpl5_scene::builtin(&self.name)?.path().to_vec()) }
     }
 
-    pub(crate) fn load_whole(&self) -> Result<Scene, FileError> {
+    pub(crate) fn load_whole(&self) -> Result<Scene, SettingError> {
         let whole = match (&self.contents, Format::of_path(Path::new(&self.name))) {
             (Some(bytes), Some(format)) => pxpl5_scene::placed_from_bytes(bytes, format, &self.name, self.placement)?,
             _ if is_file(&self.name) => pxpl5_scene::load_placed(&self.name, self.placement)?,
@@ -66,10 +67,21 @@ impl SceneChoice {
     }
 
     /// Returns the scene, reduced to the chosen number of primitives, and with the chosen head motion.
-    pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, FileError> {
+    pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, SettingError> {
+        let decimated = whole.clone();
+        self.prepared_by(whole, |n| decimated.decimated(n))
+    }
+
+    /// Returns the scene as [`prepared`](Self::prepared) does. `decimated` reduces the whole scene to a number of
+    /// primitives.
+    pub(crate) fn prepared_by(
+        &self,
+        whole: Arc<Scene>,
+        decimated: impl FnOnce(usize) -> Result<Scene, SettingError>,
+    ) -> Result<Arc<Scene>, SettingError> {
         // A scene with no more primitives than requested is drawn whole.
         let scene = match self.triangles {
-            Some(n) if n < whole.triangles().len() + whole.spheres().len() => Arc::new(whole.decimated(n)?),
+            Some(n) if n < whole.triangles().len() + whole.spheres().len() => Arc::new(decimated(n)?),
             _ => whole,
         };
         // The scene's own motion needs no copy of the scene.
@@ -83,8 +95,9 @@ impl SceneChoice {
     }
 }
 
-/// Returns true if a scene's name is the path of a file: it contains a separator or a file extension. A built-in scene
-/// has no extension, because the part behind the dot in `typical:1.5` has no letter.
+/// Returns true if a scene's name is the path of a file. Such a path contains a separator or a file extension. A
+/// built-in scene has no extension, because a file extension has a letter. The part after the dot in `typical:1.5` has
+/// no letter.
 pub(crate) fn is_file(name: &str) -> bool {
     let extension = Path::new(name).extension().map(|end| end.to_string_lossy().contains(char::is_alphabetic));
     name.contains(['/', std::path::MAIN_SEPARATOR]) || extension == Some(true)

@@ -47,8 +47,14 @@ fn errors_name_the_line_and_what_was_expected() {
         ("machine = 3", "there is no key `machine`"),
         ("pipeline = \"slats\"\nscene = \"mig\"\nseed = -1", "test, line 3: seed: expected a whole number"),
         ("pipeline = \"slats\"\nscene = \"mig\"\nseed = 1.5", "line 3: seed: expected a whole number"),
-        ("pipeline = \"slats\"\nscene = \"mig\"\nlevel = \"cycles\"", "line 3: level: expected one of"),
-        ("pipeline = \"slats\"\nscene = \"mig\"\nmeasure = [\"latency_ms.maen\"]", "the nearest is latency_ms.mean"),
+        (
+            "pipeline = \"slats\"\nscene = \"mig\"\nlevel = \"cycles\"",
+            "line 3: level: there is no level `cycles`; did you mean `cycle`? (expected one of analytic, transaction, cycle)",
+        ),
+        (
+            "pipeline = \"slats\"\nscene = \"mig\"\nmeasure = [\"latency_ms.maen\"]",
+            "line 3: measure: there is no quantity `latency_ms.maen`; did you mean `latency_ms.mean`?",
+        ),
         ("pipeline = \"slats\"\nscene = \"mig\"\nmotion.distance = 1", "this motion.path does not take it"),
         ("pipeline = \"slats\"\nscene = \"mig\"\npublished.value = 1", "published.quantity is missing"),
         ("pipeline = \"jitp-scanline\"\nscene = \"mig\"\nblock = 8", "does not apply to the pipeline jitp-scanline"),

@@ -1,4 +1,4 @@
-//! Converts a plan to the text of a complete experiment file.
+//! Converts a plan (checked experiment) to the text of a complete experiment file.
 
 use super::hmd;
 use super::motion::PathChoice;
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
 
-/// Effective settings by path. Displayed as text, they form an experiment file with the same meaning.
+/// Effective settings by path. `Display` writes the settings as the text of an experiment file with the same meaning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Values of the settings as TOML, by the path of their key.
@@ -22,7 +22,7 @@ pub struct Settings {
     remarks: BTreeMap<String, String>,
 }
 
-/// Returns the name of a value from a list of choices.
+/// Returns the name that a list of choices gives to a value.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> &'static str {
     choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name)
 }

@@ -1,11 +1,12 @@
-//! Parameters of trackers, predictors and the host's port. An experiment sets them by the keys `tracking.table.name`.
+//! Parameters of trackers, predictors and the host's port. An experiment sets these parameters by keys of the form
+//! `tracking.table.name`.
 
-use super::{ExperimentFile, FileError, Setting};
+use super::{ExperimentFile, Setting};
 use crate::compare::tracker_by;
-use pxpl5_machine::{ConfigError, Parameter};
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_machine::Parameter;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use tracking::config::{FACTS, Tables};
-use tracking::tracker::{HostLine, TrackerConfig};
+use tracking::tracker::{SerialRead, TrackerConfig};
 
 /// Prefix of every parameter's path.
 const PREFIX: &str = "tracking.";
@@ -15,7 +16,8 @@ const PREFIX: &str = "tracking.";
 const COMMON: [&str; 3] = ["host", "filter", "gate"];
 
 /// Returns every tracking parameter with its published value. Parameters of heads, the measuring rig, the video and the
-/// papers' pictures are read-only. They are facts for comparison with a model, not settings of a tracked head.
+/// papers' pictures are read-only. Read-only parameters are published facts for comparison with a model, not settings
+/// of a tracked head.
 #[must_use]
 pub fn tracking_parameters() -> Vec<Parameter> {
     let numbers = Tables::PAPERS.all().into_iter().flat_map(|(name, table)| parameters_of(name, table, false));
@@ -42,7 +44,7 @@ fn applies(table: &str, own: &str) -> bool {
 /// an effect.
 fn without_effect(path: &str, tracker: &TrackerConfig) -> Option<&'static str> {
     match path {
-        "tracking.host.poll" if !matches!(tracker.host, HostLine::Polled { .. }) => {
+        "tracking.host.poll" if !matches!(tracker.host, SerialRead::Polled { .. }) => {
             Some("whose host is patched and does not poll; fastrak-polled, flock and 3space are polled")
         }
         "tracking.host.byte_bits" if tracker.serial.is_none() => {
@@ -58,7 +60,7 @@ pub(super) fn is_tracking_parameter(path: &str) -> bool {
 }
 
 /// Returns the tables of tracking parameters, with the values that a file sets for a tracker.
-pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileError> {
+pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, SettingError> {
     let mut tables = Tables::PAPERS;
     // The function that builds the tracker refuses an unknown name.
     let known = tracker_by(&tables, tracker).ok();
@@ -69,32 +71,31 @@ pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileE
         refuse_facts(path, setting)?;
         if !applies(table, own) && !own.is_empty() {
             let reason = format!("{path} does not apply to head.tracker = {tracker}; leave it out");
-            return Err(FileError::Head { place: setting.place.clone(), reason });
+            return Err(SettingError::combination(reason).at(&setting.place));
         }
         if let Some(why) = known.as_ref().and_then(|(tracker, _)| without_effect(path, tracker)) {
             let reason = format!("{path} does not apply to head.tracker = {tracker}, {why}");
-            return Err(FileError::Head { place: setting.place.clone(), reason });
+            return Err(SettingError::combination(reason).at(&setting.place));
         }
         // Each assignment is checked together with the rest of its table.
         let value = file.parameter_value(path, setting)?;
         if let Some(table) = tables.named_mut(table) {
             let set = table.set(name, value).and_then(|()| table.check());
-            set.map_err(|error| refused(path, setting, &error))?;
+            set.map_err(|error| refused(path, setting, error))?;
         }
     }
     Ok(tables)
 }
 
-fn refused(path: &str, setting: &Setting, error: &dyn std::error::Error) -> FileError {
+fn refused(path: &str, setting: &Setting, error: SettingError) -> SettingError {
     let table = path.rsplit_once('.').map_or(path, |(table, _)| table);
-    FileError::Head { place: setting.place.clone(), reason: format!("{table}.{error}") }
+    error.in_table(table).at(&setting.place)
 }
 
-fn refuse_facts(path: &str, setting: &Setting) -> Result<(), FileError> {
+fn refuse_facts(path: &str, setting: &Setting) -> Result<(), SettingError> {
     match tracking_parameters().into_iter().find(|parameter| parameter.path == path && parameter.read_only) {
         Some(Parameter { path, info, value, .. }) => {
-            let error = ConfigError::ReadOnly { path, value, origin: info.source };
-            Err(FileError::Config { place: setting.place.clone(), error })
+            Err(SettingError::read_only(&path, value, info.source).at(&setting.place))
         }
         None => Ok(()),
     }

@@ -1,6 +1,7 @@
 //! Values with units in settings: `20us`, `16.7ms`, `60deg`, `640px`.
 //!
-//! A plain number has the unit that its key documents. A number with a unit is converted to that unit.
+//! A plain number has the unit that the documentation of the key states. A number with a unit is converted to the unit
+//! of the key.
 
 use super::tracking_numbers::tracking_parameters;
 use pxpl5_machine::{MachineConfig, Parameter};
@@ -35,8 +36,8 @@ const UNITS: [(&str, &str); 8] = [
 
 /// Converts a text such as `20us` to a number in the unit of a key.
 ///
-/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. The text then stays
-/// unchanged.
+/// Returns `Ok(None)` if the text is not a number with a unit, or if the key has no unit. In these cases the text is
+/// used unchanged.
 ///
 /// # Errors
 ///

@@ -1,8 +1,8 @@
 //! A cache of intermediate results that several measurements share. The cache holds application scenes of the papers,
 //! loads of their fly-throughs, measurements of the rig, and results of experiments.
 
-use super::measured::{FigureValue, Result, scene_named};
-use crate::limit::Limit;
+use super::heads::RigLines;
+use super::measured::{Result, scene_named};
 use pxpl5_analytic::Load;
 use pxpl5_run::{Experiment, FinishedRegions, Summary};
 use pxpl5_scene::Scene;
@@ -18,14 +18,56 @@ type LoadsKey = (&'static str, bool, u64, u64);
 /// Loads (amounts of work) of every frame of a fly-through, one list for each seed.
 type LoadsOfSeeds = Arc<Vec<Vec<Load>>>;
 
-/// Cache key of a rig measurement: number of finished regions that a renderer keeps, the master's rule for finished
-/// regions, and changed parameters.
-pub(super) type RigKey = (u64, FinishedRegions, Vec<(String, u64)>);
+/// Cache key of a rig measurement: the master's rule for finished regions, and changed parameters.
+pub(super) type RigKey = (FinishedRegions, Vec<(String, u64)>);
+
+/// Results by the number of finished regions that a backing store holds.
+///
+/// A run in which no store was ever full is also the run with any larger store ([`Record::met_full_store`]), so one
+/// result serves all of these capacities.
+///
+/// [`Record::met_full_store`]: pxpl5_machine::Record::met_full_store
+#[derive(Debug)]
+struct ByCapacity<K, T> {
+    /// Results for single capacities. The boolean is true if the run has met a full store.
+    exact: Places<(K, u64), (Arc<T>, bool)>,
+    /// Smallest capacity whose run has met no full store, with its result.
+    roomy: Mutex<BTreeMap<K, (u64, Arc<T>)>>,
+}
+
+impl<K, T> Default for ByCapacity<K, T> {
+    fn default() -> Self {
+        Self { exact: Mutex::default(), roomy: Mutex::default() }
+    }
+}
+
+impl<K: Ord + Clone, T> ByCapacity<K, T> {
+    /// Returns the result for a capacity. `make` computes the result, and returns true with it if the run has met a full
+    /// store or if that is unknown. `make` is not called if a smaller store was never full.
+    fn get(&self, key: K, capacity: u64, make: impl FnOnce() -> Result<(T, bool)>) -> Result<Arc<T>> {
+        if let Some((least, known)) = locked(&self.roomy).get(&key)
+            && *least <= capacity
+        {
+            return Ok(Arc::clone(known));
+        }
+        let make = || make().map(|(made, met_full_store)| Arc::new((Arc::new(made), met_full_store)));
+        let found = find_or_compute(&self.exact, (key.clone(), capacity), make)?;
+        let (result, met_full_store) = &*found;
+        if !met_full_store {
+            let mut roomy = locked(&self.roomy);
+            let least = roomy.entry(key).or_insert_with(|| (capacity, Arc::clone(result)));
+            if capacity < least.0 {
+                *least = (capacity, Arc::clone(result));
+            }
+        }
+        Ok(Arc::clone(result))
+    }
+}
 
 /// The cached value of one key. `None` until the value is computed.
 type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 
-/// The cached values of all keys that were requested.
+/// The cached values, by key. A key is added when its value is first requested.
 type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 
 /// The cache of scenes, loads, measurements and results.
@@ -33,22 +75,27 @@ type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 pub(crate) struct Applications {
     scenes: Places<Key, Scene>,
     loads: Places<LoadsKey, Vec<Vec<Load>>>,
-    rigs: Places<RigKey, FigureValue>,
-    summaries: Places<String, Summary>,
-    limits: Places<String, Limit>,
+    rigs: ByCapacity<RigKey, RigLines>,
+    summaries: ByCapacity<String, Summary>,
+    limits: Places<String, u32>,
 }
 
-/// Returns the cache key of an experiment with a built-in scene. The key contains everything that determines the
-/// result: machine, pipeline, scene, length, seed and level.
-pub(super) fn key_of(experiment: &Experiment, scene: &str) -> String {
-    format!(
+/// Returns the cache key of an experiment with a built-in scene, and the number of finished regions that a backing store
+/// holds. Both together contain everything that determines the result: machine, pipeline, scene, length, seed and level.
+pub(super) fn key_of(experiment: &Experiment, scene: &str) -> (String, u64) {
+    let mut machine = experiment.config().clone();
+    let capacity = machine.renderer.backing_regions();
+    // The capacity is a key of its own.
+    machine.renderer.kept_bits = 0;
+    let key = format!(
         "{scene} {} {} {:?} {:?} {:?}",
         experiment.length(),
         experiment.motion_seed(),
         experiment.modelling_level(),
         experiment.pipeline(),
-        experiment.config(),
-    )
+        machine,
+    );
+    (key, capacity)
 }
 
 impl Applications {
@@ -60,34 +107,42 @@ impl Applications {
         find_or_compute(&self.scenes, (name, culled), make)
     }
 
-    /// Returns the loads (amounts of work) of a scene's fly-through. `make` computes them at the first request.
+    /// Returns the loads (amounts of work) of a scene's fly-through. `make` computes the loads at the first request.
     pub(super) fn loads(&self, key: LoadsKey, make: impl FnOnce() -> Result<Vec<Vec<Load>>>) -> Result<LoadsOfSeeds> {
         find_or_compute(&self.loads, key, || make().map(Arc::new))
     }
 
-    /// Returns the measurement with the pendulum rig for the given rules. `make` performs the measurement at the first
-    /// request.
-    pub(super) fn rig(&self, key: RigKey, make: impl FnOnce() -> Result<FigureValue>) -> Result<FigureValue> {
-        find_or_compute(&self.rigs, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
+    /// Returns the measurements with the pendulum rig for the given rules and number of kept regions. `make` performs
+    /// the measurements at the first request. Its boolean is true if the run has met a full backing store.
+    pub(super) fn rig(
+        &self,
+        key: RigKey,
+        kept: u64,
+        make: impl FnOnce() -> Result<(RigLines, bool)>,
+    ) -> Result<Arc<RigLines>> {
+        self.rigs.get(key, kept, make)
     }
-}
 
-impl Applications {
-    /// Returns the summary of an experiment. `make` runs the experiment at the first request.
-    pub(super) fn summary(&self, key: String, make: impl FnOnce() -> Result<Summary>) -> Result<Arc<Summary>> {
-        find_or_compute(&self.summaries, key, || make().map(Arc::new))
+    /// Returns the summary of an experiment. `make` runs the experiment at the first request. Its boolean is true if the
+    /// run has met a full backing store, or if that is unknown.
+    pub(super) fn summary(
+        &self,
+        (key, capacity): (String, u64),
+        make: impl FnOnce() -> Result<(Summary, bool)>,
+    ) -> Result<Arc<Summary>> {
+        self.summaries.get(key, capacity, make)
     }
 
     /// Returns the result of a search for the largest number of triangles. `make` runs the search at the first request.
-    pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<Limit>) -> Result<Limit> {
+    pub(super) fn limit(&self, key: String, make: impl FnOnce() -> Result<u32>) -> Result<u32> {
         find_or_compute(&self.limits, key, || make().map(Arc::new)).map(|limit| *limit)
     }
 }
 
 /// Returns the cached value of a key, or computes it once. Other threads that request the same key wait for the result.
 ///
-/// `make` must not run work on other threads. While the calling thread waits for such work, it could take over other
-/// work that requests the same key, and deadlock.
+/// `make` must not run work on other threads. While the calling thread waits for such work, this thread could take over
+/// other work that requests the same key. The program would then be in a deadlock.
 fn find_or_compute<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() -> Result<Arc<T>>) -> Result<Arc<T>> {
     // The outer lock is held only to find the slot; the inner lock is held while the value is computed.
     let place = Arc::clone(locked(all).entry(key).or_default());
@@ -102,4 +157,54 @@ fn find_or_compute<K: Ord, T>(all: &Places<K, T>, key: K, make: impl FnOnce() ->
 
 fn locked<T>(all: &Mutex<T>) -> MutexGuard<'_, T> {
     all.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::Reading;
+    use pxpl5_machine::MachineConfig;
+    use pxpl5_run::{Outcome, Pixels};
+
+    /// Runs a scene with a number of kept regions and a rule for finished regions.
+    fn run(scene: &str, kept: u64, finished: FinishedRegions) -> Outcome {
+        let reading = Reading { kept, finished, ..Reading::USUAL };
+        let machine = reading.on(MachineConfig::small_hmd()).expect("in range");
+        let scene = scene_named(scene).expect("built in");
+        Experiment::new(machine, reading.pipeline(), scene).fields(40).pixels(Pixels::Off).run().expect("it runs")
+    }
+
+    /// Compares whole traces. A run that has met no full store must be the run with any larger store. A run that has met
+    /// one must be able to differ, or the flag would tell nothing.
+    #[test]
+    fn a_run_that_met_no_full_store_is_the_run_with_every_larger_store() {
+        let (mut shared, mut differing) = (0, 0);
+        for scene in ["full-screen:12", "full-screen:60"] {
+            for finished in FinishedRegions::ALL {
+                let runs: Vec<Outcome> =
+                    [1, 2, 3, 4, 8, 128].into_iter().map(|kept| run(scene, kept, finished)).collect();
+                for (place, one) in runs.iter().enumerate() {
+                    for larger in &runs[place + 1..] {
+                        let is_same = one.record().trace_hash() == larger.record().trace_hash();
+                        assert!(is_same || one.record().met_full_store(), "{scene}, {finished:?}, run {place}");
+                        shared += usize::from(!one.record().met_full_store());
+                        differing += usize::from(!is_same);
+                    }
+                }
+            }
+        }
+        assert!(shared > 5 && differing > 5, "{shared} shared, {differing} differ");
+    }
+
+    #[test]
+    fn a_result_serves_larger_stores_alone_and_only_if_no_store_was_full() {
+        let cache = ByCapacity::<&str, u64>::default();
+        let get = |capacity, met_full_store| {
+            *cache.get("key", capacity, || Ok((capacity, met_full_store))).expect("no run fails")
+        };
+        assert_eq!([get(1, true), get(2, true), get(4, false)], [1, 2, 4]);
+        assert_eq!([get(8, false), get(4, true), get(5, true)], [4; 3], "these stores are as large");
+        assert_eq!([get(1, false), get(2, true), get(3, true)], [1, 2, 3], "these stores are smaller");
+        assert_eq!(*cache.get("other", 8, || Ok((9, true))).expect("no run fails"), 9);
+    }
 }

@@ -1,10 +1,14 @@
-//! The document ACCURACY.md, generated from the figures.
+//! The document ACCURACY.md, generated from the published figures and the model's values.
 
-use super::{FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
-use crate::application_time::{ApplicationTime, Spread, published};
+use super::{Basis, FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
+use crate::application_time::{ApplicationTime, FlyThroughLatency, published};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
 use crate::readings::{self, FigureFit, Fit, Readings};
+use pxpl5_sim::figures::column::{
+    DETAILS, EXPERIMENT, INTERVAL, NUMBER, PROVENANCE, PUBLISHED, SIMULATED, STATEMENT, error, four, range,
+};
+use pxpl5_sim::figures::{TableColumn, table};
 use std::fmt::Write as _;
 
 /// Returns the text of ACCURACY.md: a table of all figures, then each miss with its cause.
@@ -14,7 +18,7 @@ pub fn markdown(figures: &Figures) -> String {
     let rows = &figures.rows;
     // The order of sections: table, misses, then the comparisons that qualify the table.
     head(&mut text, rows);
-    rows.iter().for_each(|row| line(&mut text, row));
+    text.push_str(&table(&COLUMNS, rows));
     misses(&mut text, rows);
     of_code(&mut text, rows, &figures.of_code);
     figures.groups.iter().for_each(|group| text.push_str(&group.markdown()));
@@ -22,11 +26,12 @@ pub fn markdown(figures: &Figures) -> String {
     of_readings(&mut text, &figures.readings);
     of_application(&mut text, &figures.application_times);
     sensitivity(&mut text, &figures.intervals);
-    experiments(&mut text, rows);
+    let _ = write!(text, "\n## Experiments\n\n{}", table(&[NUMBER, EXPERIMENT, DETAILS], rows));
     text
 }
 
-/// Minimum difference in percent between the timing table and executed code for which a figure is listed.
+/// Minimum change of a figure, in percent, for which the document lists the figure. The change is caused by times of
+/// executed code in place of the timing table.
 const MOVED_PERCENT: f64 = 0.05;
 
 /// Writes the figures that change when the times of executed code are used. Also writes the reason why these times are
@@ -46,17 +51,17 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let moved =
         |(table, code): &(&FigureRow, &FigureRow)| deviation_percent(code.simulated, table.simulated) > MOVED_PERCENT;
     for (table, code) in rows.iter().zip(of_code).filter(moved) {
+        let of_code = if code.simulated.is_finite() { error(code) } else { "-100.0 %".to_owned() };
         let _ = writeln!(
             text,
-            "| {} | {} | {} {} | {} | {:+.1} % | {} | {:+.1} % |",
+            "| {} | {} | {} {} | {} | {} | {} | {of_code} |",
             table.id,
             table.statement,
-            number(table.published),
+            four(table.published),
             table.unit,
-            number(table.simulated),
-            table.error_percent,
-            if code.simulated.is_finite() { number(code.simulated) } else { "none".to_owned() },
-            if code.simulated.is_finite() { code.error_percent } else { -100.0 },
+            four(table.simulated),
+            error(table),
+            four(code.simulated),
         );
     }
     let _ = write!(
@@ -148,7 +153,7 @@ fn of_readings(text: &mut String, readings: &Readings) {
 fn fitted(fit: &Fit) -> String {
     let value = |figure: &FigureFit| {
         let sd = figure.simulated_sd.map_or(String::new(), |sd| format!(" ({sd:.2})"));
-        let text = format!("{}{sd}", number(figure.simulated));
+        let text = format!("{}{sd}", four(figure.simulated));
         if fit.unexplained.contains(&figure.id) { format!("**{text}**") } else { text }
     };
     let values: Vec<String> = fit.figures.iter().map(value).collect();
@@ -176,8 +181,8 @@ fn of_application(text: &mut String, times: &[ApplicationTime]) {
          the host works on the next frame while the machine draws the current frame.\n\n\
          | mean of the application | evenly spread by | 7 | 7b | 7c |\n|---|---|---|---|---|\n",
     );
-    let cells = |figures: &[Spread]| {
-        let cells = figures.iter().map(|figure| format!("{} ({:.3})", number(figure.mean), figure.sd));
+    let cells = |figures: &[FlyThroughLatency]| {
+        let cells = figures.iter().map(|figure| format!("{} ({:.3})", four(figure.mean), figure.sd));
         cells.collect::<Vec<_>>().join(" | ")
     };
     let _ = writeln!(text, "| printed latencies | | {} |", cells(&published()));
@@ -206,25 +211,21 @@ fn sensitivity(text: &mut String, intervals: &[Interval]) {
     for i in intervals {
         let strongest = i.effects.iter().take(STRONGEST);
         let effects: Vec<_> = strongest
-            .map(|e| format!("`{}` ({}, {}; {:+.2})", e.path, number(e.ends[0]), number(e.ends[1]), e.elasticity))
+            .map(|e| format!("`{}` ({}, {}; {:+.2})", e.path, four(e.ends[0]), four(e.ends[1]), e.elasticity))
             .collect();
         let moved = if effects.is_empty() { "nothing".to_owned() } else { effects.join(", ") };
         let single = range(i.one_at_a_time);
         let joint = range(i.joint);
         let likely = range(i.likely);
-        let rules: Vec<_> = i.rules.iter().map(|(rule, value)| format!("{rule}: {}", number(*value))).collect();
+        let rules: Vec<_> = i.rules.iter().map(|(rule, value)| format!("{rule}: {}", four(*value))).collect();
         let rules = if rules.is_empty() { "nothing".to_owned() } else { rules.join(", ") };
         let _ = writeln!(text, "| {} | {single} | {joint} | {likely} | {moved} | {rules} |", i.id);
     }
 }
 
-fn range([low, high]: [f64; 2]) -> String {
-    format!("{} to {}", number(low), number(high))
-}
-
 fn head(text: &mut String, rows: &[FigureRow]) {
-    let free = rows.iter().filter(|row| row.provenance == "free").count();
-    let missed = rows.iter().filter(|row| row.misses()).count();
+    let free = rows.iter().filter(|row| row.basis == Basis::Free).count();
+    let missed = rows.iter().filter(|row| !row.is_met).count();
     let _ = write!(
         text,
         "# Accuracy\n\n\
@@ -252,78 +253,33 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          The intervals of figures 17, 19 and 19b come from simulations with events. These simulations vary the depth of a\n\
          renderer's FIFO and the number of channels that a sender can use. The interval of figure 17 also covers the positions\n\
          of the photodiode on the screen and the interpretations.\n\n\
-         The table has {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n\
-         | # | figure | published | simulated | error | analytic | interval | provenance |\n\
-         |---|---|---|---|---|---|---|---|\n",
+         The table has {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n",
         rows.len(),
         mean_error_percent(rows),
     );
 }
 
-fn line(text: &mut String, row: &FigureRow) {
-    let analytic = row.analytic.map_or("-".to_owned(), number);
+const COLUMNS: [TableColumn<FigureRow>; 8] = [
+    NUMBER,
+    STATEMENT,
+    PUBLISHED,
+    SIMULATED,
+    ("error", |row| format!("{}{}", error(row), if row.is_met { "" } else { " **miss**" })),
+    ("analytic", |row| row.analytic.map_or("-".to_owned(), four)),
     // A figure out of reach shows an error of the rules, not of a parameter.
-    let interval = row.interval.map_or("not varied".to_owned(), |bounds| {
-        let outside = if row.is_out_of_reach() { ", **out of reach**" } else { "" };
-        format!("{}{outside}", range(bounds))
-    });
-    let spread = row.spread.map_or(String::new(), |spread| format!(" +- {}", number(spread)));
-    let miss = if row.misses() { " **miss**" } else { "" };
-    let unprinted = row.unprinted.map_or(String::new(), |bounds| format!(" ({})", range(bounds)));
-    let _ = writeln!(
-        text,
-        "| {} | {} ({}) | {}{spread} {} | {} {}{unprinted} | {:+.1} %{miss} | {analytic} | {interval} | {} |",
-        row.id,
-        row.statement,
-        row.source,
-        number(row.published),
-        row.unit,
-        number(row.simulated),
-        row.unit,
-        row.error_percent,
-        provenance(row),
-    );
-}
-
-fn provenance(row: &FigureRow) -> String {
-    if row.fitted.is_empty() { row.provenance.to_owned() } else { format!("{}: {}", row.provenance, row.fitted) }
-}
+    ("interval", |row| INTERVAL.1(row) + if row.is_out_of_reach() { ", **out of reach**" } else { "" }),
+    PROVENANCE,
+];
 
 fn misses(text: &mut String, rows: &[FigureRow]) {
     let _ = writeln!(text, "\n## Misses and their causes");
-    for row in rows.iter().filter(|row| row.misses()) {
+    for row in rows.iter().filter(|row| !row.is_met) {
         let cause = if row.cause.is_empty() { "The cause is not known" } else { row.cause };
         let out = if row.is_out_of_reach() {
             " This is a modelling error, because no allowed parameter values reproduce the figure."
         } else {
             ""
         };
-        let _ = writeln!(text, "\n- Figure **{}** has an error of {:+.1} %. {cause}.{out}", row.id, row.error_percent);
-    }
-}
-
-fn experiments(text: &mut String, rows: &[FigureRow]) {
-    let _ = writeln!(text, "\n## Experiments\n\n| # | experiment | other results |\n|---|---|---|");
-    for row in rows {
-        let details: Vec<_> =
-            row.details.iter().map(|d| format!("{} {} {}", d.name, number(d.value), d.unit)).collect();
-        let _ = writeln!(text, "| {} | {} | {} |", row.id, row.experiment, details.join(", "));
-    }
-}
-
-/// Formats a number with four significant digits and without trailing zeros.
-fn number(value: f64) -> String {
-    // The number of decimals follows from the magnitude.
-    let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn numbers_have_four_significant_digits() {
-        let texts = [54.116, 780.0, 1.0, 0.0, 16_800.0].map(super::number);
-        assert_eq!(texts, ["54.12", "780", "1", "0", "16800"]);
+        let _ = writeln!(text, "\n- Figure **{}** has an error of {}. {cause}.{out}", row.id, error(row));
     }
 }

@@ -1,13 +1,14 @@
-//! Figures of papers about systems other than Pixel-Planes 5. These figures have a row type of their own, and follow
-//! the figures of Pixel-Planes 5 in the document.
+//! Figures of papers about systems other than Pixel-Planes 5. These figures follow the figures of Pixel-Planes 5
+//! in the document.
 
 use super::measured::{Result, scene_named};
 use super::{Bench, FigureError};
-use pxpl5_arp::figures::{Experiments, Provenance, Row, missed, rows, table};
+use pxpl5_arp::figures::{Experiments, missed, row, rows, shape, table};
 use pxpl5_run::{
     Experiment, ExperimentError, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl,
     RotationLatency,
 };
+use pxpl5_sim::figures::{Basis, FigureRow};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -23,7 +24,7 @@ pub struct FigureFamily {
     /// Path of the document with more details.
     pub document: &'static str,
     /// Rows in the order of the experiments.
-    pub rows: Vec<Row>,
+    pub rows: Vec<FigureRow>,
 }
 
 /// Sizes in triangles of the spheres in experiment E1. The papers' drawing ends at 1,000.
@@ -35,7 +36,8 @@ const FIELD_MS: f64 = 1001.0 / 60.0;
 
 /// Number of fields of a run of experiment E1.
 const FIELDS: u64 = 60;
-/// Number of fields from the start that all runs of experiment E1 have in common.
+/// Number of rotation latencies that each run of experiment E1 must give. The runs are compared field by field, so this
+/// number must be the same for all runs.
 const COMPARED: usize = 55;
 
 impl FigureFamily {
@@ -61,7 +63,7 @@ impl FigureFamily {
     /// Returns the family's section of ACCURACY.md.
     #[must_use]
     pub fn markdown(&self) -> String {
-        let shapes = self.rows.iter().filter(|row| row.provenance == Provenance::Shape).count();
+        let shapes = self.rows.iter().filter(|row| row.basis == Basis::Shape).count();
         let mut text = String::new();
         let _ = write!(
             text,
@@ -74,7 +76,7 @@ impl FigureFamily {
             self.title,
             self.document,
             self.document,
-            self.rows.iter().filter(|row| row.provenance != Provenance::Shape && !row.is_met).count(),
+            self.rows.iter().filter(|row| row.basis != Basis::Shape && !row.is_met).count(),
             self.rows.len() - shapes,
             table(&self.rows),
             missed(&self.rows).trim_end()
@@ -84,9 +86,9 @@ impl FigureFamily {
 }
 
 /// Runs E1, which measures two latencies for growing numbers of triangles. The first is the latency of the head's
-/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control.
-/// There the head looks at the triangles all the time, because triangles out of sight are not drawn.
-fn turning(bench: &Bench) -> Result<Vec<Row>> {
+/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control. In
+/// the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
+fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
     let mut turns = Vec::new();
     let mut drawn_ms = Vec::new();
     // For each size, run the display with faces under a turning head, then Rendering Control without a tracked head.
@@ -107,10 +109,10 @@ fn turning(bench: &Bench) -> Result<Vec<Row>> {
     let grows = "latency of a picture with 10,000 triangles under Rendering Control less that with 10";
     let growth = drawn_ms[3] - drawn_ms[0];
     let rows = [
-        Row::number("A4", same, "ps", [0.0, greatest.map_or(f64::NAN, |ps| ps as f64)], Provenance::Checked),
-        Row::shape("fig. 1", grows, "ms", [f64::NAN, growth], growth > FIELD_MS),
+        row("A4", same, "ps", [0.0, greatest.map_or(f64::NAN, |ps| ps as f64)], Basis::Free),
+        shape("fig. 1", grows, "ms", [f64::NAN, growth], growth > FIELD_MS),
     ];
-    Ok(rows.map(|row| row.of("E1")).to_vec())
+    Ok(rows.map(|row| FigureRow { experiment: "E1", ..row }).to_vec())
 }
 
 /// Runs an experiment in which the head turns at 200 degrees per second.

@@ -1,11 +1,13 @@
 //! Groups of published figures by topic: peak rates, just-in-time pixels, trackers. Each figure is measured by
-//! simulation with events, whichever level of modelling is chosen. No figure of a group counts in the mean error of the
-//! main table.
+//! simulation with events, whichever level of modelling is chosen. The mean error of the main table does not include
+//! the figures of groups.
 
 use super::measured::{FigureValue, Result};
 use super::{Basis, Bench, Figure, FigureError, FigureRow};
 use crate::intervals::{photodiode_line, variations};
 use crate::parallel;
+use pxpl5_sim::figures::column::{DETAILS, ERROR, EXPERIMENT, INTERVAL, NUMBER, PUBLISHED, SIMULATED, STATEMENT};
+use pxpl5_sim::figures::{TableColumn, table};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -14,7 +16,7 @@ use std::fmt::Write as _;
 pub struct FigureGroup {
     /// Name of the topic.
     pub title: &'static str,
-    /// Conditions shared by all rows of the group, and conditions that the papers leave open.
+    /// Conditions of the experiments that all rows of the group share, and conditions that the papers do not state.
     pub about: &'static str,
     /// Rows in the order of the group's table.
     pub rows: Vec<FigureRow>,
@@ -36,7 +38,7 @@ pub(super) struct Topic {
     pub(super) measurements: Vec<Measurement>,
 }
 
-/// Returns a figure for which no parameter was fitted.
+/// Creates a figure of a group to which no parameter was fitted.
 pub(super) const fn free(
     (id, paper, section): (&'static str, &'static str, &'static str),
     statement: &'static str,
@@ -46,6 +48,10 @@ pub(super) const fn free(
 ) -> Figure {
     Figure { id, paper, section, statement, value, unit, spread, experiment, basis: Basis::Free, cause }
 }
+
+const MARK: TableColumn<FigureRow> = ("", |row| if row.is_met { "met" } else { "**miss**" }.to_owned());
+
+const COLUMNS: [TableColumn<FigureRow>; 7] = [NUMBER, STATEMENT, PUBLISHED, SIMULATED, ERROR, INTERVAL, MARK];
 
 impl FigureGroup {
     pub(super) fn of(topic: &Topic, bench: &Bench) -> std::result::Result<Self, FigureError> {
@@ -57,55 +63,22 @@ impl FigureGroup {
     /// Returns the group's section of ACCURACY.md.
     #[must_use]
     pub fn markdown(&self) -> String {
-        let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| row.misses()).collect();
+        let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| !row.is_met).collect();
         let mut text = format!(
-            "\n## {}\n\n{}\n\nThe model misses {} of {} rows of this table.\n\n\
-             | # | figure | published | simulated | error | interval | |\n|---|---|---|---|---|---|---|\n",
+            "\n## {}\n\n{}\n\nThe model misses {} of {} rows of this table.\n\n{}",
             self.title,
             self.about,
             missed.len(),
             self.rows.len(),
+            table(&COLUMNS, &self.rows),
         );
-        self.rows.iter().for_each(|row| text.push_str(&line(row)));
         // Each miss is followed by its known cause.
         for row in missed {
             let _ = writeln!(text, "\n- Row **{}** is a miss. {}", row.id, row.cause);
         }
         // The experiments come last, for readers who want to repeat them.
-        let _ = writeln!(text, "\n| # | experiment | other results |\n|---|---|---|");
-        for row in &self.rows {
-            let also: Vec<_> =
-                row.details.iter().map(|d| format!("{} {} {}", d.name, digits(d.value), d.unit)).collect();
-            let _ = writeln!(text, "| {} | {} | {} |", row.id, row.experiment, also.join(", "));
-        }
-        text
+        text + "\n" + &table(&[NUMBER, EXPERIMENT, DETAILS], &self.rows)
     }
-}
-
-fn line(row: &FigureRow) -> String {
-    let interval = row
-        .interval
-        .map_or_else(|| "not varied".to_owned(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
-    let spread = row.spread.map_or_else(String::new, |spread| format!(" +- {}", digits(spread)));
-    let mark = if row.misses() { "**miss**" } else { "met" };
-    format!(
-        "| {} | {} ({}) | {}{spread} {} | {} {} | {:+.1} % | {interval} | {mark} |\n",
-        row.id,
-        row.statement,
-        row.source,
-        digits(row.published),
-        row.unit,
-        digits(row.simulated),
-        row.unit,
-        row.error_percent
-    )
-}
-
-/// Formats a number with four significant digits and without trailing zeros.
-fn digits(value: f64) -> String {
-    let after = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
-    let text = format!("{value:.after$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 impl Measurement {
@@ -114,11 +87,11 @@ impl Measurement {
         let measured = (self.measure)(bench);
         let measured = measured.map_err(|error| FigureError { id: id.to_owned(), reason: error.to_string() })?;
         let interval = self.interval(bench, measured.value);
-        Ok(FigureRow { interval, ..FigureRow::new(&self.figure, measured) })
+        Ok(FigureRow { interval, ..self.figure.row(measured) })
     }
 
     /// Returns the minimum and maximum of the figure over both ends of each parameter's range, including the value for
-    /// the presets. If the experiment yields no value for a setting, the preset's value counts.
+    /// the presets. If the experiment yields no value for an end of a range, the figure for the presets counts.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));
@@ -126,7 +99,12 @@ impl Measurement {
         let ends: Vec<_> = moved.flat_map(|v| [(v.path.clone(), v.range.0), (v.path, v.range.1)]).collect();
         let values = parallel::map(&ends, |end| {
             let changes = bench.changes.iter().cloned().chain([end.clone()]).collect();
-            (self.measure)(&Bench { changes, ..bench.clone() }).map_or(nominal, |measured| measured.value)
+            let moved = Bench { changes, ..bench.clone() };
+            // The end of a range can be the value that all machines have.
+            if bench.has_machines_of(&moved) {
+                return nominal;
+            }
+            (self.measure)(&moved).map_or(nominal, |measured| measured.value)
         });
         let bounds = values.into_iter().fold([nominal; 2], |[low, high], value: f64| [low.min(value), high.max(value)]);
         (!ends.is_empty()).then_some(bounds)

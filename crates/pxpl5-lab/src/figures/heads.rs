@@ -9,27 +9,50 @@ use pxpl5_run::{Experiment, ExperimentError, Head, Pipeline, Pixels, RenderingCo
 use std::sync::Arc;
 use tracking::motion::Synthetic;
 use tracking::predict::PredictorKind;
-use tracking::rig::{Latency, PendulumRig};
+use tracking::rig::{Measurement as RigMeasurement, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
 /// Path of the parameter for the photodiode's position in figure 17: the visible line of the screen under the
-/// photodiode. A bench may change this parameter.
+/// photodiode. The common settings of measurements ([`Bench::changes`](super::Bench)) may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
-/// Measures figure 17: the mean latency seen from outside. The photodiode is on the given line, or on the assumed line
-/// if `line` is `None`. The paper does not print the photodiode's position, so the details state the latency under the
-/// first and the last line.
-pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl, line: Option<u64>) -> Result<FigureValue> {
-    if let Some(line) = line {
-        return under_line(machine, pipeline, line as u32);
+/// The rig's measurements of one run, under the first, the assumed and the last line of the screen.
+#[derive(Clone, Debug)]
+pub(super) struct RigLines {
+    measured: [(u32, Arc<RigMeasurement>); 3],
+}
+
+impl RigLines {
+    /// Measures the latency seen from outside. Also returns true if a full backing store has changed the run.
+    pub(super) fn measure(machine: &MachineConfig, pipeline: RenderingControl) -> Result<(Self, bool)> {
+        let lines = photodiode_lines();
+        let (measured, met_full_store) = under_lines(machine, pipeline, lines)?;
+        let mut lines = lines.into_iter();
+        let measured = measured.map(|measured| (lines.next().unwrap_or_default(), Arc::new(measured)));
+        Ok((Self { measured }, met_full_store))
     }
-    let [first, assumed, last] = photodiode_lines();
-    let [first, last] = [first, last].map(|line| under_line(machine, pipeline, line).map(|measured| measured.value));
-    let [first, last] = [first?, last?];
-    let measured = under_line(machine, pipeline, assumed)?;
-    let lines = [detail("under the first line", first, "ms"), detail("under the last line", last, "ms")];
-    let details = [lines.to_vec(), measured.details].concat();
-    Ok(FigureValue { details, unprinted: Some([first.min(last), first.max(last)]), ..measured })
+
+    /// Returns figure 17 with the photodiode on the assumed line. The paper does not print the photodiode's position,
+    /// so the details state the latency under the first and the last line.
+    pub(super) fn figure(&self) -> FigureValue {
+        let [first, assumed, last] = self.measured.each_ref().map(|(_, measured)| rendering(measured));
+        let lines =
+            [detail("under the first line", first.value, "ms"), detail("under the last line", last.value, "ms")];
+        let details = [lines.to_vec(), assumed.details].concat();
+        let unprinted = Some([first.value.min(last.value), first.value.max(last.value)]);
+        FigureValue { value: assumed.value, details, unprinted }
+    }
+
+    /// Returns the measurement under the assumed line.
+    pub(super) fn assumed(&self) -> Arc<RigMeasurement> {
+        Arc::clone(&self.measured[1].1)
+    }
+
+    /// Returns the measurement under a line, or `None` if this line was not measured.
+    pub(super) fn under(&self, line: u64) -> Option<Arc<RigMeasurement>> {
+        let found = self.measured.iter().find(|(measured, _)| u64::from(*measured) == line);
+        found.map(|(_, measured)| Arc::clone(measured))
+    }
 }
 
 /// Returns three possible lines of the photodiode: the first, the assumed and the last.
@@ -40,18 +63,33 @@ fn photodiode_lines() -> [u32; 3] {
     range.map_or([assumed; 3], |(first, last)| [first as u32, assumed, last as u32])
 }
 
-fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u32) -> Result<FigureValue> {
-    let mut rig = Rig::assumed(TrackerConfig::optical_ceiling());
-    rig.rig.photodiode_line = line;
-    let measured = rig.measure(machine, Arc::new(pipeline));
-    let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
-    let Latency { mean_s, least_s, greatest_s, .. } = measured.outside.rendering;
+/// Measures the latency with the photodiode on one line.
+pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u64) -> Result<RigMeasurement> {
+    let ([measured], _) = under_lines(machine, pipeline, [u32::try_from(line).unwrap_or(u32::MAX)])?;
+    Ok(measured)
+}
+
+/// Measures the latency under some lines in one run. Also returns true if a full backing store has changed the run.
+fn under_lines<const N: usize>(
+    machine: &MachineConfig,
+    pipeline: RenderingControl,
+    lines: [u32; N],
+) -> Result<([RigMeasurement; N], bool)> {
+    let rig = Rig::assumed(TrackerConfig::optical_ceiling());
+    let measured = rig.measure_lines(machine, Arc::new(pipeline), lines);
+    let (measured, outcome) = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    Ok((measured, outcome.record().met_full_store()))
+}
+
+/// Returns the latency of rendering, as figure 17 counts it.
+pub(super) fn rendering(measured: &RigMeasurement) -> FigureValue {
+    let Statistics { mean, min, max, .. } = measured.outside.rendering;
     let details = vec![
-        detail("least", least_s * 1e3, "ms"),
-        detail("greatest", greatest_s * 1e3, "ms"),
-        detail("inside, to the swap", measured.inside.rendering.mean_s * 1e3, "ms"),
+        detail("least", min * 1e3, "ms"),
+        detail("greatest", max * 1e3, "ms"),
+        detail("inside, to the swap", measured.inside.rendering.mean * 1e3, "ms"),
     ];
-    Ok(FigureValue::with(mean_s * 1e3, details))
+    FigureValue::with(mean * 1e3, details)
 }
 
 /// Number of seeds of the head motion in figure 18.
@@ -73,8 +111,8 @@ pub(super) fn ratio_of_errors() -> FigureValue {
 /// Number of display fields in the runs for figure 19: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Measures figures 19 and 19b: the sum of the latency stages that the paper adds. The stages that the paper leaves out
-/// appear as details.
+/// Measures figures 19 and 19b: the sum of those stages of the latency that the paper adds. The details state the other
+/// stages of the latency.
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,

@@ -31,7 +31,7 @@ const PAN: f64 = 200.0;
 /// Horizontal resolution of the paper's picture in pixels per degree.
 const PX_PER_DEG: f64 = 10.0;
 
-/// Number of the field that is evaluated. The number is even, and the field is long after the start.
+/// Number of the field that is evaluated. The number is even, and the field is long after the start of the run.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
 /// Number of the evaluated column in the 640 x 480 picture.
@@ -96,7 +96,7 @@ fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> R
     experiment.fields(fields).pixels(Pixels::Off).run()
 }
 
-/// Returns the error of position at a pixel in degrees.
+/// Returns the pixel error at one pixel of the evaluated picture, in degrees.
 fn degrees(outcome: &Outcome, x: u32, y: u32) -> Result<f64> {
     let shown = Registration::of(outcome).and_then(|registration| registration.at(x, y, FIELD));
     let nothing = || ExperimentError::Scene(format!("pixel ({x}, {y}) of field {} shows nothing", FIELD.0));
@@ -144,7 +144,8 @@ fn error_of_line(bench: &Bench) -> Result<FigureValue> {
     Ok((ends_deg / active_s * line_s).into())
 }
 
-/// Measures figure J3: the time between two successive lines of a field. These lines are two lines apart in the frame.
+/// Measures figure J3: the time between two successive lines of a field. Between these lines, the frame has one line of
+/// the other field.
 fn time_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
@@ -173,8 +174,8 @@ fn slant(picture: &RgbImage) -> f64 {
     up / down * (rows - 1.0)
 }
 
-/// Measures figure J5: the number of vertex transforms in [`COUNTED`] fields. The start, which is the same in both
-/// runs, is subtracted.
+/// Measures figure J5: the number of vertex transforms in [`COUNTED`] fields. A shorter run measures the transforms
+/// before these fields, which are subtracted.
 fn transforms(bench: &Bench) -> Result<FigureValue> {
     let counted = |viewpoint, fields| -> Result<u64> {
         Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
@@ -195,7 +196,8 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
 /// Number of fields over which transforms are counted.
 const COUNTED: u64 = 20;
 
-/// Returns a machine with one slave, whose software takes no time.
+/// Returns a machine with one slave. The software of all boards takes no time, so that only the number of transforms
+/// matters.
 fn free_slave(bench: &Bench) -> Result<MachineConfig> {
     let mut machine = MachineConfig { n_gps: 2, code: None, ..bench.machine("small-hmd")? };
     for name in ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"] {

@@ -1,9 +1,9 @@
 //! The experiment behind each published figure.
 
 use super::applications::{Applications, key_of};
-use super::heads::{self, PHOTODIODE_LINE};
+use super::heads::{self, PHOTODIODE_LINE, RigLines};
 use super::measured::{FigureValue, Result, detail, scene_named};
-use super::reading::{Reading, Samples};
+use super::reading::{LatencySamples, Reading};
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
 use crate::parallel;
@@ -11,7 +11,8 @@ use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformC
 use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::CodeUse;
-use pxpl5_machine::{ConfigError, MachineConfig, PRESETS};
+use pxpl5_machine::{MachineConfig, PRESETS, Preset};
+use pxpl5_measure::summary;
 use pxpl5_renderer::{CommandKind, Layout};
 use pxpl5_run::{
     Experiment, ExperimentError, Level, Pipeline, Pixels, Slats, Statistics, Summary, WARM_UP_PICTURES, display_list,
@@ -19,8 +20,9 @@ use pxpl5_run::{
 };
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
-use pxpl5_sim::parameters::{ParameterTable, Value};
+use pxpl5_sim::parameters::{ParameterTable, SettingError, Value};
 use std::sync::Arc;
+use tracking::rig::Measurement as RigMeasurement;
 
 /// Common settings of all measurements of figures: a level of modelling, and changes to the machine's parameters.
 #[derive(Clone, Debug)]
@@ -28,8 +30,8 @@ pub struct Bench {
     /// Level of modelling at which every figure is measured.
     pub level: Level,
     /// Parameters, by path, that differ from the presets, with their values. A path that begins with a preset's name
-    /// and a colon changes only that preset. Times of PPHIGS code do not change the machines that run Slats.
-    /// [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
+    /// and a colon changes only that preset. For example, times of PPHIGS code must not change the machines that run
+    /// Slats. [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
     pub changes: Vec<(String, u64)>,
     /// Number of seeds of the head motion in the experiment of figure 7.
     pub seeds: u64,
@@ -142,8 +144,8 @@ impl Bench {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] for a preset or path that does not exist.
-    pub fn machine(&self, preset: &str) -> std::result::Result<MachineConfig, ConfigError> {
+    /// Returns a [`SettingError`] for a preset or path that does not exist.
+    pub fn machine(&self, preset: &str) -> std::result::Result<MachineConfig, SettingError> {
         let mut machine = MachineConfig::preset(preset)?;
         for (path, value) in &self.changes {
             // A path with a preset's name applies only to this preset.
@@ -156,6 +158,14 @@ impl Bench {
             }
         }
         Ok(machine)
+    }
+
+    /// Returns true if every preset gives the same machine under both settings, and the photodiode is under the same
+    /// line. If nothing but the changed parameters differs, both settings then give the same figures.
+    pub(crate) fn has_machines_of(&self, other: &Self) -> bool {
+        let is_same =
+            |preset: &Preset| self.machine(preset.name).is_ok_and(|one| other.machine(preset.name) == Ok(one));
+        self.photodiode_line() == other.photodiode_line() && PRESETS.iter().all(is_same)
     }
 
     /// Returns the same settings with another interpretation of the papers.
@@ -174,8 +184,14 @@ impl Bench {
         self.applications.summary(key_of(&experiment, scene), make)
     }
 
-    fn summarise(&self, experiment: &Experiment) -> Result<Summary> {
-        summarise(&crate::registry(), &experiment.clone().pixels(Pixels::Off).level(self.level))
+    /// Runs an experiment. Returns true with the summary if the run has met a full backing store, or if that is unknown.
+    fn summarise(&self, experiment: &Experiment) -> Result<(Summary, bool)> {
+        let experiment = experiment.clone().pixels(Pixels::Off).level(self.level);
+        if self.level == Level::Analytic {
+            return Ok((summarise(&crate::registry(), &experiment)?, true));
+        }
+        let outcome = experiment.run()?;
+        Ok((summary(&outcome), outcome.record().met_full_store()))
     }
 
     fn stereo(&self, machine: MachineConfig) -> Result<Arc<Summary>> {
@@ -194,7 +210,7 @@ impl Bench {
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
     }
 
-    /// Measures figure 3: the latency if everything except COPY takes no time.
+    /// Measures figure 3: the latency if all work except COPY takes no time.
     fn copy_alone(&self) -> Result<FigureValue> {
         let mut machine = self.machine("small-hmd")?;
         let gp = ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"];
@@ -218,13 +234,38 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures figure 17 for all lines of the photodiode, unless the settings choose one line. The rig's measurement
-    /// does not depend on the level of modelling or on the definition of latency samples.
+    /// Measures figure 17 for all lines of the photodiode, unless the settings choose one line.
     fn rig(&self) -> Result<FigureValue> {
+        match self.photodiode_line() {
+            Some(_) => self.rig_measurement().map(|measured| heads::rendering(&measured)),
+            None => Ok(self.rig_lines()?.figure()),
+        }
+    }
+
+    /// Returns the measurement of the pendulum rig under the line that the settings choose, or under the assumed line.
+    pub(super) fn rig_measurement(&self) -> Result<Arc<RigMeasurement>> {
+        let lines = self.rig_lines()?;
+        let Some(line) = self.photodiode_line() else { return Ok(lines.assumed()) };
+        if let Some(measured) = lines.under(line) {
+            return Ok(measured);
+        }
         let machine = self.reading.on(self.machine("small-hmd")?)?;
-        let key = (self.reading.kept, self.reading.finished, self.changes.clone());
-        let line = self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line);
-        self.applications.rig(key, || heads::rig(&machine, self.reading.pipeline(), line))
+        heads::under_line(&machine, self.reading.pipeline(), line).map(Arc::new)
+    }
+
+    fn photodiode_line(&self) -> Option<u64> {
+        self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line)
+    }
+
+    /// Returns the rig's measurements of one run. They do not depend on the level of modelling or on the definition of
+    /// latency samples.
+    fn rig_lines(&self) -> Result<Arc<RigLines>> {
+        let machine = self.reading.on(self.machine("small-hmd")?)?;
+        // The line does not change the run, so it is no part of the key.
+        let changes = self.changes.iter().filter(|(path, _)| path != PHOTODIODE_LINE).cloned().collect();
+        let key = (self.reading.finished, changes);
+        let pipeline = self.reading.pipeline();
+        self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, pipeline))
     }
 
     /// Returns a machine and a scene for which TRANSFORM and RENDER of one eye each take `ms` milliseconds.
@@ -269,10 +310,10 @@ impl Bench {
         Ok(spread_ms(Statistics::of(means.into_iter())))
     }
 
-    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. The number of seeds is divided by
-    /// `seeds_of_one`.
+    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. The number of seeds in the settings is
+    /// divided by `seeds_of_one`, because larger scenes get fewer fly-throughs.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
-        let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
+        let samples_a_frame = if self.reading.samples == LatencySamples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
         // One seed gives one fly-through.
         let latencies = parallel::map(&seeds, |seed| {
@@ -300,7 +341,13 @@ impl Bench {
         self.applications.summary(key, || self.fly_through_once(&experiment, scene, seed, seeds))
     }
 
-    fn fly_through_once(&self, experiment: &Experiment, scene: &'static str, seed: u64, seeds: u64) -> Result<Summary> {
+    fn fly_through_once(
+        &self,
+        experiment: &Experiment,
+        scene: &'static str,
+        seed: u64,
+        seeds: u64,
+    ) -> Result<(Summary, bool)> {
         // At the analytic level the loads of all views are computed once for all seeds.
         if self.level != Level::Analytic {
             return self.summarise(experiment);
@@ -308,10 +355,10 @@ impl Bench {
         let of_seeds = || (1..=seeds).map(|seed| stereo_loads(&self.application_experiment(scene, seed)?)).collect();
         let loads = self.applications.loads((scene, self.reading.culled, seeds, self.frames), of_seeds)?;
         let model = StereoModel::new(experiment.config(), self.reading.pipeline())?;
-        Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
+        Ok((model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()), true))
     }
 
-    /// Returns the experiment of a fly-through. Its length allows two display fields per frame (30 Hz). If frames take
+    /// Returns the experiment of a fly-through. The run has two display fields for each frame (30 Hz). If frames take
     /// longer, the run has fewer frames.
     fn application_experiment(&self, scene: &'static str, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
@@ -345,7 +392,7 @@ impl Bench {
     fn most(&self, preset: &str, pipeline: Slats) -> Result<u32> {
         let query = self.limit_query(preset, pipeline)?;
         let key = format!("{:?} {pipeline:?} {:?}", query.level, query.config);
-        self.applications.limit(key, || query.search()).map(|limit| limit.triangles)
+        self.applications.limit(key, || query.search_triangles())
     }
 
     fn time_before_copy(&self) -> Result<FigureValue> {
@@ -355,8 +402,8 @@ impl Bench {
     }
 }
 
-/// Measures figure 8: the number of bin entries of one pass over each scene. The scene is seen from poses along its own
-/// head motion.
+/// Measures figure 8: the number of regions that a triangle touches, which is the number of bin entries per visible
+/// triangle. Each scene is seen from poses along its own head motion. The figure is the mean over three scenes.
 fn regions_touched() -> Result<FigureValue> {
     let mut details = Vec::new();
     for name in ["mig", "molecules", "head"] {
@@ -429,6 +476,24 @@ mod tests {
         let columns = 4.0 * (leg - 1.0) / width;
         let rows = 3.0 * (leg - 1.0) / height;
         (1.0 + columns) * (1.0 + rows) - columns * rows / 2.0
+    }
+
+    /// The end of a range can be the preset's value. A value of one preset alone, or another line of the photodiode, makes
+    /// a difference.
+    #[test]
+    fn only_changes_that_reach_a_machine_or_the_photodiode_make_other_machines() {
+        let bench = Bench::new(Level::Transaction);
+        let with = |path: &str, value| Bench { changes: vec![(path.to_owned(), value)], ..bench.clone() };
+        let words = MachineConfig::small_hmd().renderer.fifo_words;
+        assert!(bench.has_machines_of(&with("renderer.fifo_words", words)));
+        for (path, value) in [
+            ("renderer.fifo_words", words + 1),
+            ("slats:renderer.fifo_words", words + 1),
+            (PHOTODIODE_LINE, 3),
+            ("no.such_parameter", 1),
+        ] {
+            assert!(!bench.has_machines_of(&with(path, value)), "{path}");
+        }
     }
 
     #[test]

@@ -1,22 +1,11 @@
-//! Results of the experiments behind the figures.
+//! Results of the experiments that simulate published figures.
 
 use pxpl5_run::ExperimentError;
 use pxpl5_scene::{Scene, builtin};
-use serde::Serialize;
+use pxpl5_sim::figures::Detail;
 use std::sync::Arc;
 
 pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
-
-/// An additional number that a figure's experiment yields.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Detail {
-    /// Name of the number, in a few words, such as `standard deviation`.
-    pub name: String,
-    /// The number, in [`Detail::unit`].
-    pub value: f64,
-    /// Unit of the number: `ms`, `fields`, `Hz`, `triangles`.
-    pub unit: &'static str,
-}
 
 /// Result of a figure's experiment.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,14 +4,11 @@
 use super::group::{Measurement, free};
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::{Bench, PHOTODIODE_LINE, Reading};
-use crate::rig::Rig;
 use i860::{Cpu, Ram, RunEnd, assemble};
 use pphigs::Shading;
 use pxpl5_gp::Stage;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl};
-use std::sync::Arc;
-use tracking::tracker::TrackerConfig;
 
 pub(super) const TITLE: &str = "Peak rates";
 
@@ -23,19 +20,30 @@ For the intervals, one parameter at a time is set to both ends of its range. The
 renderers' FIFO, the channels that a sender can use, and the channels for messages to FIFOs. The times of a triangle on a \
 processor and on a renderer also vary. All runs simulate events.";
 
-/// Parameters that limit the machine's triangle rate and that no source gives.
-const OF_TRIANGLES: &[&str] = &[
+/// Parameters that limit the machine's triangle rate with Gouraud shading. Another parameter has the time of a Phong
+/// triangle on a renderer.
+const OF_GOURAUD: &[&str] = &[
     "renderer.fifo_words",
     "ring.source_channels",
     "ring.fifo_channels",
     "gp.triangle_ns",
     "renderer.triangle_clocks",
+];
+
+/// Parameters that limit the machine's triangle rate with Phong shading.
+const OF_PHONG: &[&str] = &[
+    "renderer.fifo_words",
+    "ring.source_channels",
+    "ring.fifo_channels",
+    "gp.triangle_ns",
     "renderer.phong_triangle_clocks",
 ];
 
-/// Parameters that limit the triangle rate of a single renderer.
-const OF_RENDERER: &[&str] =
-    &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.phong_triangle_clocks", "renderer.shade_clocks"];
+/// Paths of the parameters that limit the triangle rate of a single renderer, with Gouraud and with Phong shading.
+const OF_RENDERER: [&[&str]; 2] = [
+    &["renderer.fifo_words", "renderer.triangle_clocks", "renderer.shade_clocks"],
+    &["renderer.fifo_words", "renderer.phong_triangle_clocks", "renderer.shade_clocks"],
+];
 
 const LEECH: (&str, &str) = ("Leech 1991", "whole machine");
 
@@ -58,7 +66,7 @@ fn of_machine() -> Vec<Measurement> {
                 cause,
             ),
             measure: |bench| triangle_rate(bench, "large", Shading::Gouraud),
-            moved_by: OF_TRIANGLES,
+            moved_by: OF_GOURAUD,
         },
         Measurement {
             figure: free(
@@ -69,7 +77,7 @@ fn of_machine() -> Vec<Measurement> {
                 cause,
             ),
             measure: |bench| triangle_rate(bench, "large", Shading::Phong),
-            moved_by: OF_TRIANGLES,
+            moved_by: OF_PHONG,
         },
         Measurement {
             figure: free(
@@ -80,7 +88,7 @@ fn of_machine() -> Vec<Measurement> {
                 cause,
             ),
             measure: |bench| triangle_rate(bench, "design-maximum", Shading::Phong),
-            moved_by: OF_TRIANGLES,
+            moved_by: OF_PHONG,
         },
     ]
 }
@@ -99,7 +107,7 @@ fn of_boards() -> Vec<Measurement> {
                 of_array,
             ),
             measure: |bench| renderer_rate(bench, Shading::Gouraud),
-            moved_by: OF_RENDERER,
+            moved_by: OF_RENDERER[0],
         },
         Measurement {
             figure: free(
@@ -110,7 +118,7 @@ fn of_boards() -> Vec<Measurement> {
                 of_array,
             ),
             measure: |bench| renderer_rate(bench, Shading::Phong),
-            moved_by: OF_RENDERER,
+            moved_by: OF_RENDERER[1],
         },
         Measurement {
             figure: free(
@@ -166,8 +174,8 @@ fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<Figure
     Ok(FigureValue::with(TRIANGLES as f64 * hz, vec![detail("frames a second", hz, "Hz")]))
 }
 
-/// Measures the number of commands that a renderer executes per second in which its pixel array works. Of the 26,000
-/// commands of a frame, all but 80 are triangles.
+/// Measures the number of commands that a renderer executes per second. Only the time in which the pixel array works
+/// counts. Of the 26,000 commands of a frame, all but 80 are triangles.
 fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, shading, TRIANGLES / 2, 2 * FIELDS)?;
@@ -179,7 +187,8 @@ fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     Ok(rates.sum::<f64>().into())
 }
 
-/// Measures the number of triangles that a processor transforms per second of TRANSFORM. The first frame is left out.
+/// Measures the number of triangles that a processor transforms per second. Only the time of TRANSFORM counts. The
+/// first frame is left out.
 fn processor_rate(bench: &Bench) -> Result<FigureValue> {
     let triangles = 2_000;
     let machine = MachineConfig { n_gps: 2, ..bench.machine("small-hmd")? };
@@ -193,17 +202,10 @@ fn processor_rate(bench: &Bench) -> Result<FigureValue> {
 }
 
 fn rig_total(bench: &Bench) -> Result<FigureValue> {
-    let machine = bench.reading.on(bench.machine("small-hmd")?)?;
-    let mut rig = Rig::assumed(TrackerConfig::optical_ceiling());
-    // The photodiode's line may be varied by the bench.
-    if let Some((_, line)) = bench.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE) {
-        rig.rig.photodiode_line = u32::try_from(*line).unwrap_or(u32::MAX);
-    }
-    let measured = rig.measure(&machine, Arc::new(bench.reading.pipeline()));
-    let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
-    let [tracking, rendering] = [measured.outside.tracking, measured.outside.rendering].map(|part| part.mean_s * 1e3);
+    let measured = bench.rig_measurement()?;
+    let [tracking, rendering] = [measured.outside.tracking, measured.outside.rendering].map(|part| part.mean * 1e3);
     let details = vec![detail("tracking", tracking, "ms"), detail("rendering", rendering, "ms")];
-    Ok(FigureValue::with(measured.outside.total.mean_s * 1e3, details))
+    Ok(FigureValue::with(measured.outside.total.mean * 1e3, details))
 }
 
 /// Number of iterations of the i860 loop.

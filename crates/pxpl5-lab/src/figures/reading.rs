@@ -1,14 +1,15 @@
 //! Interpretations of the papers: answers to the questions about Rendering Control that the papers leave open.
 
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::RendererTiming;
 use pxpl5_run::{FinishedRegions, RenderingControl, Summary, retraces};
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 
 /// Definition of the latency samples whose mean a paper prints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Samples {
+pub enum LatencySamples {
     /// Each frame gives one sample, timed from the start of TRANSFORM of its first eye.
     FirstEye,
     /// Each eye of a frame gives one sample, timed from the start of TRANSFORM of this eye.
@@ -33,7 +34,7 @@ pub enum FieldCount {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {
     /// Definition of the latency samples whose mean a paper prints.
-    pub samples: Samples,
+    pub samples: LatencySamples,
     /// Definition of the unit "field" in a published latency.
     pub fields: FieldCount,
     /// Number of finished regions that a renderer keeps in its backing store, 1 to [`ROOM`] (`renderer.kept_bits`).
@@ -61,7 +62,7 @@ impl Reading {
     /// The interpretation with which figures are measured. `pxpl5 readings` ranks this interpretation among the best,
     /// and no text of the papers contradicts it.
     pub const USUAL: Self = Self {
-        samples: Samples::EachEye,
+        samples: LatencySamples::EachEye,
         fields: FieldCount::Whole,
         kept: ROOM,
         finished: FinishedRegions::Wait,
@@ -70,11 +71,11 @@ impl Reading {
         bins: 1,
     };
 
-    /// The rules of TR94 alone, on a machine where nothing delays them. The theory behind figures 3 and 5 assumes this
-    /// interpretation.
+    /// The rules in the text of TR94: a renderer stores its finished region and continues with the next region. The
+    /// theory behind figures 3 and 5 assumes this interpretation.
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
-    /// Returns the interpretations that differ from the usual interpretation in the answer to exactly one question.
+    /// Returns the interpretations that differ from this interpretation in the answer to exactly one question.
     #[must_use]
     pub fn neighbours(&self) -> Vec<Self> {
         Self::all().into_iter().filter(|other| self.differences(other) == 1).collect()
@@ -89,13 +90,16 @@ impl Reading {
         all = varied(&all, &FinishedRegions::ALL, |reading, finished| Self { finished, ..reading });
         all = varied(&all, &KEPT, |reading, kept| Self { kept, ..reading });
         all = varied(&all, &[1, 2], |reading, bins| Self { bins, ..reading });
-        all = varied(&all, &[Samples::FirstEye, Samples::EachEye], |reading, samples| Self { samples, ..reading });
+        all = varied(&all, &[LatencySamples::FirstEye, LatencySamples::EachEye], |reading, samples| Self {
+            samples,
+            ..reading
+        });
         varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
     }
 
     /// Returns the answers of this interpretation in words, in the order of the questions.
     fn answers(&self) -> [String; 7] {
-        let samples = if self.samples == Samples::FirstEye { "first eye" } else { "each eye" };
+        let samples = if self.samples == LatencySamples::FirstEye { "first eye" } else { "each eye" };
         let fields = if self.fields == FieldCount::Exact { "exact" } else { "whole fields" };
         let kept = if self.kept == ROOM { "room for all".to_owned() } else { format!("{} kept", self.kept) };
         let faces = if self.culled { "culled" } else { "all faces" };
@@ -125,8 +129,8 @@ impl Reading {
     ///
     /// # Errors
     ///
-    /// Returns [`ConfigError`] if the number of kept regions is outside the parameter's limits.
-    pub fn on(&self, mut machine: MachineConfig) -> Result<MachineConfig, ConfigError> {
+    /// Returns a [`SettingError`] if the number of kept regions is outside the parameter's limits.
+    pub fn on(&self, mut machine: MachineConfig) -> Result<MachineConfig, SettingError> {
         if self.kept != Self::USUAL.kept {
             machine.set("renderer.kept_bits", machine.renderer.backing_bits / self.kept)?;
         }
@@ -140,8 +144,8 @@ impl Reading {
     #[must_use]
     pub fn latencies_ms<'a>(&self, summary: &'a Summary) -> &'a [f64] {
         match self.samples {
-            Samples::FirstEye => &summary.latencies_ms,
-            Samples::EachEye => &summary.eye_swap_latencies_ms,
+            LatencySamples::FirstEye => &summary.latencies_ms,
+            LatencySamples::EachEye => &summary.eye_swap_latencies_ms,
         }
     }
 
@@ -161,8 +165,8 @@ const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
 /// Numbers of finished regions that a renderer may keep. The last number fills the backing store.
 const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
-/// Returns copies of each interpretation, one for each possible answer to one question. `answer` sets an answer in an
-/// interpretation.
+/// Returns several copies of each interpretation, one copy for each possible answer to one question. The function
+/// `answer` sets the answer in a copy.
 fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
     readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
 }

@@ -1,24 +1,7 @@
 //! The table of published figures.
 
+use pxpl5_sim::figures::Basis;
 use serde::Serialize;
-
-/// Relation between a published figure and the choices made in the model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Basis {
-    /// An independent check: nothing was chosen to reproduce the figure.
-    Free,
-    /// A parameter was fitted to this figure, or derived from it.
-    Fitted {
-        /// Path of the fitted parameter, and the preset that holds its value.
-        parameter: &'static str,
-    },
-    /// A rule of the model was chosen because of this figure.
-    Rule {
-        /// Description of the chosen rule in a few words.
-        rule: &'static str,
-    },
-}
 
 /// A figure printed in a paper.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -51,7 +34,8 @@ const SLATS: &str = "Slats";
 const HEAD: &str = "from head to light";
 const FREE: Basis = Basis::Free;
 
-/// Returns a figure that the model reproduces.
+/// Creates a figure of the table, without a cause of a difference between model and paper. The method `because` adds a
+/// cause.
 const fn figure(
     id: &'static str,
     (paper, section): (&'static str, &'static str),
@@ -77,7 +61,7 @@ pub const FIGURES: [Figure; 26] = [
         "copy of one region",
         (780.0, "us", None),
         "mean over all regions of a stereo frame, per 15,360 pixels of port time",
-        Basis::Fitted { parameter: "ring.overhead_words" },
+        Basis::Fitted("ring.overhead_words"),
     ),
     figure(
         "2",
@@ -183,7 +167,7 @@ pub const FIGURES: [Figure; 26] = [
         "20 field regions to two frame buffers",
         (11.0, "region times", None),
         "full-screen:60 on slats without the COPY optimisation: the time from the first word to the last word, in units of 780 us",
-        Basis::Rule { rule: "a frame-buffer port serves in order of arrival" },
+        Basis::Rule("a frame-buffer port serves in order of arrival"),
     ),
     figure(
         "11",
@@ -191,7 +175,7 @@ pub const FIGURES: [Figure; 26] = [
         "half of them",
         (3.9, "ms", None),
         "full-screen:100 on slats with the COPY optimisation: the time from the first word to the last word of the bottom regions",
-        Basis::Rule { rule: "odd renderers begin with the right eye" },
+        Basis::Rule("odd renderers begin with the right eye"),
     ),
     figure(
         "12",
@@ -199,7 +183,7 @@ pub const FIGURES: [Figure; 26] = [
         "most triangles without the COPY optimisation",
         (110.0, "triangles", None),
         "limit of full-screen:N on slats",
-        Basis::Fitted { parameter: "gp.triangle_ns of slats" },
+        Basis::Fitted("gp.triangle_ns of slats"),
     ),
     figure(
         "13",
@@ -221,7 +205,7 @@ pub const FIGURES: [Figure; 26] = [
         "most triangles with the COPY optimisation, code of 1995: about",
         (100.0, "triangles", None),
         "limit of full-screen:N on slats-1995",
-        Basis::Fitted { parameter: "gp.triangle_ns of slats-1995" },
+        Basis::Fitted("gp.triangle_ns of slats-1995"),
     ),
     figure(
         "15",
@@ -237,7 +221,7 @@ pub const FIGURES: [Figure; 26] = [
         "triangles that cover the screen, as many as the bins of 12 slaves hold: about",
         (7_700.0, "triangles", None),
         "full-screen:N on small-hmd: the largest N whose bins fit for one eye, computed from the size of the bins. The test tests/readings.rs runs this N and N + 1.",
-        Basis::Fitted { parameter: "gp.bin_bytes" },
+        Basis::Fitted("gp.bin_bytes"),
     ),
     figure(
         "16b",
@@ -245,7 +229,7 @@ pub const FIGURES: [Figure; 26] = [
         "7,700 of them: frames a second",
         (2.0, "Hz", Some(0.5)),
         "full-screen:7700 on small-hmd",
-        Basis::Rule { rule: "TRANSFORM waits until the bins have room for it" },
+        Basis::Rule("TRANSFORM waits until the bins have room for it"),
     ),
     figure(
         "16c",
@@ -253,7 +237,7 @@ pub const FIGURES: [Figure; 26] = [
         "the same: mean frame time, by which the latency is meant, about 17.5 fields",
         (293.0, "ms", None),
         "full-screen:7700 on small-hmd: the time of an eye from the start of its TRANSFORM to the end of its COPY",
-        Basis::Rule { rule: "TRANSFORM waits until the bins have room for it" },
+        Basis::Rule("TRANSFORM waits until the bins have room for it"),
     )
     .because(
         "With bins for both eyes, TRANSFORM of one eye begins while the other eye is rendered. The result would then be 454 ms at 2.2 Hz"

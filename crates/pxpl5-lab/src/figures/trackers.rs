@@ -80,7 +80,7 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
 /// Number of display fields in a run: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Returns the mean time in ms from the head's pose until TRANSFORM of its picture starts.
+/// Returns the mean time in ms from the measurement of a head pose until TRANSFORM of the picture for this pose starts.
 fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
     let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
@@ -95,8 +95,8 @@ fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
 /// degree.
 const SLOW: f64 = 2.0;
 
-/// Measures the delay in ms of the orientation that the Fastrak reports, behind a steady turn of the head. `gain` is
-/// the gain of the tracker's filter.
+/// Measures by how many ms the orientation in a report of the Fastrak is older than the head's orientation at the time
+/// of the report. The head turns steadily. `gain` is the gain of the tracker's filter.
 fn apparent_latency(gain: f64) -> Result<FigureValue> {
     let mut tables = Tables::PAPERS;
     tables.fastrak.filter_gain = gain;

@@ -11,7 +11,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Levels of modelling to compare. The second value is true if the primitive times in the timing table come from
-/// executed code, instead of published or fitted values. The cycle level does not use the table, so it occurs once.
+/// executed code, instead of published or fitted values. The cycle level does not use the timing table, so this level
+/// occurs only once.
 const VARIANTS: [(Level, bool); 5] = [
     (Level::Analytic, false),
     (Level::Analytic, true),
@@ -20,15 +21,16 @@ const VARIANTS: [(Level, bool); 5] = [
     (Level::Cycle, true),
 ];
 
-/// Choices of computed pixels for which the speed is measured. The analytic level has no pixels.
+/// Choices of the pixels that a run computes, for which the simulation speed is measured. The analytic level has no
+/// pixels.
 const PIXELS: [Pixels; 3] = [Pixels::Off, Pixels::Lazy, Pixels::All];
 
 /// Number of seeds and number of frames of the test scene "mig". Small numbers suffice, because only the levels are
 /// compared.
 const MIG: (u64, u64) = (2, 60);
 
-/// Number of experiments whose speed is measured. The experiments run one after the other, with nothing else at the
-/// same time.
+/// Number of experiments whose speed is measured. The experiments run one after the other, and the host does no other
+/// work at the same time.
 const TIMED: u64 = 16;
 
 /// Parameters of a comparison of levels of modelling.
@@ -104,7 +106,8 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
     Ok(other.fields(experiment.length()).seed(experiment.motion_seed()).pixels(Pixels::Off).level(level))
 }
 
-/// Returns the quantity that is compared between levels, in milliseconds. The value is NaN if no picture is shown.
+/// Runs the random experiment with the given number, and returns the time that is compared between levels, in
+/// milliseconds. The value is NaN if no picture is shown.
 fn value(variant: (Level, bool), number: u64) -> Result<f64, ExperimentError> {
     let experiment = of_variant(variant, number)?;
     match summarise(&crate::registry(), &experiment) {
@@ -124,12 +127,12 @@ fn rows_of(
     let row = |figure: &Figure| {
         let measured = bench.measure(figure.id)?;
         step();
-        Ok(FigureRow::new(figure, measured))
+        Ok(figure.row(measured))
     };
     parallel::map(&FIGURES, row).into_iter().collect()
 }
 
-/// Measures the simulation speed of a level for each choice of computed pixels.
+/// Measures the simulation speed of a level for each choice of the pixels that a run computes.
 fn speeds(variant: (Level, bool), measures: bool) -> Result<Vec<LevelSpeed>, ExperimentError> {
     let choices = if variant.0 == Level::Analytic { &PIXELS[..1] } else { &PIXELS[..] };
     let speed = |pixels: &Pixels| {
@@ -139,7 +142,7 @@ fn speeds(variant: (Level, bool), measures: bool) -> Result<Vec<LevelSpeed>, Exp
     choices.iter().map(speed).collect()
 }
 
-/// Returns the simulated seconds per second of the host's time, over all timed experiments.
+/// Runs all timed experiments, and returns the number of simulated seconds per second of the host's time.
 fn speed(variant: (Level, bool), pixels: Pixels) -> Result<f64, ExperimentError> {
     let registry = crate::registry();
     let (mut simulated, mut taken) = (0.0, 0.0);

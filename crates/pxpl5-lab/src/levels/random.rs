@@ -57,7 +57,7 @@ fn slats(random: &mut SplitMix64) -> Result<Experiment, ExperimentError> {
 }
 
 /// Changes a preset at random: its numbers of boards, and ring and FIFO parameters within the ranges of their sources.
-/// Two ring channels remain for copies, as the analytic level requires.
+/// At least two ring channels remain for the transfer of finished regions, because the analytic level requires them.
 fn machine(preset: &str, random: &mut SplitMix64, gps: (u64, u64)) -> Result<MachineConfig, ExperimentError> {
     let mut machine = MachineConfig::preset(preset)?;
     machine.n_gps = random.between(gps.0, gps.1) as usize;
@@ -70,9 +70,9 @@ fn machine(preset: &str, random: &mut SplitMix64, gps: (u64, u64)) -> Result<Mac
     Ok(machine)
 }
 
-/// Returns the quantity that is compared between levels, in milliseconds. Under Rendering Control it is the mean
-/// latency. Slats always has a latency of one field, so its quantity is the time from the beginning of a field to the
-/// first copy. The value is NaN if no picture was shown in time.
+/// Returns the quantity that is compared between levels, in milliseconds. Under Rendering Control, the quantity is the
+/// mean latency. Slats always has a latency of one field. Under Slats, the quantity is therefore the time from the
+/// beginning of a field to the first copy. The value is NaN if no picture was shown in time.
 #[must_use]
 pub fn compared_ms(experiment: &Experiment, summary: &Summary) -> f64 {
     if summary.latencies_ms.is_empty() {

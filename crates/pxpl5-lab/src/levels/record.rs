@@ -1,7 +1,7 @@
 //! A measurement of all levels of modelling (speed and error), stored in a file.
 
 use pxpl5_run::{Level, Pixels};
-use pxpl5_sim::parameters::TextError;
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::{Deserialize, Serialize};
 
 /// Name and version of the record's JSON layout.
@@ -82,9 +82,10 @@ impl LevelRecord {
     ///
     /// # Errors
     ///
-    /// Returns a [`TextError`] with the expected and the found content.
-    pub fn read(text: &str) -> Result<Self, TextError> {
-        let wrong = |place: &str, expected, found| TextError { place: place.to_owned(), expected, found };
+    /// Returns a [`FileError`] with the expected and the found content.
+    pub fn read(text: &str) -> Result<Self, FileError> {
+        let wrong =
+            |place: &str, expected, found: String| FileError::new(FileErrorKind::Syntax, expected, found).at(place);
         let record: Self =
             serde_json::from_str(text).map_err(|error| wrong("", "a record of levels as JSON", error.to_string()))?;
         if record.schema == SCHEMA {

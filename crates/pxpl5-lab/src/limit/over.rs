@@ -2,12 +2,12 @@
 
 use super::is_reached;
 use crate::error::StudyError;
-use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_machine::PRESETS;
 use pxpl5_measure::{CriticalPath, Utilisation, summary};
 use pxpl5_run::{Experiment, ExperimentError, Goal, Keep, Level, Outcome, Pixels};
 use pxpl5_scene::Scene;
-use pxpl5_sim::parameters::Value;
+use pxpl5_sim::parameters::{SettingError, Value};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -96,7 +96,7 @@ pub struct OverLimit {
 /// Result of the experiment with one value of the setting.
 struct Trial {
     reached: bool,
-    /// Closeness of the result to the goal. A greater score is better.
+    /// Closeness of the result to the goal, in the unit of the goal. A greater score is better.
     score: f64,
     because: Option<String>,
 }
@@ -105,12 +105,12 @@ impl OverQuery {
     /// Returns the values of a setting that are tried by default.
     ///
     /// A number of boards goes up to the number in the largest preset. Any other parameter goes through the range that
-    /// its sources allow.
+    /// the sources of the parameter allow.
     ///
     /// # Errors
     ///
-    /// Returns [`FileError::Missing`] for a setting without such a range.
-    pub fn usual_values(plan: &Plan, key: &str) -> Result<Values, FileError> {
+    /// Returns a [`SettingError`] for a setting without such a range.
+    pub fn usual_values(plan: &Plan, key: &str) -> Result<Values, SettingError> {
         // The largest preset is the largest machine with a source.
         let largest = |boards: fn(&pxpl5_machine::MachineConfig) -> usize| {
             let presets = PRESETS.iter().filter_map(|preset| pxpl5_machine::MachineConfig::preset(preset.name).ok());
@@ -128,7 +128,7 @@ impl OverQuery {
                 })
             }
         };
-        found.ok_or(FileError::Missing { key: "--from and --to", how: "the values of this key that are tried" })
+        found.ok_or_else(|| SettingError::missing("--from and --to", "the values of this key that are tried"))
     }
 
     /// Searches for the limit. `progress` is called with the number of values tried so far.
@@ -139,7 +139,7 @@ impl OverQuery {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError`] or [`ExperimentError`] if no value at all can be run.
+    /// Returns a [`SettingError`] or [`ExperimentError`] if no value at all can be run.
     pub fn search(&self, mut progress: impl FnMut(u64)) -> Result<OverLimit, StudyError> {
         let mut search = Search { query: self, trials: BTreeMap::new(), refused: None, scene: None };
         let last = self.values.count - 1;
@@ -181,7 +181,7 @@ impl OverQuery {
         })
     }
 
-    fn plan(&self, value: f64) -> Result<Plan, FileError> {
+    fn plan(&self, value: f64) -> Result<Plan, SettingError> {
         let mut file = self.file.clone();
         file.set_text(&format!("{}={}", self.key, self.values.text(value)), "--over")?;
         file.resolve()
@@ -237,7 +237,7 @@ impl Search<'_> {
         Ok(Trial { reached, score: score(goal, &summary), because: (!reached).then(|| because(&outcome)).flatten() })
     }
 
-    fn load(&mut self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
+    fn load(&mut self, plan: &Plan) -> Result<Arc<Scene>, SettingError> {
         if let Some((_, scene)) = self.scene.as_ref().filter(|(choice, _)| *choice == plan.scene) {
             return Ok(Arc::clone(scene));
         }

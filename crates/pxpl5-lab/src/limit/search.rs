@@ -30,8 +30,8 @@ pub struct Hints {
     pub doubtful: Vec<u32>,
 }
 
-/// Number of sizes directly below the result that are all tried: 60 sizes, or two clumps of 30 triangles. Above the
-/// result, the search looks equally far for sizes that reach the goal.
+/// Number of sizes directly below the result that are all tried: 60 sizes, or two clumps of 30 triangles. The search
+/// also tries equally many sizes above the result, because some of these may reach the goal.
 const LOOK: u32 = 60;
 
 /// Maximum sum of triangles over the consecutive sizes tried on either side of the result. Larger sizes take longer to
@@ -117,6 +117,24 @@ impl<F> Tried<F> {
         Ok(false)
     }
 
+    /// Finds a first miss, then bisects again as long as a smaller size misses.
+    fn find_limit<E>(&mut self, ceiling: u32, hints: &Hints) -> Result<(), E>
+    where
+        F: FnMut(u32) -> Result<bool, E>,
+    {
+        if ceiling == 0 {
+            return Ok(());
+        }
+        self.bracket(hints.near.unwrap_or(1), ceiling)?;
+        loop {
+            self.bisect()?;
+            let limit = self.limit(ceiling).triangles;
+            if !self.finds_a_miss(below(limit, &hints.doubtful))? {
+                return Ok(());
+            }
+        }
+    }
+
     fn limit(&self, ceiling: u32) -> Limit {
         let first_miss = self.first_miss();
         let triangles = first_miss.map_or(ceiling, |miss| miss - 1);
@@ -147,24 +165,25 @@ impl<F> Tried<F> {
 /// Returns the first error of `reached`.
 pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<Limit, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
-    if ceiling == 0 {
-        return Ok(tried.limit(0));
-    }
-    // Find a first miss, then bisect again as long as a smaller size misses.
-    tried.bracket(hints.near.unwrap_or(1), ceiling)?;
-    loop {
-        tried.bisect()?;
-        let limit = tried.limit(ceiling).triangles;
-        if !tried.finds_a_miss(below(limit, &hints.doubtful))? {
-            break;
-        }
-    }
+    tried.find_limit(ceiling, hints)?;
     // Islands above the first miss do not change the limit, but the result reports them.
     let limit = tried.limit(ceiling).triangles;
     for size in above(limit, ceiling) {
         tried.ask(size)?;
     }
     Ok(tried.limit(ceiling))
+}
+
+/// Returns [`Limit::triangles`] of [`most`], without a search for islands above the first miss. An island never changes
+/// the limit, so about half of the trials are left out.
+///
+/// # Errors
+///
+/// Returns the first error of `reached`.
+pub fn most_triangles<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<u32, E> {
+    let mut tried = Tried { answers: BTreeMap::new(), reached };
+    tried.find_limit(ceiling, hints)?;
+    Ok(tried.limit(ceiling).triangles)
 }
 
 /// Returns the limit found by bisection alone, as a hint for the search with another model.
@@ -194,7 +213,7 @@ fn in_a_row(limit: u32) -> u32 {
     (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }
 
-/// Returns the sizes to try above the first miss. Their number is the same as below the limit.
+/// Returns the sizes to try above the first miss. As many sizes are tried above the limit as directly below the limit.
 fn above(limit: u32, ceiling: u32) -> impl Iterator<Item = u32> {
     let farthest = limit.saturating_add(1 + LOOK.min(limit / 2)).min(ceiling);
     let step = (farthest.saturating_sub(limit) / in_a_row(limit)).max(1) as usize;
@@ -264,6 +283,20 @@ mod tests {
             let reached = |size: u32| size <= limit;
             let found = with(CEILING, &Hints { near: Some(near), doubtful }, reached);
             prop_assert_eq!((found.triangles, found.first_miss), (limit, Some(limit + 1)));
+        }
+
+        /// Tests that the search without islands finds the same limit for any hints, right or wrong, and any misses.
+        #[test]
+        fn islands_and_wrong_hints_do_not_change_the_largest_size(
+            misses in proptest::collection::btree_set(1u32..400, 0..20),
+            ceiling in 0u32..400,
+            near in proptest::option::of(1u32..1_000),
+            doubtful in proptest::collection::vec(1u32..600, 0..5),
+        ) {
+            let hints = Hints { near, doubtful };
+            let reached = |size: u32| Ok::<_, Infallible>(!misses.contains(&size));
+            let whole = most(ceiling, &hints, reached).expect("infallible");
+            prop_assert_eq!(most_triangles(ceiling, &hints, reached), Ok(whole.triangles));
         }
 
         /// Tests that all sizes reach the goal from `unbroken_from` up to the result.

@@ -51,11 +51,11 @@ const EXPLAINED_PERCENT: f64 = 8.0;
 /// Largest relative error of a standard deviation that still counts as explained.
 const EXPLAINED_SD: f64 = 0.25;
 
-/// Relative uncertainty of the model itself, because no paper gives some of its clocks and costs.
+/// Relative uncertainty of the model itself. The reason is that no paper gives some clocks and costs of the model.
 const DISCREPANCY: f64 = 0.02;
 
-/// Number of samples behind the means that the papers print. A mean of 4.47 with a standard deviation of 0.502 follows
-/// from samples of 4 and 5 only for 67 to 119 samples.
+/// Number of samples from which the papers' printed means were computed. The printed mean of 4.47 with a standard
+/// deviation of 0.502 follows from samples of 4 or 5 fields only if there are 67 to 119 samples.
 const SAMPLES: f64 = 87.0;
 
 /// Returns the standard deviation that the paper prints for an application scene. `None` for other figures.

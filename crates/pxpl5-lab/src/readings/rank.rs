@@ -6,6 +6,7 @@ use crate::figures::{Bench, Reading};
 use crate::parallel;
 use pxpl5_run::{ExperimentError, Level};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Cross-validation of a figure: its prediction by the interpretation that fits all other figures best.
@@ -17,7 +18,7 @@ pub struct LeaveOneOut {
     pub chosen: Reading,
     /// The chosen interpretation in words.
     pub words: String,
-    /// Relative error in percent of the prediction for the figure.
+    /// Relative error, in percent, of the figure's value under the chosen interpretation.
     pub error_percent: f64,
 }
 
@@ -55,12 +56,16 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
     // The same steps serve both levels.
     let fits = |level: Level, readings: &[Reading]| {
         let bench = Bench { level, ..bench.clone() };
-        let fits = parallel::map(readings, |reading| {
-            let fit = Fit::of(&bench, *reading);
-            step();
-            fit
-        });
-        fits.into_iter().collect::<Result<Vec<_>, _>>().map(ranked)
+        let of_group = |group: &Vec<Reading>| {
+            let fit = |reading: &Reading| {
+                let fit = Fit::of(&bench, *reading);
+                step();
+                fit
+            };
+            group.iter().map(fit).collect::<Result<Vec<_>, _>>()
+        };
+        let fits = parallel::map(&groups(readings), of_group);
+        fits.into_iter().collect::<Result<Vec<_>, _>>().map(|fits| ranked(fits.concat()))
     };
     let analytic = fits(Level::Analytic, &readings)?;
     // Only the best interpretations are worth simulating with events.
@@ -72,6 +77,20 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
     let as_good = analytic.iter().filter(|fit| fit.mean_error_percent <= least + rounding_percent).count();
     let left_out = FIGURES.iter().filter_map(|id| left_out(&analytic, id)).collect();
     Ok(Readings { schema: "pxpl5-readings/1", analytic, transaction, left_out, as_good, rounding_percent })
+}
+
+/// Groups the interpretations that differ only in the number of regions that a renderer keeps and in the evaluation of
+/// a run. In a group, the smallest number comes first: if no backing store is full in its run, the run also serves the
+/// larger numbers.
+fn groups(readings: &[Reading]) -> Vec<Vec<Reading>> {
+    let mut groups: BTreeMap<Reading, Vec<Reading>> = BTreeMap::new();
+    for reading in readings {
+        let Reading { samples, fields, kept, .. } = Reading::USUAL;
+        groups.entry(Reading { samples, fields, kept, ..*reading }).or_default().push(*reading);
+    }
+    let mut groups: Vec<Vec<Reading>> = groups.into_values().collect();
+    groups.iter_mut().for_each(|group| group.sort_by_key(|reading| reading.kept));
+    groups
 }
 
 fn ranked(mut fits: Vec<Fit>) -> Vec<Fit> {

@@ -1,6 +1,9 @@
-//! Simulates some points of a sweep within a time limit. This serves callers that distribute points themselves.
+//! Simulates some points of a sweep within a time limit. Programs that distribute the points of a sweep over computers
+//! call this module.
 
+use super::point::row;
 use super::{Status, Sweep, SweepRow};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 impl Sweep {
@@ -15,19 +18,15 @@ impl Sweep {
         let begin = Instant::now();
         let mut rows = Vec::new();
         for point in points {
-            rows.push(timed(|| self.row(*point)));
+            let start = Instant::now();
+            let row = row(self, *point, &Arc::default());
+            rows.push((row, start.elapsed().as_secs_f64()));
             if begin.elapsed() >= at_most {
                 break;
             }
         }
         rows
     }
-}
-
-fn timed(row: impl FnOnce() -> SweepRow) -> (SweepRow, f64) {
-    let begin = Instant::now();
-    let row = row();
-    (row, begin.elapsed().as_secs_f64())
 }
 
 impl SweepRow {

@@ -5,11 +5,11 @@
 
 use super::Sweep;
 use crate::Plan;
-use crate::estimate::{Estimate, Work};
+use crate::estimate::{Estimate, RunWork};
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
 
-/// Seconds to build a point's plan, its scene and its row.
+/// Seconds to check the settings of a point, to build the scene, and to write the row.
 const POINT: f64 = 3e-3;
 
 /// Memory in bytes of a point that simulates nothing.
@@ -24,8 +24,8 @@ impl Sweep {
         self.estimates(points).into_iter().map(|estimate| estimate.seconds).collect()
     }
 
-    /// Estimates the time in seconds and the memory of each point. Until its results are measured, a point keeps all
-    /// observations in memory.
+    /// Estimates the time in seconds and the memory of each point. The memory includes all observations of a point,
+    /// which are kept until the results of the point are measured.
     #[must_use]
     pub fn estimates(&self, points: &[u64]) -> Vec<Estimate> {
         let mut known: BTreeMap<String, Estimate> = BTreeMap::new();
@@ -46,16 +46,16 @@ impl Sweep {
         if plan.level == Level::Analytic {
             return nothing;
         }
-        let mut work = Work::of(&plan, &scene, true);
+        let mut work = RunWork::of(&plan, &scene, true);
         if let Some(pictures_a_field) = pictures_from_closed_form(&plan, plan.experiment(scene)) {
-            work = Work { pictures_a_field, uses_closed_form: true, ..work };
+            work = RunWork { pictures_a_field, uses_closed_form: true, ..work };
         }
         Estimate { bytes: work.bytes(), seconds: POINT + work.core_seconds() }
     }
 }
 
 /// Returns the number of pictures shown per field according to the pipeline's closed form. Returns `None` if the
-/// pipeline has no such model.
+/// pipeline has no closed form.
 fn pictures_from_closed_form(plan: &Plan, experiment: Experiment) -> Option<f64> {
     let entry = plan.registry.pipeline(plan.pipeline.name()).ok()?;
     let form = entry.closed_form.filter(|_| plan.head.is_none())?;

@@ -1,8 +1,9 @@
 //! The header of a sweep's file of rows, which holds all data needed to repeat the sweep.
 
-use super::{Axis, Sweep, Values, measures};
-use crate::experiment_file::{FileError, Plan};
+use super::{Axis, AxisValues, Sweep, SweepSpace, measures};
+use pxpl5_measure::Measure;
 use pxpl5_run::Fingerprint;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -60,6 +61,36 @@ const LISTED_STEPS: u64 = 1_000;
 impl Header {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-sweep/1";
+
+    /// Returns the header with the hash that identifies the sweep. The hash covers `first`, the effective settings of
+    /// the first point, because a preset may change between versions. It also covers the names of the measured
+    /// quantities in their order, and the contents of all files that points name.
+    #[must_use]
+    pub fn with_hash<'a>(
+        self,
+        first: &str,
+        measured: impl IntoIterator<Item = &'a str>,
+        inputs: &BTreeMap<String, Fingerprint>,
+    ) -> Self {
+        let mut hash = Fingerprint::default();
+        // The version is part of the hash, because results may change between versions.
+        hash.setting("version", &self.version);
+        hash.setting("first", first);
+        // Maps are sorted by their keys, so equal settings give equal texts.
+        self.settings.iter().for_each(|(path, value)| hash.setting(path, value));
+        measured.into_iter().for_each(|name| hash.setting("measure", name));
+        for axis in &self.axes {
+            hash.setting("axis", axis.paths.join(","));
+            match &axis.steps {
+                Steps::Steps(steps) => steps.iter().for_each(|step| hash.setting("step", Value::from(step.clone()))),
+                Steps::Ranges(ranges) => {
+                    ranges.iter().for_each(|range| hash.setting("range", Value::from(range.to_vec())));
+                }
+            }
+        }
+        inputs.iter().for_each(|(name, contents)| hash.setting("input", format_args!("{name}={contents}")));
+        Self { config_hash: hash.to_string(), ..self }
+    }
 }
 
 /// Maximum number of points that are searched for the first valid point. Assumed: some seconds of work.
@@ -70,59 +101,37 @@ impl Sweep {
     ///
     /// # Errors
     ///
-    /// Returns the [`FileError`] of the first point if no point is valid.
-    pub fn header(&self) -> Result<Header, FileError> {
+    /// Returns a [`SettingError`] of the first point if no point is valid.
+    pub fn header(&self) -> Result<Header, SettingError> {
         // The header describes the first valid point.
         let looked_at = self.space.points().min(MAX_POINTS_SEARCHED);
         let mut points = (0..looked_at).map(|point| self.plan(point));
         let first = points.find_map(Result::ok).map_or_else(|| self.plan(0), Ok)?;
-        let axes: Vec<AxisRecord> = self.space.axes().iter().map(record).collect();
-        let settings: BTreeMap<String, Value> =
-            self.base.settings.iter().map(|(path, setting)| (path.clone(), json(&setting.value))).collect();
-        let measure: BTreeMap<String, String> =
-            measures(&first).iter().map(|m| (m.name().to_owned(), m.definition().to_owned())).collect();
-        // The version is part of the hash, because results may change between versions.
-        let version = env!("CARGO_PKG_VERSION").to_owned();
-        Ok(Header {
+        let measured = measures(&first);
+        let fingerprint = first.fingerprint().to_string();
+        let header = Header {
             schema: Header::SCHEMA.to_owned(),
-            machine: first.machine.preset.clone(),
-            config_hash: hash(&version, &first, &settings, &axes, &self.inputs()).to_string(),
-            version,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            config_hash: String::new(),
             level: first.level_name(),
             seed: first.seed,
-            title: first.title,
             points: self.space.points(),
-            measure,
-            settings,
-            axes,
-        })
+            measure: measured.iter().map(|m| (m.name().to_owned(), m.definition().to_owned())).collect(),
+            settings: self.base.settings.iter().map(|(path, setting)| (path.clone(), json(&setting.value))).collect(),
+            axes: self.space.records(),
+            machine: first.machine.preset,
+            title: first.title,
+        };
+        Ok(header.with_hash(&fingerprint, measured.iter().map(Measure::name), &self.inputs()))
     }
 }
 
-/// Returns the hash that identifies a sweep. The hash covers the effective settings of the first point, because a
-/// preset may change between versions. The hash also covers the contents of all files that points name.
-fn hash(
-    version: &str,
-    first: &Plan,
-    settings: &BTreeMap<String, Value>,
-    axes: &[AxisRecord],
-    inputs: &BTreeMap<String, Fingerprint>,
-) -> Fingerprint {
-    let mut hash = Fingerprint::default();
-    hash.setting("version", version);
-    hash.setting("first", first.fingerprint());
-    // Maps are sorted by their keys, so equal settings give equal texts.
-    settings.iter().for_each(|(path, value)| hash.setting(path, value));
-    measures(first).iter().for_each(|measure| hash.setting("measure", measure.name()));
-    for axis in axes {
-        hash.setting("axis", axis.paths.join(","));
-        match &axis.steps {
-            Steps::Steps(steps) => steps.iter().for_each(|step| hash.setting("step", Value::from(step.clone()))),
-            Steps::Ranges(ranges) => ranges.iter().for_each(|range| hash.setting("range", Value::from(range.to_vec()))),
-        }
+impl SweepSpace {
+    /// Returns the axes in the JSON layout of a header.
+    #[must_use]
+    pub fn records(&self) -> Vec<AxisRecord> {
+        self.axes().iter().map(record).collect()
     }
-    inputs.iter().for_each(|(name, contents)| hash.setting("input", format_args!("{name}={contents}")));
-    hash
 }
 
 fn record(axis: &Axis) -> AxisRecord {
@@ -136,10 +145,10 @@ fn record(axis: &Axis) -> AxisRecord {
     AxisRecord { paths, steps }
 }
 
-fn range(values: &Values) -> Option<[i64; 3]> {
+fn range(values: &AxisValues) -> Option<[i64; 3]> {
     match values {
-        Values::Range { from, step, count } => Some([*from, *step, i64::try_from(*count).ok()?]),
-        Values::Listed(_) => None,
+        AxisValues::Range { from, step, count } => Some([*from, *step, i64::try_from(*count).ok()?]),
+        AxisValues::Listed(_) => None,
     }
 }
 

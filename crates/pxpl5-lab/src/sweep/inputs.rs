@@ -1,48 +1,69 @@
-//! The input files that points of a sweep read.
+//! The input files that points of a sweep read, such as models and recordings, with hashes of their contents.
 
-use super::{Sweep, Values};
+use super::Sweep;
 use crate::experiment_file::{ExperimentFile, beside, is_file};
 use crate::head_names::is_recording;
 use pxpl5_run::Fingerprint;
+use pxpl5_scene::{Placement, load_placed};
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Value;
 
-/// A function that returns true if a value is the name of a file, and not a built-in name.
-type NamesFile = fn(&str) -> bool;
-const KEYS: [(&str, NamesFile); 2] = [("scene", is_file), ("head.motion", is_recording)];
+/// A setting whose value can be the name of a file.
+struct FileKey {
+    key: &'static str,
+    /// Returns true if a value is the name of a file, and not a built-in name.
+    names_file: fn(&str) -> bool,
+    hash_of: fn(&Path) -> Fingerprint,
+}
+
+const KEYS: [FileKey; 2] = [
+    FileKey { key: "scene", names_file: is_file, hash_of: hash_of_model },
+    FileKey { key: "head.motion", names_file: is_recording, hash_of: hash_of_file },
+];
 
 impl Sweep {
     /// Returns the hash of each file that a point may read, by the name in the sweep. A file that cannot be read counts
     /// as empty. Points that need this file fail with the reason.
     pub(super) fn inputs(&self) -> BTreeMap<String, Fingerprint> {
         let mut inputs = inputs_of(&self.base);
-        for (key, names_file) in KEYS {
-            let folder = self.folder();
-            for (path, values) in self.space.axes().iter().flat_map(|axis| axis.paths.iter().zip(&axis.values)) {
-                if let (true, Values::Listed(list)) = (path == key, values) {
-                    list.iter().for_each(|value| put(&mut inputs, names_file, &folder, value));
-                }
-            }
+        let folder = self.folder();
+        for file in &KEYS {
+            self.space.listed(file.key).for_each(|value| file.put(&mut inputs, &folder, value));
         }
         inputs
     }
 }
 
 /// Returns the hash of each file that an experiment file names, by the name in the file.
-pub(crate) fn inputs_of(file: &ExperimentFile) -> BTreeMap<String, Fingerprint> {
+pub(crate) fn inputs_of(experiment: &ExperimentFile) -> BTreeMap<String, Fingerprint> {
     let mut inputs = BTreeMap::new();
-    for (key, names_file) in KEYS {
-        if let Some(setting) = file.settings.get(key) {
-            put(&mut inputs, names_file, &setting.folder, &setting.value);
+    for file in &KEYS {
+        if let Some(setting) = experiment.settings.get(file.key) {
+            file.put(&mut inputs, &setting.folder, &setting.value);
         }
     }
     inputs
 }
 
-fn put(inputs: &mut BTreeMap<String, Fingerprint>, names_file: NamesFile, folder: &Path, value: &Value) {
-    if let Some(name) = value.as_str().filter(|name| names_file(name)) {
-        let contents = std::fs::read(beside(folder, name)).unwrap_or_default();
-        inputs.insert(name.to_owned(), Fingerprint::of(&contents));
+impl FileKey {
+    fn put(&self, inputs: &mut BTreeMap<String, Fingerprint>, folder: &Path, value: &Value) {
+        if let Some(name) = value.as_str().filter(|name| (self.names_file)(name)) {
+            inputs.insert(name.to_owned(), (self.hash_of)(Path::new(&beside(folder, name))));
+        }
     }
+}
+
+/// Returns the hash of the scene in a model file, at its own coordinates.
+///
+/// The hash covers the scene and not the bytes of the file, because a glTF file names further files. A file that is no
+/// model gets the hash of its bytes, and a file that cannot be read the hash of no bytes.
+#[must_use]
+pub fn hash_of_model(path: &Path) -> Fingerprint {
+    let scene = load_placed(path, Placement::AsInFile);
+    scene.map_or_else(|_| hash_of_file(path), |scene| Fingerprint::of_scene(&scene))
+}
+
+fn hash_of_file(path: &Path) -> Fingerprint {
+    Fingerprint::of(&std::fs::read(path).unwrap_or_default())
 }

@@ -5,9 +5,10 @@
 //! of files that a process may open.
 
 use super::points::Points;
-use super::rows::Scan;
+use super::rows::{Scan, contradiction};
 use super::store::check_header;
-use super::{Header, ROWS_FILE, Status, SweepError, SweepRow};
+use super::{Header, ROWS_FILE, Status, SweepRow};
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::PathBuf;
@@ -36,9 +37,9 @@ impl Joined {
     ///
     /// # Errors
     ///
-    /// Returns [`SweepError::Missing`] if no folder holds a row, [`SweepError::Foreign`] if a folder belongs to another
-    /// sweep, and [`SweepError::Contradiction`] if a point has different rows.
-    pub(super) fn of(folders: &[PathBuf]) -> Result<Self, SweepError> {
+    /// Returns a [`FileError`] if no folder holds a row, if a folder belongs to another sweep, or if a point has
+    /// different rows.
+    pub(super) fn of(folders: &[PathBuf]) -> Result<Self, FileError> {
         let mut joined: Option<Self> = None;
         for folder in folders {
             let path = folder.join(ROWS_FILE);
@@ -52,11 +53,7 @@ impl Joined {
                 joined.add(&row, byte)?;
             }
         }
-        let mut joined = joined.ok_or_else(|| SweepError::Missing {
-            missing: 0,
-            points: 0,
-            which: "no folder holds a row".to_owned(),
-        })?;
+        let mut joined = joined.ok_or_else(|| missing_points(0, 0, "no folder holds a row"))?;
         joined.duplicates.sort_unstable();
         joined.duplicates.dedup();
         Ok(joined)
@@ -69,14 +66,14 @@ impl Joined {
     }
 
     /// Adds a row of the most recently added file to the index. `byte` is the row's position in the file.
-    fn add(&mut self, row: &SweepRow, byte: u64) -> Result<(), SweepError> {
+    fn add(&mut self, row: &SweepRow, byte: u64) -> Result<(), FileError> {
         let point = row.point as usize;
         // A second row of a point must equal the first.
         if let Some(first) = self.row(row.point)? {
             if first != *row {
                 let [first, second] = [self.holders[point] as usize, self.files.len()]
                     .map(|number| self.files[number - 1].path.display().to_string());
-                return Err(SweepError::Contradiction { point: row.point, first, second });
+                return Err(contradiction(row.point, &first, &second));
             }
             self.duplicates.push(row.point);
             return Ok(());
@@ -109,8 +106,9 @@ impl Joined {
         &self.duplicates
     }
 
-    /// Returns the row of a point, or `None` if the point has no row. `point` must be less than the number of points.
-    pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, SweepError> {
+    /// Returns the row of a point, or `None` if the point has no row. `point` must be less than the number of points of
+    /// the sweep.
+    pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, FileError> {
         let Some(file) = (self.holders[point as usize] as usize).checked_sub(1) else { return Ok(None) };
         self.files[file].row_at(self.places[point as usize]).map(Some)
     }
@@ -131,12 +129,12 @@ impl RowBlocks {
     }
 
     /// Returns the row that begins at a byte position. Rows are read fastest in the order of the file.
-    fn row_at(&mut self, byte: u64) -> Result<SweepRow, SweepError> {
+    fn row_at(&mut self, byte: u64) -> Result<SweepRow, FileError> {
         if self.line_at(byte).is_none() {
-            self.read(byte).map_err(SweepError::io(&self.path, AGAIN))?;
+            self.read(byte).map_err(FileError::io(&self.path, AGAIN))?;
         }
         let line = self.line_at(byte).unwrap_or_default();
-        serde_json::from_slice(line).map_err(io::Error::from).map_err(SweepError::io(&self.path, AGAIN))
+        serde_json::from_slice(line).map_err(io::Error::from).map_err(FileError::io(&self.path, AGAIN))
     }
 
     /// Returns the line at a byte position, if the current block holds the complete line.
@@ -147,8 +145,8 @@ impl RowBlocks {
         Some(&rest[..end])
     }
 
-    /// Reads the block that begins at a byte position. The block is extended until it holds a complete line, if the
-    /// file has one.
+    /// Reads the block that begins at a byte position. The block is extended until the block holds a complete line, if
+    /// the file has a complete line there.
     fn read(&mut self, byte: u64) -> io::Result<()> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(byte))?;
@@ -162,4 +160,12 @@ impl RowBlocks {
             }
         }
     }
+}
+
+/// Creates the error of points that are in none of the folders. `which` are their numbers as ranges.
+pub(super) fn missing_points(missing: u64, points: u64, which: &str) -> FileError {
+    FileError::because(
+        FileErrorKind::Truncated,
+        format_args!("{missing} of {points} points are missing: {which}; run the shards that hold them with --resume"),
+    )
 }

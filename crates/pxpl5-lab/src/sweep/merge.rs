@@ -1,9 +1,10 @@
 //! Merges the shards of a sweep (parts computed by separate processes) into one folder.
 
-use super::joined::Joined;
+use super::TIMES_FILE;
+use super::joined::{Joined, missing_points};
 use super::replacement::Replacement;
 use super::store::{check_command, line_of, renew_manifest, write_all};
-use super::{SweepError, TIMES_FILE};
+use pxpl5_sim::parameters::FileError;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -26,22 +27,22 @@ pub struct Merged {
 ///
 /// # Errors
 ///
-/// Returns [`SweepError::Foreign`] if a folder belongs to another sweep. Returns [`SweepError::Contradiction`] if a
-/// point has different rows. Returns [`SweepError::Missing`] if points are missing and `allow_missing` is false.
-pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Merged, SweepError> {
+/// Returns a [`FileError`] if a folder belongs to another sweep, if a point has different rows, or if points are missing
+/// and `allow_missing` is false.
+pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Merged, FileError> {
     let mut joined = Joined::of(folders)?;
     let points = joined.header().points;
     let missing = joined.missing();
     if !missing.is_empty() && !allow_missing {
-        return Err(SweepError::Missing { missing: missing.len() as u64, points, which: ranges(&missing) });
+        return Err(missing_points(missing.len() as u64, points, &ranges(&missing)));
     }
     write(&mut joined, folders, out)?;
     Ok(Merged { points, failed: joined.failed(), duplicates: joined.duplicates().to_vec(), missing })
 }
 
-fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), SweepError> {
+fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), FileError> {
     check_command(out)?;
-    std::fs::create_dir_all(out).map_err(SweepError::io(out, "cannot be made"))?;
+    std::fs::create_dir_all(out).map_err(FileError::io(out, "cannot be made"))?;
     let header = joined.header().clone();
     // Times of all shards are concatenated; they need no order.
     let mut times = Replacement::of(&out.join(TIMES_FILE))?;
@@ -54,7 +55,7 @@ fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), Swe
 }
 
 /// Copies the lines of a folder's file of durations, except the header in the first line.
-fn put_times(times: &mut Replacement, path: &Path) -> Result<(), SweepError> {
+fn put_times(times: &mut Replacement, path: &Path) -> Result<(), FileError> {
     let Ok(file) = File::open(path) else { return Ok(()) };
     let lines = BufReader::new(file).lines().map_while(Result::ok);
     lines.skip(1).try_for_each(|line| times.put(format!("{line}\n").as_bytes()))

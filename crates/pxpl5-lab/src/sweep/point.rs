@@ -1,11 +1,11 @@
 //! Simulates one point of a sweep.
 
 use super::header::json;
-use super::{Sweep, measures};
-use crate::Workstation;
-use crate::experiment_file::{FileError, Plan};
+use super::{Sweep, SweepSpace, measures};
+use crate::experiment_file::Plan;
 use pxpl5_run::Host;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -47,8 +47,8 @@ impl Sweep {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError`] if the settings of the point are invalid.
-    pub fn plan(&self, point: u64) -> Result<Plan, FileError> {
+    /// Returns a [`SettingError`] if the settings of the point are invalid.
+    pub fn plan(&self, point: u64) -> Result<Plan, SettingError> {
         let mut file = self.base.clone();
         for (path, value) in self.space.settings(point) {
             file.put(&path, value, format!("point {point}"), &self.folder())?;
@@ -61,58 +61,75 @@ impl Sweep {
     /// # Errors
     ///
     /// Fails in the same cases as [`crate::experiment_file::SceneChoice::load`].
-    pub fn scene(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
-        self.scenes.scene_of(plan)
+    pub fn scene(&self, plan: &Plan) -> Result<Arc<Scene>, SettingError> {
+        self.scenes.load(&plan.scene)
+    }
+}
+
+/// Results of a point that was simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointResults {
+    /// Measured quantities by name, as in [`SweepRow::measured`].
+    pub measured: BTreeMap<String, Option<f64>>,
+    /// Hash of all settings on which the results depend.
+    pub config_hash: String,
+    /// Hash of the simulated events or of the drawn volume, if there is one.
+    pub trace_hash: Option<String>,
+}
+
+/// An experiment that depends on settings, some of which vary in a parameter space.
+pub trait Swept: Sync {
+    /// Returns the parameter space, whose points are the experiments.
+    fn space(&self) -> &SweepSpace;
+
+    /// Simulates a point. The simulation may end early when another thread sets `stop` to true.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason why the point cannot be simulated.
+    fn simulate(&self, point: u64, stop: &Arc<AtomicBool>) -> Result<PointResults, String>;
+}
+
+impl Swept for Sweep {
+    fn space(&self) -> &SweepSpace {
+        &self.space
     }
 
-    /// Simulates a point and returns its row. An error, even a panic, is stored in the row.
-    pub(super) fn row(&self, point: u64) -> SweepRow {
-        self.row_on(point, &Workstation::with_threads(1))
-    }
-
-    /// Simulates a point and returns its row, or `None` if another thread has set `stop` to true meanwhile.
-    pub(super) fn row_unless_stopped(&self, point: u64, stop: &Arc<AtomicBool>) -> Option<SweepRow> {
-        let row = self.row_on(point, &StoppableHost { stop: Arc::clone(stop) });
-        (!stop.load(Ordering::Relaxed)).then_some(row)
-    }
-
-    fn row_on(&self, point: u64, host: &(impl Host + Clone + 'static)) -> SweepRow {
-        // A panic in one point must not end the sweep.
-        let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point, host.clone())));
-        let result = result.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
-        let parameters = self.space.settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
-        // A failed row has the parameters and the error only.
-        let empty = SweepRow {
-            point,
-            status: Status::Failed,
-            parameters,
-            measured: BTreeMap::new(),
-            config_hash: None,
-            trace_hash: None,
-            error: None,
-        };
-        match result {
-            Ok(simulated) => SweepRow {
-                status: Status::Done,
-                measured: simulated.measured,
-                config_hash: Some(simulated.config_hash),
-                trace_hash: simulated.trace_hash,
-                ..empty
-            },
-            Err(error) => SweepRow { error: Some(error), ..empty },
-        }
-    }
-
-    fn simulate(&self, point: u64, host: impl Host + 'static) -> Result<Simulated, String> {
+    fn simulate(&self, point: u64, stop: &Arc<AtomicBool>) -> Result<PointResults, String> {
         let plan = self.plan(point).map_err(|error| error.to_string())?;
-        let scene = self.scenes.scene_of(&plan).map_err(|error| error.to_string())?;
+        let scene = self.scene(&plan).map_err(|error| error.to_string())?;
         // The hash identifies the point even if its run fails later.
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.
+        let host = StoppableHost { stop: Arc::clone(stop) };
         let results = plan.run_on(host, scene).map_err(|error| error.to_string())?;
         let measured = measures(&plan).iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
         let trace_hash = results.run.map(|(_, report)| report.trace_hash);
-        Ok(Simulated { measured, config_hash, trace_hash })
+        Ok(PointResults { measured, config_hash, trace_hash })
+    }
+}
+
+/// Simulates a point and returns its row. An error, even a panic, is stored in the row, so that the other points
+/// continue.
+pub(super) fn row(sweep: &impl Swept, point: u64, stop: &Arc<AtomicBool>) -> SweepRow {
+    let results = catch_unwind(AssertUnwindSafe(|| sweep.simulate(point, stop)));
+    let results = results.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
+    let parameters = sweep.space().settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
+    // A failed row has the parameters and the error only.
+    let empty = SweepRow {
+        point,
+        status: Status::Failed,
+        parameters,
+        measured: BTreeMap::new(),
+        config_hash: None,
+        trace_hash: None,
+        error: None,
+    };
+    match results {
+        Ok(PointResults { measured, config_hash, trace_hash }) => {
+            SweepRow { status: Status::Done, measured, config_hash: Some(config_hash), trace_hash, ..empty }
+        }
+        Err(error) => SweepRow { error: Some(error), ..empty },
     }
 }
 
@@ -126,12 +143,6 @@ impl Host for StoppableHost {
     fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
-}
-
-struct Simulated {
-    measured: BTreeMap<String, Option<f64>>,
-    config_hash: String,
-    trace_hash: Option<String>,
 }
 
 fn panic_text(panic: &(dyn std::any::Any + Send)) -> &str {

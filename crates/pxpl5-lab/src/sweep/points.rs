@@ -1,4 +1,4 @@
-//! A set of points, stored as bits.
+//! A set of points of a sweep, stored as bits.
 
 /// A set of points of a sweep, stored as bits. Ten million points take 1.25 MB.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,6 +1,6 @@
-//! Replaces a file by a complete new version.
+//! Replaces a file by a complete new version, so that no reader finds a file in part.
 
-use super::SweepError;
+use pxpl5_sim::parameters::FileError;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -15,19 +15,19 @@ pub(super) struct Replacement {
 }
 
 impl Replacement {
-    pub(super) fn of(path: &Path) -> Result<Self, SweepError> {
+    pub(super) fn of(path: &Path) -> Result<Self, FileError> {
         let temporary = path.with_extension(format!("{}.tmp", std::process::id()));
-        let file = File::create(&temporary).map_err(SweepError::io(path, "cannot be written"))?;
+        let file = File::create(&temporary).map_err(FileError::io(path, "cannot be written"))?;
         Ok(Self { path: path.to_owned(), temporary, writer: BufWriter::new(file) })
     }
 
-    pub(super) fn put(&mut self, bytes: &[u8]) -> Result<(), SweepError> {
-        self.writer.write_all(bytes).map_err(SweepError::io(&self.path, "cannot be written"))
+    pub(super) fn put(&mut self, bytes: &[u8]) -> Result<(), FileError> {
+        self.writer.write_all(bytes).map_err(FileError::io(&self.path, "cannot be written"))
     }
 
     /// Renames the new version to the name of the file. The file changes completely or not at all.
-    pub(super) fn finish(mut self) -> Result<(), SweepError> {
-        self.take_place().map_err(SweepError::io(&self.path, "cannot be written"))
+    pub(super) fn finish(mut self) -> Result<(), FileError> {
+        self.take_place().map_err(FileError::io(&self.path, "cannot be written"))
     }
 
     fn take_place(&mut self) -> io::Result<()> {

@@ -1,7 +1,9 @@
-//! Access to a file of result rows through an index of byte positions. A row is read from the file when it is needed.
+//! Access to a file of result rows through an index of byte positions. A row is read from the file only when the row is
+//! needed.
 
 use super::points::Points;
-use super::{Header, MAX_POINTS, Status, SweepError, SweepRow};
+use super::{Header, MAX_POINTS, Status, SweepRow};
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::de::DeserializeOwned;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -22,7 +24,7 @@ pub(super) struct RowFile {
 
 impl RowFile {
     /// Builds the index of a file. An incomplete last line is ignored.
-    pub(super) fn open(path: &Path) -> Result<Self, SweepError> {
+    pub(super) fn open(path: &Path) -> Result<Self, FileError> {
         let mut scan = Scan::open(path)?;
         let mut found = Self { path: path.to_owned(), header: scan.header.take(), ..Self::default() };
         while let Some((row, byte)) = scan.next()? {
@@ -33,19 +35,19 @@ impl RowFile {
     }
 
     /// Builds the index of a file. The index is empty if the file does not exist.
-    pub(super) fn open_or_none(path: &Path) -> Result<Self, SweepError> {
+    pub(super) fn open_or_none(path: &Path) -> Result<Self, FileError> {
         match path.try_exists() {
             Ok(false) => Ok(Self { path: path.to_owned(), ..Self::default() }),
             _ => Self::open(path),
         }
     }
 
-    fn check_and_add(&mut self, row: &SweepRow, byte: u64) -> Result<(), SweepError> {
+    fn check_and_add(&mut self, row: &SweepRow, byte: u64) -> Result<(), FileError> {
         if !self.holds(row.point) {
             self.add(row, byte);
         } else if self.reader()?.row(row.point)?.as_ref() != Some(row) {
             let path = self.path.display().to_string();
-            return Err(SweepError::Contradiction { point: row.point, first: path.clone(), second: path });
+            return Err(contradiction(row.point, &path, &path));
         }
         Ok(())
     }
@@ -96,8 +98,8 @@ impl RowFile {
     }
 
     /// Opens the file again to read rows at the positions in the index.
-    pub(super) fn reader(&self) -> Result<RowReader<'_>, SweepError> {
-        let file = File::open(&self.path).map_err(SweepError::io(&self.path, "cannot be read"))?;
+    pub(super) fn reader(&self) -> Result<RowReader<'_>, FileError> {
+        let file = File::open(&self.path).map_err(FileError::io(&self.path, "cannot be read"))?;
         Ok(RowReader { rows: self, file: BufReader::new(file), at: 0 })
     }
 }
@@ -119,8 +121,8 @@ pub(super) struct Scan {
 
 impl Scan {
     /// Opens a file and reads its header.
-    pub(super) fn open(path: &Path) -> Result<Self, SweepError> {
-        let file = File::open(path).map_err(SweepError::io(path, "cannot be read"))?;
+    pub(super) fn open(path: &Path) -> Result<Self, FileError> {
+        let file = File::open(path).map_err(FileError::io(path, "cannot be read"))?;
         let (file, text) = (BufReader::new(file), Vec::new());
         let mut scan = Self { path: path.to_owned(), file, text, line: 0, points: 0, header: None, whole_bytes: 0 };
         if scan.read_line()? {
@@ -135,7 +137,7 @@ impl Scan {
     }
 
     /// Returns the next row and its byte position.
-    pub(super) fn next(&mut self) -> Result<Option<(SweepRow, u64)>, SweepError> {
+    pub(super) fn next(&mut self) -> Result<Option<(SweepRow, u64)>, FileError> {
         let begin = self.whole_bytes;
         if !self.read_line()? {
             return Ok(None);
@@ -148,9 +150,9 @@ impl Scan {
     }
 
     /// Reads a line. Returns false if the line is incomplete.
-    fn read_line(&mut self) -> Result<bool, SweepError> {
+    fn read_line(&mut self) -> Result<bool, FileError> {
         self.text.clear();
-        self.file.read_until(b'\n', &mut self.text).map_err(SweepError::io(&self.path, "cannot be read"))?;
+        self.file.read_until(b'\n', &mut self.text).map_err(FileError::io(&self.path, "cannot be read"))?;
         let is_whole = self.text.last() == Some(&b'\n');
         if is_whole {
             self.line += 1;
@@ -160,13 +162,20 @@ impl Scan {
     }
 
     /// Parses the current line as JSON.
-    fn parsed<T: DeserializeOwned>(&self) -> Result<T, SweepError> {
+    fn parsed<T: DeserializeOwned>(&self) -> Result<T, FileError> {
         serde_json::from_slice(&self.text).map_err(|error| self.damaged(format!("{} ({error})", excerpt(&self.text))))
     }
 
-    fn damaged(&self, found: String) -> SweepError {
-        SweepError::Damaged { path: self.path.display().to_string(), line: self.line, found }
+    fn damaged(&self, found: String) -> FileError {
+        let file = format!("{}, line {}", self.path.display(), self.line);
+        FileError::new(FileErrorKind::Damaged, "a row of a sweep", found).in_file(file)
     }
+}
+
+/// Creates the error of a point with two different rows. Both files may be the same.
+pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError {
+    let reason = format_args!("point {point} has different rows in {first} and {second}");
+    FileError::because(FileErrorKind::Damaged, reason)
 }
 
 /// Random-access reader of result rows. Rows are read fastest in the order of the file.
@@ -180,9 +189,9 @@ pub(super) struct RowReader<'a> {
 
 impl RowReader<'_> {
     /// Returns the row of a point, or `None` if the file has no row for the point.
-    pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, SweepError> {
+    pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, FileError> {
         let Some(place) = self.rows.place(point) else { return Ok(None) };
-        let row = self.row_at(place).map_err(SweepError::io(&self.rows.path, "cannot be read again"))?;
+        let row = self.row_at(place).map_err(FileError::io(&self.rows.path, "cannot be read again"))?;
         Ok(Some(row))
     }
 

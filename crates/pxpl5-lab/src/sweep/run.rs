@@ -1,9 +1,11 @@
 //! Parallel simulation of the points of a sweep.
 
+use super::point::row;
 use super::points::Points;
 use super::shard::Shard;
-use super::{Store, Sweep, SweepError, SweepRow};
+use super::{Store, SweepRow, Swept};
 use crossbeam_channel::{Sender, bounded};
+use pxpl5_sim::parameters::FileError;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
@@ -26,29 +28,29 @@ const WAITING_ROWS: usize = 64;
 ///
 /// # Errors
 ///
-/// Returns [`SweepError::Io`] if a row cannot be stored. Points in progress are then finished, and their rows are lost.
+/// Returns a [`FileError`] if a row cannot be stored. Points in progress are then finished, and their rows are lost.
 pub fn run(
-    sweep: &Sweep,
+    sweep: &impl Swept,
     store: &mut Store,
     options: RunOptions,
     finished: impl FnMut(&SweepRow),
-) -> Result<(), SweepError> {
+) -> Result<(), FileError> {
     run_stoppable(sweep, store, options, &Arc::default(), finished)
 }
 
-/// Like [`run`], and ends early when another thread sets `stop` to true. The points in progress then end within a few
-/// display periods and get no row.
+/// Simulates the points of a shard as [`run`] does, until another thread sets `stop` to true. The simulations in
+/// progress then end within a few display periods, and their points get no row.
 ///
 /// # Errors
 ///
-/// Like [`run`].
+/// Fails in the same cases as [`run`].
 pub fn run_stoppable(
-    sweep: &Sweep,
+    sweep: &impl Swept,
     store: &mut Store,
     options: RunOptions,
     stop: &Arc<AtomicBool>,
     mut finished: impl FnMut(&SweepRow),
-) -> Result<(), SweepError> {
+) -> Result<(), FileError> {
     let work = Work {
         sweep,
         shard: options.shard,
@@ -79,8 +81,8 @@ pub fn run_stoppable(
 }
 
 /// Work shared by all threads of a sweep. Each thread takes one unfinished point at a time.
-struct Work<'a> {
-    sweep: &'a Sweep,
+struct Work<'a, S> {
+    sweep: &'a S,
     shard: Shard,
     /// Points that were finished before this run.
     finished: Points,
@@ -92,15 +94,16 @@ struct Work<'a> {
     stop: &'a Arc<AtomicBool>,
 }
 
-impl Work<'_> {
+impl<S: Swept> Work<'_, S> {
     /// Simulates points on one thread, until no point is left or the receiver of the rows has closed.
     fn run(&self, rows: Sender<(SweepRow, f64)>) {
         while !self.ended.load(Ordering::Relaxed) && !self.stop.load(Ordering::Relaxed) {
             let Some(point) = self.take() else { break };
             let begin = Instant::now();
+            let row = row(self.sweep, point, self.stop);
             // A point that was stopped has no row.
-            let Some(row) = self.sweep.row_unless_stopped(point, self.stop) else { break };
-            if rows.send((row, begin.elapsed().as_secs_f64())).is_err() {
+            let is_stopped = self.stop.load(Ordering::Relaxed);
+            if is_stopped || rows.send((row, begin.elapsed().as_secs_f64())).is_err() {
                 break;
             }
         }

@@ -1,6 +1,6 @@
 //! The parameter space of a sweep: axes of values, and points by index.
 
-use crate::experiment_file::{ExperimentFile, FileError, Setting};
+use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
@@ -13,18 +13,18 @@ pub struct Axis {
     /// Keys of the experiment file that change together.
     pub paths: Vec<String>,
     /// Values of each key along the axis. All lists have the same length.
-    pub values: Vec<Values>,
+    pub values: Vec<AxisValues>,
 }
 
 impl Axis {
-    fn of_one(path: String, values: Values) -> Self {
+    fn of_one(path: String, values: AxisValues) -> Self {
         Self { paths: vec![path], values: vec![values] }
     }
 
     /// Returns the number of steps of the axis.
     #[must_use]
     pub fn len(&self) -> u64 {
-        self.values.first().map_or(0, Values::len)
+        self.values.first().map_or(0, AxisValues::len)
     }
 
     /// Returns true if the axis has no steps. No axis of a [`SweepSpace`] is empty.
@@ -42,7 +42,7 @@ impl Axis {
 
 /// Values of one setting in order. A range stores only three numbers.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Values {
+pub enum AxisValues {
     /// Values as listed in the sweep's file.
     Listed(Vec<Value>),
     /// A range of whole numbers.
@@ -56,7 +56,7 @@ pub enum Values {
     },
 }
 
-impl Values {
+impl AxisValues {
     /// Returns the number of values.
     #[must_use]
     pub fn len(&self) -> u64 {
@@ -93,14 +93,26 @@ pub struct SweepSpace {
 const KEYS: [&str; 3] = ["grid", "together", "seeds"];
 
 impl SweepSpace {
-    pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
+    /// Reads the table `sweep` of a file. `place` is the place of the table in an error message, and `places` has the
+    /// places of its keys, if they are known. `key_of` returns the name of a key that an axis varies, from the key as
+    /// written and its place.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`FileError`] if the table is missing or invalid, and the error of `key_of`.
+    pub fn read(
+        sweep: Option<&Value>,
+        (place, places): (&str, &BTreeMap<String, String>),
+        key_of: impl Fn(&str, &str) -> Result<String, SettingError>,
+    ) -> Result<Self, SettingError> {
         let how = "a table [sweep.grid] with lists or ranges of settings";
-        let setting = file.sweep.as_ref().ok_or(FileError::Missing { key: "sweep", how })?;
-        let fault = Fault { sweep: setting, places: &file.sweep_places };
-        let table = setting.value.as_table().ok_or_else(|| fault.value("sweep", "a table", &setting.value))?;
+        let sweep = sweep.ok_or_else(|| SettingError::missing("sweep", how))?;
+        let fault = Fault { sweep: place, places };
+        let table = sweep.as_table().ok_or_else(|| fault.value("sweep", "a table", sweep))?;
         if let Some(key) = table.keys().find(|key| !KEYS.contains(&key.as_str())) {
-            let nearest = pxpl5_sim::parameters::nearest(key, KEYS.into_iter()).unwrap_or_default();
-            return Err(fault.unknown(&format!("sweep.{key}"), &format!("sweep.{nearest}")));
+            let found = format!("sweep.{key}");
+            let valid = KEYS.map(|key| format!("sweep.{key}"));
+            return Err(SettingError::unknown_path("key", &found, valid).at(fault.place(&found)));
         }
         // Each setting of the grid is an axis. The lists of `together` form one more axis, the seeds the last.
         let mut axes = Vec::new();
@@ -110,12 +122,22 @@ impl SweepSpace {
         }
         axes.extend(fault.together(fault.table(table, "together")?)?);
         axes.extend(fault.seeds(table.get("seeds"))?);
-        fault.check(file, &axes)?;
+        fault.check(&axes, key_of)?;
         // Multiply with care: the product of long axes can overflow.
         let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.len()));
         let points = points.filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| fault.text("sweep", &format!("at most {MAX_POINTS} points"), "more"))?;
         Ok(Self { axes, points })
+    }
+
+    /// Returns the values that the sweep's file lists for a key.
+    pub fn listed(&self, key: &str) -> impl Iterator<Item = &Value> {
+        let values = self.axes.iter().flat_map(|axis| axis.paths.iter().zip(&axis.values));
+        let lists = values.filter(move |(path, _)| *path == key).map(|(_, values)| match values {
+            AxisValues::Listed(list) => list.as_slice(),
+            AxisValues::Range { .. } => &[],
+        });
+        lists.flatten()
     }
 
     /// Returns the axes of the space. The last axis changes fastest from point to point.
@@ -147,7 +169,7 @@ impl SweepSpace {
 
 /// Builder of error messages that state the place of a key in the sweep's file.
 struct Fault<'a> {
-    sweep: &'a Setting,
+    sweep: &'a str,
     places: &'a BTreeMap<String, String>,
 }
 
@@ -155,23 +177,18 @@ impl Fault<'_> {
     /// Returns the place of a key for an error message: its path in the file, or the setting that an axis varies.
     fn place(&self, key: &str) -> String {
         let paths = [key.to_owned(), format!("sweep.grid.{key}"), format!("sweep.together.{key}")];
-        paths.iter().find_map(|path| self.places.get(path)).unwrap_or(&self.sweep.place).clone()
+        paths.iter().find_map(|path| self.places.get(path)).map_or(self.sweep, String::as_str).to_owned()
     }
 
-    fn text(&self, key: &str, expected: &str, found: &str) -> FileError {
-        let place = self.place(key);
-        FileError::Value { place, key: key.to_owned(), expected: expected.to_owned(), found: found.to_owned() }
+    fn text(&self, key: &str, expected: &str, found: &str) -> SettingError {
+        SettingError::value(key, expected, found).at(self.place(key))
     }
 
-    fn value(&self, key: &str, expected: &str, found: &Value) -> FileError {
+    fn value(&self, key: &str, expected: &str, found: &Value) -> SettingError {
         self.text(key, expected, &found.to_string().chars().take(60).collect::<String>())
     }
 
-    fn unknown(&self, found: &str, nearest: &str) -> FileError {
-        FileError::UnknownKey { place: self.place(found), found: found.to_owned(), nearest: nearest.to_owned() }
-    }
-
-    fn table(&self, table: &Table, key: &str) -> Result<Table, FileError> {
+    fn table(&self, table: &Table, key: &str) -> Result<Table, SettingError> {
         match table.get(key) {
             None => Ok(Table::new()),
             Some(Value::Table(table)) => Ok(table.clone()),
@@ -179,15 +196,15 @@ impl Fault<'_> {
         }
     }
 
-    fn values(&self, path: &str, value: &Value) -> Result<Values, FileError> {
+    fn values(&self, path: &str, value: &Value) -> Result<AxisValues, SettingError> {
         match value {
-            Value::Array(list) if !list.is_empty() => Ok(Values::Listed(list.clone())),
+            Value::Array(list) if !list.is_empty() => Ok(AxisValues::Listed(list.clone())),
             Value::Table(range) => self.range(path, range),
             other => Err(self.value(path, "a list with values, or { from, to, step }", other)),
         }
     }
 
-    fn range(&self, path: &str, range: &Table) -> Result<Values, FileError> {
+    fn range(&self, path: &str, range: &Table) -> Result<AxisValues, SettingError> {
         let expected = "whole numbers { from, to, step } with from <= to and step > 0";
         let Some([from, step, last]) = from_step_last(range) else {
             return Err(self.value(path, expected, &Value::Table(range.clone())));
@@ -196,15 +213,15 @@ impl Fault<'_> {
         if count > MAX_POINTS {
             return Err(self.text(path, &format!("at most {MAX_POINTS} points"), "more"));
         }
-        Ok(Values::Range { from, step, count })
+        Ok(AxisValues::Range { from, step, count })
     }
 
     /// Returns an axis whose lists of values change together. All lists must have the same length.
-    fn together(&self, table: Table) -> Result<Option<Axis>, FileError> {
+    fn together(&self, table: Table) -> Result<Option<Axis>, SettingError> {
         let mut axis = Axis { paths: Vec::new(), values: Vec::new() };
         for (path, value) in leaves(table) {
             let values = self.values(&path, &value)?;
-            let expected = axis.values.first().map_or(values.len(), Values::len);
+            let expected = axis.values.first().map_or(values.len(), AxisValues::len);
             // All lists of one axis need the same length.
             if values.len() != expected {
                 let expected = format!("{expected} values, as many as the other lists of sweep.together");
@@ -216,22 +233,26 @@ impl Fault<'_> {
         Ok(Some(axis).filter(|axis| !axis.paths.is_empty()))
     }
 
-    fn seeds(&self, seeds: Option<&Value>) -> Result<Option<Axis>, FileError> {
+    fn seeds(&self, seeds: Option<&Value>) -> Result<Option<Axis>, SettingError> {
         let Some(value) = seeds else { return Ok(None) };
         let Some(count) = value.as_integer().filter(|count| (1..=MAX_POINTS as i64).contains(count)) else {
             return Err(self.value("sweep.seeds", &format!("a number of seeds from 1 to {MAX_POINTS}"), value));
         };
-        Ok(Some(Axis::of_one("seed".to_owned(), Values::Range { from: 1, step: 1, count: count as u64 })))
+        Ok(Some(Axis::of_one("seed".to_owned(), AxisValues::Range { from: 1, step: 1, count: count as u64 })))
     }
 
     /// Checks that every path of the axes is a key of the file, and that no two axes set the same key.
-    fn check(&self, file: &ExperimentFile, axes: &[Axis]) -> Result<(), FileError> {
+    fn check(
+        &self,
+        axes: &[Axis],
+        key_of: impl Fn(&str, &str) -> Result<String, SettingError>,
+    ) -> Result<(), SettingError> {
         let mut seen = BTreeMap::new();
         if axes.is_empty() {
             return Err(self.text("sweep", "at least one setting under [sweep.grid]", "none"));
         }
         for path in axes.iter().flat_map(|axis| &axis.paths) {
-            let key = file.canonical_key(path, &self.place(path))?;
+            let key = key_of(path, &self.place(path))?;
             if seen.insert(key, path).is_some() {
                 return Err(self.text(path, "to be in one axis of the sweep", "two"));
             }
@@ -252,7 +273,8 @@ fn from_step_last(range: &Table) -> Option<[i64; 3]> {
 
 /// Flattens a table into paths and values. A table with the key `from` is a range and stays one value. The key of any
 /// other table becomes part of the path.
-fn leaves(table: Table) -> Vec<(String, Value)> {
+#[must_use]
+pub fn leaves(table: Table) -> Vec<(String, Value)> {
     let mut all = Vec::new();
     for (key, value) in table {
         match value {

@@ -6,9 +6,11 @@ use super::replacement::Replacement;
 use super::rows::RowFile;
 use super::shard::Shard;
 use super::table::Table;
-use super::{Header, SweepError, SweepRow};
+use super::{Header, SweepRow};
 use crate::manifest::{MANIFEST_FILE, Manifest};
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::Serialize;
+use std::fmt::Display;
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -27,11 +29,11 @@ pub struct Store {
     folder: PathBuf,
     header: Header,
     rows: RowFile,
-    /// Byte position in the file of rows at which the next row begins.
+    /// Byte position in the file of rows at which the next row is written.
     end: u64,
     rows_file: File,
     times_file: File,
-    /// True after a row was appended. Plots and pages that were made from fewer rows have then been removed.
+    /// True after this process has appended a row, and has removed the plots and pages that were made from fewer rows.
     is_renewed: bool,
     /// Lock of the folder, held as long as the store exists. The operating system releases the lock after a crash.
     _lock: File,
@@ -50,15 +52,15 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Returns [`SweepError`] in these cases:
+    /// Returns a [`FileError`] in these cases:
     ///
     /// - The folder cannot be read or written, or is in use.
     /// - A line before the last is damaged.
     /// - The folder holds results of another sweep.
     /// - The folder holds finished points although `resume` is false.
-    pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, SweepError> {
+    pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, FileError> {
         check_command(folder)?;
-        fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
+        fs::create_dir_all(folder).map_err(FileError::io(folder, "cannot be made"))?;
         // The lock comes before any change to the folder.
         let lock = lock(folder)?;
         remove_leftover_files(folder);
@@ -67,7 +69,13 @@ impl Store {
         check_header(&path, &header, rows.header())?;
         // Without --resume, existing rows are never extended by accident.
         if !resume && rows.finished() > 0 {
-            return Err(SweepError::NotEmpty { path: folder.display().to_string(), rows: rows.finished() });
+            return Err(occupied(
+                folder,
+                format_args!(
+                    "there are {} finished points here already; continue with --resume, or choose another folder",
+                    rows.finished()
+                ),
+            ));
         }
         // Both files continue after their last complete line; a new file starts with the header.
         let end = rows.whole_bytes();
@@ -118,8 +126,8 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Returns [`SweepError::Io`] if the file cannot be read.
-    pub fn row(&self, point: u64) -> Result<Option<SweepRow>, SweepError> {
+    /// Returns a [`FileError`] if the file cannot be read.
+    pub fn row(&self, point: u64) -> Result<Option<SweepRow>, FileError> {
         self.rows.reader()?.row(point)
     }
 
@@ -127,8 +135,8 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Returns [`SweepError::Io`] if a file cannot be written.
-    pub fn append(&mut self, row: &SweepRow, host_seconds: f64) -> Result<(), SweepError> {
+    /// Returns a [`FileError`] if a file cannot be written.
+    pub fn append(&mut self, row: &SweepRow, host_seconds: f64) -> Result<(), FileError> {
         // Plots and pages of fewer rows become outdated with the first new row.
         if !self.is_renewed {
             renew_manifest(&self.folder)?;
@@ -142,16 +150,16 @@ impl Store {
     }
 
     /// Appends a line to the file of rows by one write. A crash can leave at most this line incomplete.
-    fn append_line(&mut self, line: &str) -> Result<(), SweepError> {
+    fn append_line(&mut self, line: &str) -> Result<(), FileError> {
         let path = self.folder.join(ROWS_FILE);
-        self.rows_file.write_all(line.as_bytes()).map_err(SweepError::io(&path, "cannot be written"))?;
+        self.rows_file.write_all(line.as_bytes()).map_err(FileError::io(&path, "cannot be written"))?;
         self.end += line.len() as u64;
         Ok(())
     }
 
-    fn append_time(&mut self, line: &str) -> Result<(), SweepError> {
+    fn append_time(&mut self, line: &str) -> Result<(), FileError> {
         let path = self.folder.join(TIMES_FILE);
-        self.times_file.write_all(line.as_bytes()).map_err(SweepError::io(&path, "cannot be written"))
+        self.times_file.write_all(line.as_bytes()).map_err(FileError::io(&path, "cannot be written"))
     }
 
     /// Sorts the rows by the number of their point, and writes the table. The file of rows changes completely or not at
@@ -159,8 +167,8 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Returns [`SweepError::Io`] if a file cannot be read or written.
-    pub fn finish(self) -> Result<(), SweepError> {
+    /// Returns a [`FileError`] if a file cannot be read or written.
+    pub fn finish(self) -> Result<(), FileError> {
         let mut reader = self.rows.reader()?;
         let rows = self.rows.points().filter_map(|point| reader.row(point).transpose());
         write_all(&self.folder, &self.header, rows)
@@ -168,18 +176,18 @@ impl Store {
 }
 
 /// Returns an error if the folder holds files of another command.
-pub(super) fn check_command(folder: &Path) -> Result<(), SweepError> {
+pub(super) fn check_command(folder: &Path) -> Result<(), FileError> {
     match Manifest::read(folder)? {
         Some(manifest) if manifest.command() != Manifest::SWEEP => {
-            let (path, command) = (folder.display().to_string(), manifest.command().to_owned());
-            Err(SweepError::Occupied { path, command })
+            let command = manifest.command();
+            Err(occupied(folder, format_args!("these are files of `pxpl5 {command}`; choose another folder")))
         }
         _ => Ok(()),
     }
 }
 
 /// Rewrites the folder's manifest with only the files of the sweep. Plots and pages made from fewer rows are removed.
-pub(super) fn renew_manifest(folder: &Path) -> Result<(), SweepError> {
+pub(super) fn renew_manifest(folder: &Path) -> Result<(), FileError> {
     let mut manifest = Manifest::new(Manifest::SWEEP);
     [ROWS_FILE, TIMES_FILE, RESULTS_FILE].into_iter().for_each(|name| manifest.add_growing(name));
     let gone = Manifest::read(folder)?.map(|before| manifest.replace(&before, folder)).unwrap_or_default();
@@ -194,8 +202,8 @@ pub(super) fn renew_manifest(folder: &Path) -> Result<(), SweepError> {
 pub(super) fn write_all(
     folder: &Path,
     header: &Header,
-    rows: impl Iterator<Item = Result<SweepRow, SweepError>>,
-) -> Result<(), SweepError> {
+    rows: impl Iterator<Item = Result<SweepRow, FileError>>,
+) -> Result<(), FileError> {
     let mut lines = Replacement::of(&folder.join(ROWS_FILE))?;
     let mut results = Replacement::of(&folder.join(RESULTS_FILE))?;
     let table = Table::of(header);
@@ -234,24 +242,27 @@ pub(crate) fn line_of(value: &impl Serialize) -> String {
     line
 }
 
-pub(crate) fn lock(folder: &Path) -> Result<File, SweepError> {
+pub(crate) fn lock(folder: &Path) -> Result<File, FileError> {
     let path = folder.join(LOCK_FILE);
-    let file = File::create(&path).map_err(SweepError::io(&path, "cannot be written"))?;
+    let file = File::create(&path).map_err(FileError::io(&path, "cannot be written"))?;
     match file.try_lock() {
-        Err(fs::TryLockError::WouldBlock) => Err(SweepError::Locked { path: folder.display().to_string() }),
+        Err(fs::TryLockError::WouldBlock) => {
+            let reason = "another process is writing here; wait for it, or choose another folder";
+            Err(FileError::because(FileErrorKind::Locked, reason).in_file(folder.display()))
+        }
         // On a file system without locks, a sweep without protection is better than no sweep.
         _ => Ok(file),
     }
 }
 
 /// Opens a file for appending. Bytes after the first `keep` bytes are removed.
-pub(crate) fn opened(path: &Path, keep: u64) -> Result<File, SweepError> {
+pub(crate) fn opened(path: &Path, keep: u64) -> Result<File, FileError> {
     let file = OpenOptions::new().create(true).append(true).open(path);
     let cut = file.and_then(|file| {
         file.set_len(keep)?;
         Ok(file)
     });
-    cut.map_err(SweepError::io(path, "cannot be written"))
+    cut.map_err(FileError::io(path, "cannot be written"))
 }
 
 /// Returns the length in bytes up to the end of the last complete line, or 0 if the file cannot be read.
@@ -268,7 +279,7 @@ fn whole_lines(path: &Path) -> u64 {
 }
 
 /// Returns an error that names the first difference between two headers.
-pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header>) -> Result<(), SweepError> {
+pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header>) -> Result<(), FileError> {
     let Some(found) = found.filter(|found| *found != expected) else { return Ok(()) };
     let pairs = [
         ("schema", &expected.schema, &found.schema),
@@ -281,5 +292,10 @@ pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header
         Some((what, expected, found)) => (what, expected.clone(), found.clone()),
         None => ("title", format!("{:?}", expected.title), format!("{:?}", found.title)),
     };
-    Err(SweepError::Foreign { path: path.display().to_string(), what: what.to_owned(), expected, found })
+    let reason = format_args!("these are results of another sweep: {what} was {found}, expected {expected}");
+    Err(occupied(path, reason))
+}
+
+fn occupied(path: &Path, reason: impl Display) -> FileError {
+    FileError::because(FileErrorKind::Occupied, reason).in_file(path.display())
 }

@@ -17,7 +17,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Returns the line of column names. The data that reproduce the rows are in the header of `rows.jsonl`.
+    /// Returns the line of column names. The settings from which the rows can be reproduced are not in the table, but
+    /// in the header of `rows.jsonl`.
     pub(super) fn head(&self) -> Vec<u8> {
         let settings = self.parameters.iter().chain(&self.measured).copied();
         let columns = ["point", "status"].into_iter().chain(settings).chain(["trace_hash", "error"]);

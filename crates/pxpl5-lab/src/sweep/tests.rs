@@ -228,7 +228,7 @@ fn a_space_of_any_size_takes_no_memory_for_its_values() {
     let seeds = sweep("[sweep]\nseeds = 10000000\n");
     assert_eq!(seeds.space().points(), 10_000_000);
     assert_eq!(seeds.space().settings(9_999_999)["seed"].as_integer(), Some(10_000_000));
-    assert!(matches!(seeds.space().axes()[0].values[..], [Values::Range { from: 1, step: 1, count: 10_000_000 }]));
+    assert!(matches!(seeds.space().axes()[0].values[..], [AxisValues::Range { from: 1, step: 1, count: 10_000_000 }]));
     let header = serde_json::to_string(&seeds.header().expect("a valid point")).expect("JSON");
     assert!(header.contains("\"ranges\":[[1,1,10000000]]") && header.len() < 10_000, "{} bytes", header.len());
     let read: Header = serde_json::from_str(&header).expect("as it was written");
@@ -294,6 +294,37 @@ fn a_sweep_whose_model_was_edited_is_another_one() {
         assert_eq!(before, hash_of(text));
         model(2);
         assert_ne!(before, hash_of(text), "{text}");
+    }
+    let _ = std::fs::remove_dir_all(&place);
+}
+
+/// A glTF file names the file of its vertices. The text of the glTF file stays the same. In a build that does not read
+/// glTF, no point has a result.
+#[test]
+fn a_sweep_whose_models_buffer_was_edited_is_another_one() {
+    let place = folder("buffer");
+    std::fs::create_dir_all(&place).expect("a folder");
+    let triangle = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"m.bin"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[9,9,0]}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]}"#;
+    std::fs::write(place.join("m.gltf"), triangle).expect("written");
+    let hash_of = |text: &str, x: f32| {
+        let corners: Vec<u8> = [0., 0., 0., x, 0., 0., 0., 1., 0.].iter().flat_map(|n: &f32| n.to_le_bytes()).collect();
+        std::fs::write(place.join("m.bin"), corners).expect("written");
+        let path = place.join("sweep.toml");
+        std::fs::write(&path, text).expect("written");
+        Sweep::load(&path).expect("a sweep").header().expect("valid").config_hash
+    };
+    let for_all = "pipeline = \"slats\"\nscene = \"m.gltf\"\nfields = 10\n[sweep]\nseeds = 2\n";
+    let axis = "pipeline = \"slats\"\nfields = 10\n[sweep.grid]\nscene = [\"mig\", \"m.gltf\"]\n";
+    for text in [for_all, axis] {
+        let before = hash_of(text, 1.0);
+        assert_eq!(before, hash_of(text, 1.0));
+        // The reader of glTF is a feature of the scene crate.
+        let read = pxpl5_scene::load(place.join("m.gltf"));
+        let is_read = read.is_ok_and(|scene| !scene.triangles().is_empty());
+        assert_eq!(before != hash_of(text, 2.0), is_read, "{text}");
     }
     let _ = std::fs::remove_dir_all(&place);
 }

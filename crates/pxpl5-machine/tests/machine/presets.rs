@@ -33,7 +33,7 @@ fn presets_have_the_boards_and_times_that_were_published() {
 #[test]
 fn an_unknown_preset_names_the_nearest() {
     let error = MachineConfig::preset("larg").expect_err("misspelt");
-    assert_eq!(error.to_string(), "there is no machine `larg`; did you mean `large`? (`pxpl5 machines` lists all)");
+    assert_eq!(error.to_string(), "there is no machine `larg`; did you mean `large`?");
 }
 
 /// The version `Compiled` is the code that did not fit the cache.

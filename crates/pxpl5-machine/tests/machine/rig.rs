@@ -5,11 +5,9 @@ use image::RgbImage;
 use pxpl5_gp::{Fault, Gp, GpTiming, Priority};
 use pxpl5_machine::{Board, HostLine, Machine, MachineConfig};
 use pxpl5_renderer::{CommandKind, Layout};
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_sim::{Phase, Span, Time};
-use pxpl5_wire::display::{
-    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
-};
+use pxpl5_wire::display::{Counter, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, Surface};
 use pxpl5_wire::{
     Body, CommandList, CommandRun, CopyContent, CopyOrder, CopyPath, CopyTarget, Lines, NodeId, PeriodNumber,
     PictureNumber, RegionGrid, RegionId,
@@ -59,11 +57,11 @@ impl DisplayConfig for ScreenConfig {
         vec![("screen", &mut self.numbers)]
     }
 
-    fn check(&self) -> Result<(), DisplayError> {
-        if self.surfaces > 0 { Ok(()) } else { Err(DisplayError("a screen has a surface at least".to_owned())) }
+    fn check(&self) -> Result<(), SettingError> {
+        if self.surfaces > 0 { Ok(()) } else { Err(SettingError::combination("a screen has a surface at least")) }
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
         self.check()?;
         let surface = Surface { label: self.name, title: self.name, width: 4, height: 2 };
         let surfaces = vec![surface; self.surfaces];

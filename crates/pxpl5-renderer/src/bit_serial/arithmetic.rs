@@ -25,7 +25,7 @@ impl SerialOperand {
     }
 }
 
-/// The second factor of a multiplication.
+/// The second factor of a multiplication: a field of pixel memory or a constant.
 enum Factor<'a> {
     Field(&'a SerialOperand),
     Constant(i32),
@@ -88,13 +88,13 @@ impl Tile {
         SerialOperand { bits, extension }
     }
 
-    /// Stores one bit plane of a field in the enabled pixels.
+    /// Overwrites bit plane `bit` of pixel memory in the enabled pixels of the tile.
     fn store(&mut self, bit: usize, new: &TilePlane) {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }
 
-    /// Stores in a field the bits that `f` returns. The function handles one bit per clock, the least significant bit
-    /// first.
+    /// Computes a field bit by bit, the least significant bit first. The function `f` returns the value of each bit in
+    /// all pixels of a tile. Each bit takes one clock.
     fn each_bit(&mut self, field: FieldBits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
@@ -171,8 +171,8 @@ impl Tile {
         self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }
 
-    /// Returns the pixels in which a < b. In exactly these pixels, the subtraction a - b over `clocks` bits ends with a
-    /// borrow.
+    /// Returns the pixels in which a < b. The function subtracts b from a, over `clocks` bits, and returns the pixels
+    /// in which the subtraction ends with a borrow.
     fn less(&mut self, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
         let x = self.source(a);
         let mut borrow = EMPTY;
@@ -215,7 +215,7 @@ impl Tile {
     /// Computes `destination := a * b`. For each set bit of `b`, the function adds `a`, shifted by the position of this
     /// bit.
     ///
-    /// Each addition takes one more clock for its carry. For the sign bit of a signed `b`, `a` is subtracted instead.
+    /// Each addition takes one more clock for the carry. For the sign bit of a signed `b`, `a` is subtracted instead.
     /// The destination's bits above the product are copies of the product's sign.
     fn multiply(&mut self, destination: FieldBits, a: FieldBits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);
@@ -260,7 +260,7 @@ impl Tile {
     }
 
     /// Divides `a` by `b`, one binary digit at a time, from the highest digit. Each step compares the remainder with
-    /// the divisor, and subtracts the divisor unless it is larger.
+    /// the divisor, and subtracts the divisor unless the divisor is larger.
     fn divide(&mut self, destination: FieldBits, a: FieldBits, b: FieldBits) {
         let divisor = self.source(b);
         for j in (0..destination.width).rev() {

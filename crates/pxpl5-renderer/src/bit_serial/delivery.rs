@@ -1,4 +1,4 @@
-//! Effects of an expression's bits on the pixels of a tile. The bits take effect one by one, as they arrive.
+//! Effects of an expression's bits on the pixels of a tile. Each bit takes effect when it arrives.
 
 use super::arithmetic::SerialOperand;
 use super::evaluator::{Evaluator, VectorPlace, full_add};
@@ -7,26 +7,27 @@ use crate::controller::FieldBits;
 use crate::simd::SimdVector;
 use std::ops::Range;
 
-/// A consumer of the bits of an expression.
+/// A consumer of the bits of an expression, which arrive one by one.
 trait BitSink {
-    /// Applies bit `t` of the expression, for one vector of pixels of a tile.
+    /// Applies bit `t` of the expression to one vector of pixels of a tile.
     ///
-    /// `at` is the index of the vector's first word in a plane. `carry` must be zero for the first bit.
+    /// `at` is the index of the vector's first word in a bit plane of the tile. `carry` must be zero for the first bit.
     fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
-    /// Receives the carry that remains after the last bit.
+    /// Receives the carry that remains after the last bit of the expression.
     fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
 /// The use of an expression by the pixels: the range of used bits, and the operation on these bits.
 #[derive(Clone, Debug)]
 pub(super) struct Delivery {
-    /// Clocks in which the pixels use the arriving bit. One bit of the expression arrives in each clock.
+    /// Clocks in which the pixels use the arriving bit of the expression. One bit arrives in each clock.
     pub(super) taken: Range<usize>,
     pub(super) effect: ExpressionEffect,
 }
 
-/// The operation on the bits of an expression. A destination is given by its first bit in pixel memory.
+/// The operation of the pixels with the bits of an expression. A destination field is given by its first bit in pixel
+/// memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,
@@ -37,7 +38,8 @@ pub(super) enum ExpressionEffect {
 }
 
 impl Delivery {
-    /// Evaluates an expression, bit by bit, for one vector of pixels, and applies the effect.
+    /// Evaluates an expression, bit by bit, for one vector of pixels, and performs the operation of this delivery with
+    /// each bit.
     #[inline(always)]
     pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
         let shift = self.taken.start;
@@ -80,7 +82,7 @@ impl Delivery {
     }
 }
 
-/// Overwrites one bit plane in the enabled pixels of a vector.
+/// Overwrites the bits of the enabled pixels of a vector in one bit plane.
 #[inline(always)]
 fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
     let old = V::load_words(&plane[at..]);
@@ -88,7 +90,7 @@ fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TileP
     old.xor(changed).store_words(&mut plane[at..]);
 }
 
-/// A sink that clears Enable in the pixels whose bit is set.
+/// A sink that clears the Enable bit of the pixels for which the expression's bit is set.
 struct ClearEnable;
 
 impl BitSink for ClearEnable {
@@ -99,7 +101,7 @@ impl BitSink for ClearEnable {
     }
 }
 
-/// A sink that stores the bits from bit `shift` on in a field.
+/// A sink that stores the bits of an expression in a field. The low `shift` bits of the expression are left out.
 struct StoreBits {
     first: usize,
     shift: usize,
@@ -112,7 +114,7 @@ impl BitSink for StoreBits {
     }
 }
 
-/// A sink that adds the bits from bit `shift` on to a field.
+/// A sink that adds the bits of an expression to a field. The low `shift` bits of the expression are left out.
 struct AddBits {
     first: usize,
     shift: usize,
@@ -127,7 +129,8 @@ impl BitSink for AddBits {
     }
 }
 
-/// A sink that clears Enable in the pixels where the bits from bit `shift` on are not less than a field.
+/// A sink that clears the Enable bit of the pixels in which the expression, from its bit `shift` on, is not less than a
+/// field.
 struct CompareBits {
     first: usize,
     shift: usize,
@@ -146,7 +149,7 @@ impl BitSink for CompareBits {
     }
 }
 
-/// A sink that stores the difference of the expression and a source field, from bit `shift` of the difference on.
+/// A sink that stores the expression minus a source field. The low `shift` bits of the difference are left out.
 struct StoreDifference {
     first: usize,
     shift: usize,
@@ -168,8 +171,8 @@ impl BitSink for StoreDifference {
     }
 }
 
-/// Runs one clock of a serial subtracter in each pixel of a vector. The function uses the equation a - b = not (not a +
-/// b).
+/// Simulates one clock of a serial subtracter in each pixel of a vector. The function uses the equation a - b = not
+/// (not a + b).
 #[inline(always)]
 fn subtract<V: SimdVector>(a: V, b: V, borrow: &mut V) -> V {
     let ones = V::splat(-1);

@@ -62,8 +62,8 @@ impl BitSerial {
         Ok(())
     }
 
-    /// Returns the used bits of an expression of `bits` bits, and the operation on these bits. Fields are fields of the
-    /// selected context.
+    /// Returns the used bits of an expression of `bits` bits, and the operation on these bits. Addresses of fields are
+    /// relative to the selected context, the part of pixel memory that holds one region.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
         // A test of the sign uses only the last bit. A difference uses all bits, because it needs their borrow.
         let (taken, effect) = match *usage {

@@ -1,34 +1,34 @@
-//! Expression evaluator: trees of serial adders. In each clock, they deliver one bit of an expression's value to every
-//! pixel.
+//! Expression evaluator: trees of serial adders. In each clock, the trees deliver one bit of an expression's value to
+//! every pixel.
 //!
 //! A tree multiplies a coefficient by the index of each column (or row), which is a leaf of the tree. Level `l` of the
 //! tree delays the coefficient by `l` clocks. This level adds the delayed coefficient to the leaves whose index has bit
 //! `l` set. Coefficients enter with the least significant bit first.
 //!
 //! For a linear expression, every pixel adds the bit stream of its column to the bit stream of its row. For a quadratic
-//! expression, wider trees multiply by the squares of the indices. Each row also gets its own coefficient of x, and
-//! each pixel multiplies this coefficient by its column. This circuit is assumed: F89 publishes only the expression.
+//! expression, wider trees multiply by the squares of the indices. Each row also has its own coefficient of x, and each
+//! pixel multiplies this coefficient by its column. This circuit is assumed: F89 publishes only the expression.
 //!
 //! No data flows from the pixels back to the trees. The simulator therefore first computes all clocks of the trees.
-//! Then it computes all clocks of each vector of pixels, with the carries in registers. In vectors for trees, a lane
-//! holds 32 columns or rows. In vectors for pixels, a lane holds one row of a tile.
+//! Then the simulator computes all clocks of each vector of pixels, with the carries in registers. In vectors for
+//! trees, a lane holds 32 columns or rows. In vectors for pixels, a lane holds one row of a tile.
 
 use super::tile::{self, WIDTH};
 use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Quadratic};
 
-/// Number of bits of a column's index (0 to 127).
+/// Number of bits of the index (0 to 127) of a pixel column.
 const NUMBER_BITS: usize = 7;
-/// Number of bits of the square of a column's index.
+/// Number of bits of the square of a pixel column's index (0 to 127).
 const SQUARE_BITS: usize = 14;
 
-/// A set of leaves of a tree, as one bit for each of 128 columns or rows.
+/// A set of leaves of an adder tree, with one bit for each of 128 columns or rows.
 type Leaves = [u64; 2];
 
-/// For each bit `l`, the columns (or rows) whose index has this bit set.
+/// For each bit `l`, the columns (or rows) of pixels whose index has this bit set.
 const NUMBERS: [Leaves; NUMBER_BITS] = leaves(1);
-/// For each bit `l`, the columns (or rows) whose squared index has this bit set.
+/// For each bit `l`, the columns (or rows) of pixels whose squared index has this bit set.
 const SQUARES: [Leaves; SQUARE_BITS] = leaves(2);
 
 const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
@@ -47,7 +47,8 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
     out
 }
 
-/// Outputs of adjacent trees in one clock. Each word holds two lanes of a vector. Each bit belongs to one leaf.
+/// Output bits of adjacent adder trees in one clock. Each word holds two lanes of a vector. Each bit belongs to one
+/// leaf of a tree, which is a column or a row of pixels.
 type Streams = [u64; 8];
 
 /// Adjacent trees of serial adders. For each leaf, a tree multiplies a coefficient by the leaf's index and adds the
@@ -55,9 +56,9 @@ type Streams = [u64; 8];
 pub(super) struct Trees<V, const LEVELS: usize> {
     /// Low and high 32 bits of the coefficients. Each lane holds the coefficient that enters the lane's tree.
     coefficients: [V; 2],
-    /// For each level `l`, the leaves whose index has bit `l` set.
+    /// For each level `l` of a tree, the leaves whose index has bit `l` set.
     leaves: [V; LEVELS],
-    /// Delayed bits of the coefficients: level `l` uses the bit that entered `l` clocks ago.
+    /// Delayed bits of the coefficients. Level `l` of a tree uses the bit that entered `l` clocks ago.
     late: [V; LEVELS],
     carries: [V; LEVELS],
 }
@@ -69,7 +70,8 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self { coefficients, leaves, late: zeros, carries: zeros }
     }
 
-    /// Creates two trees of 128 leaves each, in the first eight lanes of a vector. Other lanes are unused.
+    /// Creates two trees of 128 leaves each, in the first eight lanes of a vector. Other lanes are unused. Each leaf
+    /// stands for a column or a row of pixels.
     #[inline(always)]
     fn of_pair(coefficients: [i64; 2], leaves: &[Leaves; LEVELS]) -> Self {
         let mut vectors = [V::splat(0); LEVELS];
@@ -79,7 +81,8 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Returns bit `t` of each leaf's sum: the stream plus the products. Callers must pass `t` = 0, 1, 2 and so on.
+    /// Returns bit `t` of the sum at each leaf: the bit stream plus the products of the tree. Callers must pass `t` =
+    /// 0, 1, 2 and so on.
     #[inline(always)]
     pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
         for l in (1..LEVELS).rev() {
@@ -93,26 +96,28 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
     }
 }
 
-/// Returns the low halves and the high halves of two numbers, each repeated in the four lanes of its tree.
+/// Splits two coefficients into their low and high 32 bits. Each half is repeated in the four lanes of the tree that
+/// multiplies this coefficient.
 #[inline(always)]
 fn in_lanes<V: SimdVector>([first, second]: [i64; 2]) -> [V; 2] {
     [low_halves_in_lanes([first, second]), low_halves_in_lanes([first >> 32, second >> 32])]
 }
 
-/// Returns the low halves of two numbers, each repeated in the four lanes of its tree.
+/// Returns the low 32 bits of two coefficients. Each value is repeated in the four lanes of the tree that multiplies
+/// this coefficient.
 #[inline(always)]
 fn low_halves_in_lanes<V: SimdVector>(numbers: [i64; 2]) -> V {
     let [first, second] = numbers.map(|number| (number as u32 as u64) << 32 | number as u32 as u64);
     V::load_words(&[first, first, second, second, 0, 0, 0, 0])
 }
 
-/// Returns bit `t` of a 64-bit number in each lane. `low` and `high` are the halves of these numbers.
+/// Returns, for each lane, bit `t` of a 64-bit number. `low` and `high` hold the halves of the numbers.
 #[inline(always)]
 fn bit_of<V: SimdVector>([low, high]: [V; 2], t: usize) -> V {
     if t < 32 { low.bit(t as u32) } else { high.bit(t as u32 - 32) }
 }
 
-/// Returns the lanes of a vector as words, followed by zeros.
+/// Returns the lanes of a vector as 64-bit words, followed by zeros.
 #[inline(always)]
 fn streams<V: SimdVector>(stream: V) -> Streams {
     let mut words = [0; 8];
@@ -120,7 +125,8 @@ fn streams<V: SimdVector>(stream: V) -> Streams {
     words
 }
 
-/// Position of a vector of pixels in a tile, and positions of its column bits and row bits in the streams.
+/// Position of a vector of pixels in a tile, and positions of the vector's column bits and row bits in the outputs of
+/// the adder trees ([`Streams`]).
 #[derive(Clone, Copy)]
 pub(super) struct VectorPlace {
     /// Index of the vector's first word in a tile's plane.
@@ -129,7 +135,8 @@ pub(super) struct VectorPlace {
     rows: StreamStart,
 }
 
-/// Position in [`Streams`] of the bit for the first column or row of a vector of pixels.
+/// Position, in the outputs of the adder trees ([`Streams`]), of the bit for the first column or row of a vector of
+/// pixels.
 #[derive(Clone, Copy)]
 struct StreamStart {
     word: usize,
@@ -137,7 +144,7 @@ struct StreamStart {
 }
 
 impl VectorPlace {
-    /// Returns the position of a tile's row in the streams of two trees that span the whole array.
+    /// Returns the position of a vector that begins at a row of a tile, for adder trees that span the whole array.
     #[inline(always)]
     pub(super) const fn in_array(tile: usize, row: usize) -> Self {
         let [left, top] = tile::origin(tile);
@@ -146,20 +153,20 @@ impl VectorPlace {
         Self { at: row / 2, columns, rows: StreamStart { word: 2 + y / 64, bit: y % 64 } }
     }
 
-    /// Returns the position of a tile's row in the streams of two trees that span one tile. The column bits are in the
-    /// low half of word `word`, and the row bits are in its high half.
+    /// Returns the position of a vector that begins at a row of a tile, for adder trees that span one tile. The column
+    /// bits are in the low half of word `word` of the tree outputs, and the row bits are in the high half.
     #[inline(always)]
     pub(super) const fn in_tile(word: usize, row: usize) -> Self {
         Self { at: row / 2, columns: StreamStart { word, bit: 0 }, rows: StreamStart { word, bit: WIDTH + row } }
     }
 
-    /// Returns the stream bits of the columns, repeated for all rows of the vector.
+    /// Returns the output bits of the trees for the columns of the vector, repeated for all rows of the vector.
     #[inline(always)]
     fn columns<V: SimdVector>(&self, streams: &Streams) -> V {
         V::splat(self.columns.bits_in(streams) as i32)
     }
 
-    /// Returns the stream bits of the rows, each repeated for all pixels of its row.
+    /// Returns the output bits of the trees for the rows of the vector, each repeated for all pixels of its row.
     #[inline(always)]
     fn rows<V: SimdVector>(&self, streams: &Streams) -> V {
         V::spread(self.rows.bits_in(streams))
@@ -173,37 +180,38 @@ impl StreamStart {
     }
 }
 
-/// Serial adders in the pixels. They combine the bit streams of the trees into the bits of an expression.
+/// Serial adders in the pixels. The adders combine the bit streams of the trees into the bits of an expression.
 pub(super) trait Evaluator {
-    /// State of the adders of one vector of pixels between two clocks.
+    /// State of the serial adders of one vector of pixels between two clocks.
     type Carries<V: SimdVector>;
 
-    /// Returns the carries before the first bit, which are zero.
+    /// Returns the carries of the adders before the first bit, which are zero.
     fn start<V: SimdVector>() -> Self::Carries<V>;
 
     /// Returns bit `t` of the expression for a vector of pixels. Callers must pass `t` = 0, 1, 2 and so on.
     fn bit<V: SimdVector>(&self, t: usize, place: VectorPlace, carries: &mut Self::Carries<V>) -> V;
 }
 
-/// An evaluator whose trees span the whole array.
+/// An evaluator whose adder trees span the whole array.
 pub(super) trait WholeTrees: Evaluator {
-    /// Coefficients of a linear or quadratic expression. The trees multiply them by the indices of columns and rows.
+    /// Coefficients of a linear or quadratic expression. The adder trees multiply the coefficients by the indices of
+    /// columns and rows.
     type Coefficients;
 
-    /// Runs the trees for the first `bits` bits of the expression.
+    /// Simulates the adder trees for the first `bits` bits of the expression.
     fn run_trees<V: SimdVector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
 }
 
-/// Column streams and row streams of a linear expression, one entry for each clock.
+/// Output bits of the column tree and the row tree for a linear expression, one entry for each clock.
 pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 
-/// Tree outputs of a quadratic expression, one entry for each clock.
+/// Outputs of the adder trees for a quadratic expression, one entry for each clock.
 pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
-/// Outputs of the trees of a quadratic expression in one clock.
+/// Outputs of the adder trees for a quadratic expression in one clock.
 #[derive(Clone, Copy, Default)]
 struct QuadraticBits {
-    /// The sum `xx x^2` for each column x, and the sum `one + y y + yy y^2` for each row y.
+    /// Bits of two sums: `xx x^2` for each column x, and `one + y y + yy y^2` for each row y.
     sums: Streams,
     /// The coefficient of x in each row: `x + xy y`. The coefficient is in the same lanes as the row's bits in `sums`.
     coefficients: Streams,
@@ -211,8 +219,8 @@ struct QuadraticBits {
 
 /// State of a pixel vector's adders for a quadratic expression, between two clocks.
 pub(super) struct QuadraticCarries<V> {
-    /// Bits of the coefficient of x, one for each level of the product. Level n has the coefficient's bit that arrived
-    /// n clocks ago.
+    /// Bits of the coefficient of x, one for each level of the product with the column's index. Level n has the bit of
+    /// the coefficient that arrived n clocks ago.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,
@@ -295,7 +303,7 @@ impl Evaluator for QuadraticStreams {
     }
 }
 
-/// Runs one clock of a serial adder in each pixel of a vector.
+/// Simulates one clock of a serial adder in each pixel of a vector.
 #[inline(always)]
 pub(super) fn full_add<V: SimdVector>(a: V, b: V, carry: &mut V) -> V {
     let half = a.xor(b);

@@ -64,7 +64,8 @@ pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane)
     }
 }
 
-/// Runs one clock of a serial adder in all pixels, or of a serial subtracter if `subtracts` is true.
+/// Simulates one clock of a serial adder in all pixels. If `subtracts` is true, simulates one clock of a serial
+/// subtracter instead.
 #[inline(always)]
 pub(super) fn step(subtracts: bool, a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     if subtracts { subtract(a, b, carry) } else { add(a, b, carry) }

@@ -22,25 +22,26 @@ use crate::isa::LINEAR_BITS;
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 
-/// Largest number of expressions in a run. The widest vector can hold the trees of this number of expressions.
+/// Largest number of expressions in a run of instructions. The widest vector can hold the adder trees of this number of
+/// expressions.
 pub(super) const EXPRESSIONS: usize = 8;
 
-/// Number of bits of a column's index within its tile (0 to 31).
+/// Number of bits of a pixel column's index within a tile. The index is 0 to 31.
 const LEVELS: usize = 5;
-/// For each bit `l` of the index, the columns (and rows) of a tile whose index has this bit set.
+/// For each bit `l` of the index, the pixel columns (and rows) of a tile whose index has this bit set.
 const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff00, 0xffff_0000];
 
 /// Consecutive instructions that each tile executes before the next tile begins.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InstructionRun {
     pub(super) steps: Vec<RunStep>,
-    /// Linear expressions of the run, with the array's upper left pixel as origin.
+    /// Linear expressions of the instruction run, with the array's upper left pixel as origin.
     pub(super) expressions: Vec<Linear>,
-    /// Number of words that the run takes in the list.
+    /// Number of words that the run of instructions takes in the list.
     pub(super) words: usize,
 }
 
-/// An instruction of a run.
+/// One instruction of a run. All instructions of a run are executed in one tile before the next tile begins.
 #[derive(Clone, Debug)]
 pub(super) struct RunStep {
     pub(super) input: BitOrigin,
@@ -50,13 +51,14 @@ pub(super) struct RunStep {
 /// Source of the bits that an instruction delivers to the pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
-    /// The expression of the run with this index.
+    /// The expression with this index among the expressions of the instruction run.
     Expression(usize),
     Constant(ConstantBits),
 }
 
 impl RunStep {
-    /// Returns the index of the expression whose sign disables pixels. Returns `None` for other kinds of instructions.
+    /// Returns the index of the expression whose sign disables pixels. Returns `None` if the instruction is of another
+    /// kind.
     #[inline(always)]
     const fn disables_by_sign_of(&self) -> Option<usize> {
         match (self.input, self.delivery.effect) {
@@ -66,7 +68,7 @@ impl RunStep {
     }
 }
 
-/// A kernel that executes a run in all tiles.
+/// A kernel that executes a run of instructions in all tiles.
 pub(super) struct RunTiles<'a> {
     pub(super) run: &'a InstructionRun,
     pub(super) tiles: &'a mut [Tile],
@@ -98,7 +100,8 @@ impl InstructionRun {
         self.words = 0;
     }
 
-    /// Returns the tiles in which the sign of an expression is known, for each expression whose sign disables pixels.
+    /// Returns, for each expression of the instruction run, the tiles in which all pixels have the same sign of the
+    /// expression. The result is empty for expressions that do not disable pixels by their sign.
     #[inline(always)]
     fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];
@@ -110,7 +113,7 @@ impl InstructionRun {
         signs
     }
 
-    /// Returns the tiles that the run's first instructions disable completely, as one bit for each tile.
+    /// Returns the tiles in which the first instructions of the run disable all pixels, as one bit for each tile.
     #[inline(always)]
     fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
         let mut disabled = 0;
@@ -158,8 +161,8 @@ impl InstructionRun {
 }
 
 impl Delivery {
-    /// Delivers bits to the vectors of a tile that contain enabled pixels. `word` is the index of the word of the
-    /// streams that is used.
+    /// Delivers the bits of an instruction to those vectors of a tile that contain enabled pixels. `word` selects the
+    /// expression's word in the outputs of the adder trees.
     #[inline(always)]
     fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {
@@ -170,7 +173,8 @@ impl Delivery {
     }
 }
 
-/// Sets of tiles in which the sign of an expression is known without serial arithmetic.
+/// Sets of tiles in which all pixels have the same sign of an expression. No serial arithmetic is needed to find these
+/// tiles.
 #[derive(Clone, Copy, Debug, Default)]
 struct Signs {
     /// Tiles in which the expression is negative at every pixel, as one bit for each tile.
@@ -180,8 +184,8 @@ struct Signs {
 }
 
 impl Signs {
-    /// Finds the signs from the values at the corners of each tile. If the expression overflows anywhere in the array,
-    /// no sign is known.
+    /// Finds the signs of an expression from the expression's values at the corners of each tile. If the expression
+    /// overflows anywhere in the array, no sign is known.
     #[inline(always)]
     fn from_corners<V: SimdVector>(e: &Linear) -> Self {
         if wraps(e) {
@@ -223,15 +227,17 @@ fn wraps(e: &Linear) -> bool {
     corners.iter().any(|corner| i32::try_from(*corner).is_err())
 }
 
-/// Outputs of the adder trees for one tile. For each clock, there is one word per expression of the run.
+/// Outputs of the adder trees for one tile. For each clock, there is one word for each expression of the instruction
+/// run.
 struct TileStreams {
     streams: LinearStreams,
-    /// Number of expressions whose trees have run.
+    /// Number of expressions whose adder trees were simulated so far.
     ready: usize,
 }
 
 impl TileStreams {
-    /// Runs the trees of the next expressions of the run. One call runs as many trees as fit in a vector.
+    /// Simulates the adder trees for the next expressions of the instruction run. One call simulates as many trees as
+    /// fit in a vector.
     #[inline(always)]
     fn run_trees<V: SimdVector>(&mut self, run: &InstructionRun, number: usize) {
         let [left, top] = tile::origin(number);

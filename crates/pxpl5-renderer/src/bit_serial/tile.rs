@@ -11,7 +11,7 @@ pub(super) const WIDTH: usize = 32;
 pub(super) const HEIGHT: usize = 16;
 /// Number of tiles side by side in the array.
 pub(super) const ACROSS: usize = REGION_SIZE as usize / WIDTH;
-/// Number of tiles in the array.
+/// Number of tiles into which the array is divided.
 pub(super) const TILES: usize = PIXELS / (WIDTH * HEIGHT);
 
 /// One bit of every pixel of a tile. The bit of pixel (x, y) is bit `x + 32 (y % 2)` of word `y / 2`.
@@ -26,7 +26,7 @@ pub(super) const FULL: TilePlane = [u64::MAX; HEIGHT / 2];
 pub(super) struct Tile {
     pub(super) memory: [TilePlane; MEMORY_BITS as usize],
     pub(super) enable: TilePlane,
-    /// Number of clocks in which bit planes of this tile have moved.
+    /// Number of clocks in which bits of this tile have moved.
     pub(super) clock: u64,
 }
 
@@ -42,20 +42,20 @@ impl Tile {
     /// Returns true if this tile must execute an instruction that changes only enabled pixels.
     ///
     /// In the reference mode, every tile executes such an instruction. In the skipping mode, only tiles with an enabled
-    /// pixel execute it.
+    /// pixel execute the instruction.
     #[inline(always)]
     pub(super) fn has_work(&self, skipping: bool) -> bool {
         !skipping || self.enabled()
     }
 }
 
-/// Returns true if any bit of the words is set.
+/// Returns true if any bit of `words` is set.
 #[inline(always)]
 pub(super) fn any(words: &[u64]) -> bool {
     words.iter().fold(0, |any, word| any | word) != 0
 }
 
-/// Returns the left column and the top row of a tile in the array.
+/// Returns the array's column at the left border of a tile, and the array's row at the top border.
 #[inline(always)]
 pub(super) const fn origin(tile: usize) -> [usize; 2] {
     [tile % ACROSS * WIDTH, tile / ACROSS * HEIGHT]
@@ -83,8 +83,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the place of row `y` of a tile in a plane of the array. The place is the index of a word, and the row's
-/// first bit in this word.
+/// Returns the position of row `y` of tile `number` in a plane of the array. The position is the index of a word, and
+/// the row's first bit in this word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

@@ -5,10 +5,11 @@ use crate::isa::{ArrayInstruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId};
 
-/// Selects the context and the screen position of the region for all following commands.
+/// Selects the region of all following commands: its screen position, and the context (part of pixel memory) that holds
+/// it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelectRegion {
-    /// Index of the context, less than the layout's number of contexts.
+    /// Index of the context (part of pixel memory for one region), less than the layout's number of contexts.
     pub context: u8,
     /// Screen x of the region's left column, in pixels.
     pub left: u16,
@@ -54,7 +55,7 @@ impl Clear {
     }
 }
 
-/// Copies the region's colour to a frame buffer.
+/// Copies the colours of a region to a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CopyRegion {
     /// Destination of the pixels: frame buffer, buffer, region and its grid, lines, and picture.

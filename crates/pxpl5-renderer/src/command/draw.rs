@@ -17,7 +17,7 @@ pub struct TriangleCommand {
     pub colour: [Linear; 3],
 }
 
-/// A triangle with interpolated normals. Its pixels are shaded at the end of the frame (Phong).
+/// A triangle with interpolated normals. The triangle's pixels are shaded at the end of the frame (Phong).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongTriangleCommand {
     /// Edge expressions. A pixel is inside if all three values are `>= 0`.
@@ -89,11 +89,12 @@ fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<A
 pub(crate) const TRIANGLE_WORDS: usize = CommandKind::Triangle.words() as usize;
 pub(crate) const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usize;
 
-/// Positions of the three edges' coefficients in an encoded triangle command, in words from its start.
+/// Positions of the coefficients of the three edges in an encoded triangle command, in words from the start of the
+/// command.
 pub(crate) const EDGES_AT: [usize; 3] = [2, 6, 10];
 pub(crate) const DEPTH_AT: usize = 14;
 pub(crate) const COMPONENTS_AT: [usize; 3] = [19, 23, 27];
-/// Position of the colour in an encoded Phong triangle command, in words from its start.
+/// Position of the colour in an encoded Phong triangle command, in words from the start of the command.
 pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 
 /// A fast encoder of triangle commands. The encoder does not build the program of each command, because a scene can
@@ -104,7 +105,7 @@ pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 #[derive(Clone, Debug)]
 pub struct TriangleEncoder([Word; TRIANGLE_WORDS]);
 
-/// A fast encoder of Phong triangle commands, like [`TriangleEncoder`].
+/// A fast encoder of Phong triangle commands, which copies a blank command like [`TriangleEncoder`].
 #[derive(Clone, Debug)]
 pub struct PhongTriangleEncoder([Word; PHONG_WORDS]);
 
@@ -151,7 +152,7 @@ fn blank<const N: usize>(program: &[ArrayInstruction]) -> [Word; N] {
     words.try_into().expect("every program of the kind has the kind's words")
 }
 
-/// Appends the words of a blank triangle with the given operands, and returns the appended words.
+/// Appends a copy of a blank triangle command, writes the given operands into the copy, and returns the appended words.
 #[inline(always)]
 fn operands<'a, const N: usize>(
     blank: &[Word; N],

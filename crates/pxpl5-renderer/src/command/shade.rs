@@ -25,7 +25,7 @@ pub const SPECULAR_SQUARINGS: u32 = 5;
 ///
 /// The command takes 3,790 clocks (95 us): the root takes 206 clocks, each quotient 374 clocks and the power 570
 /// clocks. For the real machine, a time of 100 to 200 us is assumed. A second light (938 clocks for each cosine) and a
-/// material for each pixel are not modelled. Both would also fit in this time.
+/// material for each pixel are not modelled. A second light and a material would also fit in this time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shade {
     /// Unit vector towards the light. The number 1024 stands for 1.0. Each component has 12 bits, two's complement. The
@@ -47,7 +47,7 @@ const COSINE_BITS: u8 = 10;
 
 /// Number of bits of scratch memory that the shading program needs.
 pub(super) const SHADE_BITS: u8 = 104;
-/// First bit of the square root, relative to the scratch memory.
+/// First bit of the field for the square root, relative to the start of the scratch memory.
 pub(super) const SHADE_ROOT: u8 = 72;
 
 /// Fields of pixel memory that the shading program uses.
@@ -101,8 +101,8 @@ impl Shade {
         Ok(out)
     }
 
-    /// Computes the brightness of the object's colour, in the low 8 bits of `f.diffuse`. Also computes the highlight,
-    /// in bits 10 to 18 of `f.c`.
+    /// Computes the brightness of the object's colour in the low 8 bits of `f.diffuse`, and the highlight in bits 10 to
+    /// 18 of `f.c`.
     fn intensities(&self, f: &ShadeFields, highlight: Operand, out: &mut Vec<ArrayInstruction>) {
         let sum = f.b.part(0, 19);
         let ambient = u32::from(self.ambient) << COSINE_BITS;
@@ -139,7 +139,8 @@ const fn multiply_constant(destination: Operand, source: Operand, factor: i32, f
     ArrayInstruction::MultiplyConstant { destination, source, factor, factor_bits }
 }
 
-/// Computes |N| in `f.root` from the sum of squares in `f.a`. The remainder of the root stays in `f.a`.
+/// Computes the length of the normal in `f.root` from the sum of squares in `f.a`. The remainder of the square root
+/// stays in `f.a`.
 fn length(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) {
     let [x, y, z] = f.normal;
     out.push(arithmetic(ArithmeticOp::Multiply, f.a, x, x));
@@ -163,8 +164,8 @@ fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Arra
     out.push(arithmetic(ArithmeticOp::Divide, cosine, positive, f.root));
 }
 
-/// Raises the cosine of the highlight to the power 32, and returns the field with the result. The squares go
-/// alternately to `f.a` and `f.b`.
+/// Raises the cosine of the highlight to the power 32, and returns the field with the result. Each step squares the
+/// value and stores the square in `f.a` or `f.b` alternately.
 fn power(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) -> Operand {
     let mut base = f.specular;
     for i in 0..SPECULAR_SQUARINGS {

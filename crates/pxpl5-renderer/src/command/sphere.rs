@@ -26,11 +26,11 @@ use pxpl5_wire::{Linear, Quadratic};
 pub struct SphereBody {
     /// Silhouette expression of 48 bits. A pixel is inside the sphere if the expression is `>= 0` at this pixel.
     pub silhouette: Quadratic,
-    /// Number of low bits of the silhouette that the root ignores, 0 to 24.
+    /// Number of low bits of the silhouette expression that the square root ignores, 0 to 24.
     pub root_shift: u8,
     /// Depth of the plane through the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction bits.
     pub depth: Linear,
-    /// Left shift of the root, in bits, before its subtraction from the depth: 0 to 20.
+    /// Left shift of the square root, in bits, before the subtraction of the root from the depth: 0 to 20.
     pub depth_shift: u8,
 }
 
@@ -47,9 +47,10 @@ pub struct SphereBody {
 /// places. The model therefore computes the root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereCommand {
-    /// Silhouette and depth.
+    /// Silhouette and depth of the sphere.
     pub body: SphereBody,
-    /// Linear part of red, green and blue, with [`COLOUR_FRACTION_BITS`] fraction bits.
+    /// Linear part of red, green and blue, with [`COLOUR_FRACTION_BITS`] fraction bits. A multiple of the square root
+    /// is added to this part.
     pub colour: [Linear; 3],
     /// Factor of the root for each component, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
     ///
@@ -65,7 +66,7 @@ pub struct SphereCommand {
 /// shading normalizes the normal. With perspective, x and y of the normal are approximated by linear expressions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongSphereCommand {
-    /// Silhouette and depth.
+    /// Silhouette and depth of the sphere.
     pub body: SphereBody,
     /// Expressions for x and y of the normal, with [`NORMAL_FRACTION_BITS`] fraction bits.
     pub normal: [Linear; 2],
@@ -73,20 +74,21 @@ pub struct PhongSphereCommand {
     pub colour: u32,
 }
 
-/// Number of root bits for which the operands of [`SphereBody`] are defined.
+/// Number of bits of a square root for which the operands of [`SphereBody`] are defined. Layouts with narrower roots
+/// use the upper bits of these operands.
 const ROOT_BITS: u8 = 12;
-/// Number of upper bits of the root that are multiplied by a colour's factor.
+/// Number of upper bits of the square root that are multiplied by the factor of a colour component.
 const COLOUR_ROOT_BITS: u8 = 8;
 const FACTOR_BITS: u8 = 10;
 
-/// Fields of the scratch memory that a sphere's program uses.
+/// Fields of the scratch memory that the program of a sphere command uses.
 #[derive(Clone, Copy)]
 pub(crate) struct SphereScratch {
     radicand: Operand,
     pub(crate) root: Operand,
     /// New depth. The depth occupies the bits of the radicand, which is no longer needed after the root.
     pub(crate) z: Operand,
-    /// Product of root and factor, 8 + 10 bits. The product also occupies the bits of the radicand.
+    /// Product of the root and a colour's factor, 8 + 10 bits. The product also occupies the bits of the radicand.
     product: Operand,
 }
 
@@ -111,7 +113,7 @@ impl SphereScratch {
         })
     }
 
-    /// Returns the number of bits by which the layout's root is narrower than 12 bits.
+    /// Returns the number of bits by which the layout's field for square roots is narrower than 12 bits.
     pub(crate) const fn short(&self) -> u8 {
         ROOT_BITS - self.root.width
     }
@@ -121,8 +123,8 @@ impl SphereScratch {
     }
 }
 
-/// Appends the instructions for silhouette, root and depth. The instructions disable pixels outside the sphere and
-/// pixels that are not nearer, and then store Z.
+/// Appends the instructions for silhouette, square root and depth. The instructions disable pixels outside the sphere
+/// and pixels that are not nearer, and then store Z.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
     // Test the sign of the silhouette, then evaluate the same expression again as radicand.

@@ -14,7 +14,7 @@ use pxpl5_wire::{Linear, Quadratic, Word};
 pub struct Random(SplitMix64);
 
 impl Random {
-    /// Creates a generator. Each seed gives a different sequence.
+    /// Creates a generator. Each seed gives a different sequence of numbers.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(SplitMix64::new(seed.wrapping_mul(0xd129_0d3b_3f4b_7ec5)))
@@ -41,8 +41,8 @@ impl Random {
         low + self.below((high - low) as u64) as i64
     }
 
-    /// Returns a list that mostly consists of commands of the layout, with some single instructions and, rarely,
-    /// invalid words.
+    /// Returns a random list of words. The list mostly consists of commands of the layout, with some single
+    /// instructions and, rarely, invalid words.
     pub fn list(&mut self, layout: &Layout) -> Vec<Word> {
         let mut words = Vec::new();
         let mut last = self.command(layout);
@@ -174,12 +174,13 @@ impl Random {
         }
     }
 
-    /// Returns a plane whose values on a screen have about `bits` bits.
+    /// Returns a random linear expression whose values on a screen have about `bits` bits.
     fn plane(&mut self, bits: u32) -> Linear {
         Linear { a: self.signed(bits - 9), b: self.signed(bits - 9), c: self.signed(bits) }
     }
 
-    /// Returns an ellipse around a random pixel. With a probability of 1/8, returns an arbitrary quadratic.
+    /// Returns the silhouette expression of an ellipse around a random pixel. With a probability of 1/8, returns an
+    /// arbitrary quadratic expression.
     fn silhouette(&mut self) -> Quadratic {
         if self.below(8) == 0 {
             let [xx, xy, yy, x, y, one] = std::array::from_fn(|_| (self.next() as i64) >> 20);
@@ -203,8 +204,8 @@ impl Random {
     }
 }
 
-/// Returns the same shape with other colours. The depths are equal to the depths of the old shape, so the depth test
-/// fails at every pixel that the old shape has drawn.
+/// Returns a command that draws the same shape with other colours. The depths are also the same, so the depth test
+/// fails at every pixel that `command` has drawn.
 fn repainted(command: Command) -> Command {
     match command {
         Command::Triangle(mut t) => {
@@ -323,7 +324,7 @@ mod tests {
         }
     }
 
-    /// Recognizes triangles by the sum of their three edge expressions, which is a constant.
+    /// The test recognizes a triangle by the sum of its three edge expressions, which is a constant.
     #[test]
     fn most_edges_are_those_of_a_triangle_of_any_size() {
         let mut random = Random::new(5);
@@ -342,8 +343,8 @@ mod tests {
         assert!((1..=5).all(|digits| sizes.get(&Some(digits)).copied().unwrap_or(0) > 30), "{sizes:?}");
     }
 
-    /// Computes the middle of each ellipse, where both slopes are 0. The value at the middle is the scale times the
-    /// radius squared.
+    /// The test computes the middle of each ellipse, where both slopes are 0. The value at the middle is the scale
+    /// times the radius squared.
     #[test]
     fn most_silhouettes_are_ellipses_around_a_pixel() {
         let mut random = Random::new(6);

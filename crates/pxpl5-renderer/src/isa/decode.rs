@@ -10,7 +10,7 @@ use pxpl5_wire::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position} ({word:#010x}): {kind}")]
 pub struct DecodeError {
-    /// Index in the list of the instruction's first word.
+    /// Index, in the list of words, of the first word of the instruction.
     pub position: usize,
     /// The first word of the instruction that cannot be decoded.
     pub word: Word,
@@ -49,10 +49,10 @@ pub enum DecodeErrorKind {
     /// of the same signedness.
     #[error("signedness of the operands does not fit")]
     Signedness,
-    /// The number of a backing store block is too large.
+    /// The number of a block of the backing store is 128 or more.
     #[error("backing store block {0}, expected less than {max}", max = BACKING_BLOCKS)]
     UnknownBlock(u8),
-    /// The lines, region grid or region of an output instruction are invalid.
+    /// The lines, the region grid or the region in an output instruction are invalid.
     #[error("the copy's target is no region of a frame")]
     BadTarget,
     /// The words are valid instructions, but differ from the program of the command that their first label states.
@@ -389,7 +389,8 @@ fn target(words: [Word; 8]) -> Result<CopyTarget, DecodeErrorKind> {
     if is_valid_target(&target) { Ok(target) } else { Err(DecodeErrorKind::BadTarget) }
 }
 
-/// Returns true if the region exists in its grid and fits the array and 16-bit coordinates.
+/// Returns true if the region of `target` exists in its grid, is not larger than the array, and has coordinates of at
+/// most 16 bits.
 fn is_valid_target(target: &CopyTarget) -> bool {
     let grid = &target.grid;
     let picture = 1..=1 << 16;

@@ -3,11 +3,13 @@
 /// A field of pixel memory, as encoded in an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Operand {
-    /// Address of the field's least significant bit, absolute or relative to the first bit of the selected context.
+    /// Address of the field's least significant bit. The address is absolute, or relative to the first bit of the
+    /// selected context (the part of pixel memory that holds one region).
     pub address: u8,
     /// Width in bits, 1 to 64.
     pub width: u8,
-    /// True if the address is relative to the first bit of the selected context.
+    /// True if the address is relative to the first bit of the selected context (the part of pixel memory that holds
+    /// one region).
     pub relative: bool,
     /// True if the field holds a two's complement number. Such a field is sign-extended.
     pub signed: bool,
@@ -17,7 +19,8 @@ const SIGNED: u32 = 1 << 15;
 const RELATIVE: u32 = 1 << 14;
 
 impl Operand {
-    /// Returns an unsigned field whose address is relative to the selected context.
+    /// Returns an unsigned field whose address is relative to the selected context (the part of pixel memory that holds
+    /// one region).
     #[must_use]
     pub const fn context(address: u8, width: u8) -> Self {
         Self { address, width, relative: true, signed: false }

@@ -6,7 +6,8 @@
 //! | [`SET_UP_CLOCKS`] | clocks an instruction | 4 | derived, see the constant |
 //! | [`CONTROL_CLOCKS`] | clocks | 2 | assumed (1 to 4) |
 //!
-//! The backing store works in parallel with the array. `RendererTiming::backing_block_clocks` has its time.
+//! The backing store works in parallel with the array. `RendererTiming::backing_block_clocks` is the time
+//! of a transfer.
 //!
 //! One bit of one field takes one clock. Assumed: each pixel has one full adder, whose operands and result move in the
 //! same clock. An expression arrives with its least significant bit first. A field of `w` bits therefore takes `s + w`

@@ -9,10 +9,11 @@ use pxpl5_wire::{LANES, Linear, LinearLanes};
 /// Number of columns of the array, and of its rows.
 const WIDTH: i32 = 128;
 const LAST: i64 = 127;
-/// Margin in pixels. The margin is greater than the rounding error of a quotient, but small enough to add few pixels.
+/// Margin in pixels around the computed bounds. The margin is greater than the rounding error of a quotient, but small
+/// enough to add few pixels.
 const MARGIN: f64 = 1e-3;
 
-/// The pixels `left .. right` of the rows `top .. bottom`.
+/// A rectangle of pixels: columns `left .. right` of rows `top .. bottom`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Area {
     pub(super) left: usize,
@@ -31,8 +32,8 @@ pub(super) struct Bounds {
     limits: Option<[RowLimit; 3]>,
 }
 
-/// Limit of x in row y because of one edge. With `from_left`, the limit is `x >= (b y + c) * scale`, else it is
-/// `x <= (b y + c) * scale`. All numbers except `scale` are exact.
+/// Limit that one edge sets on the columns x of row y. If `from_left` is true, the limit is `x >= (b y + c) * scale`,
+/// else it is `x <= (b y + c) * scale`. All numbers except `scale` are exact.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
     b: f64,
@@ -49,7 +50,7 @@ pub(super) struct Spans {
 }
 
 impl Bounds {
-    /// Returns the columns of [`LANES`] consecutive rows. The first row is `top`.
+    /// Returns the columns that the triangle can cover in [`LANES`] consecutive rows. The first row is `top`.
     #[inline(always)]
     pub(super) fn spans(&self, top: usize) -> Spans {
         let mut spans = Spans { left: [self.area.left as i32; LANES], right: [self.area.right as i32; LANES] };
@@ -142,10 +143,10 @@ pub(super) struct Boxes {
     straight: PerTriangle<bool>,
 }
 
-/// Distance from the array's first pixel, in pixels. Within this distance, edge values must fit 32 bits.
+/// Distance from the array's upper left pixel, in pixels. Within this distance, edge values must fit 32 bits.
 ///
-/// Each coefficient then has at most 22 bits, and the constant has 31 bits. Their products are therefore exact in the
-/// 53 bits of an `f64`.
+/// Each coefficient then has at most 22 bits, and the constant has 31 bits. The products of these numbers are therefore
+/// exact in the 53 bits of an `f64`.
 const REACH: f64 = 512.0;
 
 impl Boxes {
@@ -228,7 +229,8 @@ fn doubles(v: &PerTriangle<i32>) -> PerTriangle<f64> {
     out
 }
 
-/// Returns the first and last pixel between `low` and `high`, for each triangle.
+/// Returns the first and the last pixel between `low` and `high`, for each triangle. The interval is widened by
+/// [`MARGIN`] at both ends.
 #[inline(always)]
 fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
@@ -278,8 +280,8 @@ mod tests {
         Linear { a: random.signed(12), b: random.signed(12), c: random.signed(20) }
     }
 
-    /// Returns an edge with coefficients of any size or zero. Constants can be extreme, so many edges overflow in the
-    /// array.
+    /// Returns an edge expression with random coefficients of any size or zero. Constants can be extreme, so many of
+    /// these expressions overflow in the array.
     fn any_edge(random: &mut Random) -> Linear {
         let [a, b, c] = [(); 3].map(|()| {
             let bits = 1 + random.below(32) as u32;
@@ -341,7 +343,7 @@ mod tests {
         (area != 0).then(|| (corners, [edge(p, q), edge(q, r), edge(r, p)]))
     }
 
-    /// Uses integer corners and slopes, so that no row ends within the margin around a pixel.
+    /// The test uses integer corners and slopes, so that no row ends within the margin around a pixel.
     #[test]
     fn bounds_end_where_the_triangle_does() {
         let mut random = Random::new(6);

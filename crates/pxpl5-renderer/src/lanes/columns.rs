@@ -11,7 +11,7 @@ use crate::layout::Layout;
 #[repr(align(64))]
 pub(super) struct Values(pub(super) [u32; PIXELS]);
 
-/// A column, which holds the bits `first .. first + width` of all pixels.
+/// A column: an array with one word for each pixel. The words hold the bits `first .. first + width` of pixel memory.
 #[derive(Clone, Debug)]
 struct FieldColumn {
     first: usize,
@@ -19,16 +19,17 @@ struct FieldColumn {
     values: Box<Values>,
 }
 
-/// All 208 bits of pixel memory, divided into columns at the first and last bits of the layout's fields.
+/// All 208 bits of pixel memory as columns (arrays with one word for each pixel). A column begins at every bit at which
+/// a field of the layout begins or ends.
 #[derive(Clone, Debug)]
 pub(super) struct PixelColumns {
     columns: Vec<FieldColumn>,
-    /// For each bit of pixel memory, the index of the column that holds the bit.
+    /// For each bit of pixel memory, the index of the column (array of words) that holds the bit.
     column_of: [u8; MEMORY_BITS as usize],
 }
 
-/// The part of a field that lies in one column. The part begins at bit `low` of the column and at bit `at` of the
-/// field, and has `width` bits.
+/// The part of a field that lies in one column (array of words). The part begins at bit `low` of the column and at bit
+/// `at` of the field, and has `width` bits.
 #[derive(Clone, Copy, Debug)]
 struct FieldPiece {
     column: usize,
@@ -47,8 +48,8 @@ impl PixelColumns {
         Self { columns, column_of }
     }
 
-    /// Returns the index of the column that holds exactly the given bits, or `None` if no column holds exactly these
-    /// bits.
+    /// Returns the index of the column (array of words) that holds exactly the given bits, or `None` if no column holds
+    /// exactly these bits.
     pub(super) fn find(&self, first: usize, width: usize) -> Option<usize> {
         let index = usize::from(*self.column_of.get(first)?);
         let column = &self.columns[index];
@@ -63,7 +64,7 @@ impl PixelColumns {
         &mut self.columns[index].values
     }
 
-    /// Returns several columns for modification, or `None` if two indices are equal.
+    /// Returns several columns (arrays of words) for modification, or `None` if two indices are equal.
     pub(super) fn many_mut<const N: usize>(&mut self, indices: [usize; N]) -> Option<[&mut Values; N]> {
         let columns = self.columns.get_disjoint_mut(indices).ok()?;
         Some(columns.map(|column| &mut *column.values))
@@ -148,8 +149,8 @@ fn column(first: usize, end: usize) -> FieldColumn {
     FieldColumn { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
 }
 
-/// Returns the first bits of all columns. A column begins at every bit at which a field of the layout begins or ends.
-/// Longer columns are cut into columns of at most 32 bits.
+/// Returns the first bit of each column (array of words). A column begins at every bit at which a field of the layout
+/// begins or ends. Longer columns are cut into columns of at most 32 bits.
 fn cuts(layout: &Layout) -> Vec<usize> {
     let mut cuts = vec![0, MEMORY_BITS as usize];
     // First and last bits of the layout's fields.
@@ -190,7 +191,7 @@ fn split_wide(cuts: &[usize]) -> Vec<usize> {
     out
 }
 
-/// Indices of the columns that hold the fields of the selected context.
+/// Indices of the columns (arrays of words) that hold the fields of the selected context (region in pixel memory).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContextColumns {
     /// First bit of the context in pixel memory.

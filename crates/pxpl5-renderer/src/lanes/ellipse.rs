@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-9;
 /// pixel.
 pub(super) struct Ellipse {
     rows: Range<usize>,
-    /// The quadratic that limits the columns of each row. `None` if no row is limited.
+    /// The quadratic expression that limits the columns of each row. `None` if no row is limited.
     quadratic: Option<Quadratic>,
 }
 
@@ -59,8 +59,8 @@ fn stays_in_48_bits(q: &Quadratic) -> bool {
     (xx + xy + yy) * last * last + (x + y) * last + one < (1_u64 << 46) as f64
 }
 
-/// Returns the integers in the array between the zeros of `a t^2 + b t + c`, with a margin. Unless `a < 0`, returns all
-/// integers in the array.
+/// Returns the indices t of the array's columns at which `a t^2 + b t + c` can be positive. These are the integers
+/// between the zeros, with a margin. Unless `a < 0`, the function returns all columns of the array.
 #[inline(always)]
 fn positive(a: f64, b: f64, c: f64) -> Range<usize> {
     if a >= 0.0 {
@@ -118,7 +118,7 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Uses coefficients of any size, so that many values in the array exceed 48 bits and wrap.
+    /// The test uses coefficients of any size, so that many values in the array exceed 48 bits and wrap.
     #[test]
     fn quadratics_that_wrap_leave_no_pixel_out() {
         let mut random = Random::new(12);
@@ -142,8 +142,8 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Uses coefficients whose squares are rounded. At a circle of a single pixel, or at the last row of a circle, the
-    /// difference of the squares is small. Rounding can cancel this difference.
+    /// The test uses coefficients whose squares are rounded. At a circle of a single pixel, or at the last row of a
+    /// circle, the difference of the squares is small. Rounding can cancel this difference.
     #[test]
     fn small_circles_reach_their_last_row_however_numbers_round() {
         let mut random = Random::new(13);
@@ -161,7 +161,7 @@ mod tests {
         }
     }
 
-    /// Uses small integers, so that no row ends within the margin around a pixel.
+    /// The test uses small integers, so that no row ends within the margin around a pixel.
     #[test]
     fn columns_end_where_the_ellipse_does() {
         let mut random = Random::new(10);

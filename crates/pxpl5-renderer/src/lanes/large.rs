@@ -1,5 +1,5 @@
-//! Fast execution of spheres and shading. Each of these commands draws many pixels. In comparison, the decoding of all
-//! its words takes little time.
+//! Fast execution of spheres and shading. Each of these commands draws many pixels, so the decoding of all its words
+//! takes only a small part of the time.
 
 use super::Lanes;
 use super::columns::ContextColumns;
@@ -12,7 +12,7 @@ use crate::command::{
 };
 use pxpl5_wire::Word;
 
-/// Columns and shifts with which a sphere is drawn in this layout.
+/// Columns (arrays of words) and bit shifts with which a sphere is drawn in this layout.
 struct SpherePlace {
     root: usize,
     temporary: usize,
@@ -45,9 +45,9 @@ impl Lanes {
         Some(used)
     }
 
-    /// Returns the columns for a sphere, or `None` if depth and radicand have different widths.
+    /// Returns the columns (arrays of words) for a sphere, or `None` if depth and radicand have different widths.
     ///
-    /// With different widths, the program would leave a mixture of depth and radicand in the scratch.
+    /// With different widths, the program would leave a mixture of depth and radicand in the scratch memory.
     fn sphere_place(&self) -> Option<SpherePlace> {
         let scratch = SphereScratch::in_layout(&self.layout).ok()?;
         let root_bits = scratch.root.width;
@@ -109,8 +109,8 @@ impl Lanes {
         Some(())
     }
 
-    /// Stores the coefficients for later reuse. Returns the sphere with the array's upper left pixel as origin, and
-    /// with shifts for this layout.
+    /// Stores the coefficients of a sphere, so that a later instruction can reuse them. Returns the sphere with the
+    /// array's upper left pixel as origin, and with shifts for this layout.
     fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);
         SphereBody {

@@ -22,7 +22,7 @@ impl<V: SimdVector> Walk<V> {
     }
 
     /// Returns the values at the pixels of a vector with groups of [four](crate::simd::FOUR) pixels. The first pixel
-    /// has the value `first`.
+    /// has the value `first`. The values grow by `a` for each column and by `b` for each row.
     ///
     /// The increase to the next vector is 0, because such vectors do not advance along a row.
     #[inline(always)]
@@ -30,7 +30,7 @@ impl<V: SimdVector> Walk<V> {
         Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
     }
 
-    /// Returns the values for a vector some rows below, where all values are greater by `b`.
+    /// Returns the values for a vector some rows below this vector. All values of the lower vector are greater by `b`.
     #[inline(always)]
     pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }

@@ -1,7 +1,7 @@
 //! Fast shading, row by row.
 //!
-//! The code follows the program of [`crate::Shade`] instruction by instruction. The scratch fields therefore also have
-//! the same values at the end.
+//! The code follows the program of [`crate::Shade`] instruction by instruction. The scratch fields therefore have the
+//! same values at the end as after the program.
 
 use super::columns::Values;
 use super::roots::{divide_10, square_root_24};

@@ -12,14 +12,15 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS
 
 const WIDTH: usize = 128;
 
-/// A sphere to draw. Its expressions have the array's upper left pixel as origin.
+/// A sphere to draw. The sphere's expressions have the array's upper left pixel as origin.
 pub(super) struct DrawSphere<'a, P> {
     /// Silhouette and depth of the sphere. The shifts match the layout's width of roots.
     pub(super) body: SphereBody,
     pub(super) root_bits: u8,
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
-    /// Scratch field of the roots. At the end, it must hold the same values as after the command's program.
+    /// Scratch field of the square roots. At the end, the field must hold the same values as after the command's
+    /// program.
     pub(super) root: &'a mut Values,
     pub(super) temporary: &'a mut Values,
     pub(super) paint: P,
@@ -31,8 +32,8 @@ pub(super) struct DrawSphere<'a, P> {
 pub(super) trait PaintSphere {
     /// Stores values in the pixels of row `y`, from column `left` on, for which `pass` is all ones.
     ///
-    /// At the start, `temporary` holds the new depths. At the end, it holds the values that the command's program
-    /// leaves in this field.
+    /// At the start, `temporary` holds the new depths. At the end, `temporary` holds the values that the command's
+    /// program leaves in this field.
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]);
 }
 
@@ -79,8 +80,8 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         }
     }
 
-    /// Computes a mask of the pixels inside the silhouette, and the square root of the silhouette's used bits at each
-    /// pixel.
+    /// Computes a mask of the pixels inside the silhouette. Also computes, for each pixel, the square root of the used
+    /// bits of the silhouette expression.
     #[inline(always)]
     fn roots(&self, y: usize, left: usize, inside: &mut [u32], roots: &mut [u32]) {
         let (x, one) = along_row(&self.body.silhouette, y);
@@ -106,7 +107,7 @@ fn blend(old: &mut [u32], new: &[u32], mask: &[u32]) {
     }
 }
 
-/// Interpolated colour: the sum of a plane and a multiple of the root.
+/// Painter of interpolated colours. The colour is the sum of a plane and a multiple of the square root.
 pub(super) struct PaintGouraudSphere<'a> {
     pub(super) components: [Linear; 3],
     pub(super) factors: [i16; 3],
@@ -143,7 +144,8 @@ impl PaintSphere for PaintGouraudSphere<'_> {
     }
 }
 
-/// Interpolated normals from two planes and the root, and the object's colour.
+/// Painter of the object's colour and interpolated normals. Two planes give x and y of the normal, and the square root
+/// gives z.
 pub(super) struct PaintPhongSphere<'a> {
     pub(super) components: [Linear; 2],
     pub(super) root_bits: u8,

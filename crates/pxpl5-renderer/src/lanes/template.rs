@@ -27,7 +27,8 @@ impl<const N: usize> Template<N> {
         Some(Self { words: words.try_into().ok()?, fixed, cost: CommandCost::for_command(kind, layout)? })
     }
 
-    /// Returns the command at the start of `words`, and the words after it. Returns `None` if the words do not match.
+    /// Returns the command at the start of `words`, and the words after the command. Returns `None` if the words do not
+    /// match.
     #[inline(always)]
     pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
         words.split_first_chunk::<N>().filter(|(command, _)| self.fits(command))
@@ -44,7 +45,7 @@ impl<const N: usize> Template<N> {
     }
 }
 
-/// Templates and clocks of all commands that are executed as a whole.
+/// Templates and clocks of all commands that the array executes as a whole instead of instruction by instruction.
 #[derive(Clone, Debug)]
 pub(super) struct Templates {
     pub(super) clear: Option<Template<CLEAR_WORDS>>,
@@ -55,7 +56,7 @@ pub(super) struct Templates {
 
 const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
 
-/// Numbers of instructions and clocks by which a command increases [`crate::Executed`].
+/// Numbers of instructions and clocks that a command adds to [`crate::Executed`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandCost {
     pub(super) instructions: u32,
@@ -89,7 +90,7 @@ impl Templates {
 }
 
 /// Returns true if the next instruction is *enable all*, with any label. In this case, no instruction reads the current
-/// Enable.
+/// values of the Enable register.
 pub(super) fn next_enables_all(next: Option<&Word>) -> bool {
     const LABEL: Word = 0xff << 16;
     next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))

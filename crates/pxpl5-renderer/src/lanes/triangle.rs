@@ -17,7 +17,7 @@ const WIDTH: usize = 128;
 /// A linear expression that can be evaluated for a vector of pixels at any place in the array.
 #[derive(Clone, Copy)]
 struct Slope<V> {
-    /// Values at the first pixels of the array's top row, one for each lane.
+    /// Values of the expression at the first pixels of the array's top row, one for each lane.
     begin: V,
     step: V,
     a: i32,
@@ -25,7 +25,8 @@ struct Slope<V> {
 }
 
 impl<V: SimdVector> Slope<V> {
-    /// Prepares an expression. `left` and `top` are the picture coordinates of the array's upper left pixel.
+    /// Prepares an expression for evaluation at any place in the array. `left` and `top` are the picture coordinates of
+    /// the array's upper left pixel.
     #[inline(always)]
     fn over(e: &Linear, [left, top]: [i32; 2]) -> Self {
         let Walk { value: begin, step } = Walk::start(e, left, top);
@@ -39,7 +40,8 @@ impl<V: SimdVector> Slope<V> {
     }
 }
 
-/// The expressions of a triangle that is wider than one vector. Its rows can begin at different columns.
+/// The expressions of a triangle that is wider than one vector. The rows of the triangle can begin at different
+/// columns.
 struct WideTriangle<V> {
     edges: [Slope<V>; 3],
     depth: Slope<V>,
@@ -60,12 +62,12 @@ pub(super) struct DrawBatch<'a, P> {
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Access to the depth, components and colour of a triangle. These values are read only if needed. Expressions refer to
-/// the picture's upper left pixel.
+/// Access to the depth, components and colour of a triangle. These values are read only if needed. The origin of the
+/// expressions is the picture's upper left pixel.
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
-    /// Returns the object's colour. For a triangle with interpolated colour, the result has no meaning.
+    /// Returns the colour of the triangle's object. For a triangle with interpolated colour, the result has no meaning.
     fn colour(&self) -> Word;
 }
 
@@ -88,7 +90,7 @@ impl<const N: usize> Surface for &[Word; N] {
     }
 }
 
-/// The surface of triangle `i` of a batch.
+/// Depth, components and colour of triangle `i` of a batch.
 struct BatchSurface<'a> {
     batch: &'a TriangleBatch<'a>,
     i: usize,
@@ -114,10 +116,10 @@ impl Surface for BatchSurface<'_> {
 
 /// A triangle that is being drawn.
 struct CurrentTriangle<S> {
-    /// Edge expressions relative to the array's upper left pixel.
+    /// Edge expressions of the triangle, relative to the array's upper left pixel.
     edges: [Linear; 3],
     surface: S,
-    /// True if a later command reads the values of Enable after this triangle.
+    /// True if a later command reads the values of the Enable register after this triangle.
     keep: bool,
 }
 
@@ -212,8 +214,8 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         }
     }
 
-    /// Returns the values of an expression at pixel (x, y) of the array. The expression refers to the picture's upper
-    /// left pixel.
+    /// Returns the values of an expression for a vector that begins at pixel (x, y) of the array. The origin of the
+    /// expression is the picture's upper left pixel.
     #[inline(always)]
     fn walk<V: SimdVector>(&self, e: &Linear, x: usize, y: usize) -> Walk<V> {
         let [left, top] = self.origin;
@@ -311,8 +313,8 @@ fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     }
 }
 
-/// Returns a first column from which one vector covers all columns. If possible, the column is a multiple of the
-/// vector's lanes. Returns `None` if one vector is too short.
+/// Returns a first column from which one vector covers the columns `left` to `right`. If possible, the column is a
+/// multiple of the vector's lanes. Returns `None` if one vector is too short.
 #[inline(always)]
 fn one_vector(left: usize, right: usize, lanes: usize) -> Option<usize> {
     let aligned = left / lanes * lanes;
@@ -326,8 +328,8 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
-/// Returns the start values of three expressions. The three calls are written out, because the compiler would not use
-/// the vector unit in a closure.
+/// Returns the values of three expressions for a vector that begins at pixel (x, y) of the array. The three calls are
+/// written out, because the compiler would not use the vector unit in a closure.
 #[inline(always)]
 fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
     let x = x as i32;
@@ -341,7 +343,7 @@ fn blend<V: SimdVector, S: Shape>(column: &mut Values, at: usize, mask: V::Mask,
     S::store(new, mask, old, column, at);
 }
 
-/// Stores interpolated colours as 0x00RRGGBB.
+/// Painter that stores interpolated colours as 0x00RRGGBB.
 pub(super) struct PaintGouraud<'a> {
     pub(super) colour: &'a mut Values,
 }
@@ -360,7 +362,7 @@ impl PaintTriangle for PaintGouraud<'_> {
     }
 }
 
-/// Stores interpolated normals and the object's colour.
+/// Painter that stores interpolated normals and the object's colour.
 pub(super) struct PaintPhong<'a> {
     pub(super) normal: [&'a mut Values; 3],
     pub(super) constant: u32,

@@ -25,8 +25,8 @@ pub(super) fn arithmetic(op: ArithmeticOp, a: u64, b: u64, signed: bool) -> u64 
     }
 }
 
-/// Returns true if a < b. Both are compared as two's complement numbers if `signed` is true, otherwise as unsigned
-/// numbers.
+/// Returns true if a < b. Both numbers are compared as two's complement numbers if `signed` is true, otherwise as
+/// unsigned numbers.
 pub(super) const fn less(a: u64, b: u64, signed: bool) -> bool {
     if signed { (a as i64) < b as i64 } else { a < b }
 }
@@ -59,7 +59,7 @@ pub(super) const fn shift_right(value: u64, by: u8, signed: bool) -> u64 {
     if signed { (value as i64 >> by) as u64 } else { value >> by }
 }
 
-/// Sign-extends the low `width` bits to 64 bits if `signed` is true. Otherwise zero-extends them.
+/// Sign-extends the low `width` bits of `value` to 64 bits if `signed` is true. Otherwise zero-extends these bits.
 pub(super) const fn extend(value: u64, width: u32, signed: bool) -> u64 {
     let unused = 64 - width;
     if signed { ((value << unused) as i64 >> unused) as u64 } else { value << unused >> unused }

@@ -33,7 +33,8 @@ impl Lanes {
         Some(commands * kind.words() as usize)
     }
 
-    /// Returns the columns of the selected context. The result is cached until another context is selected.
+    /// Returns the columns (arrays of words) that hold the fields of the selected context, which is a region in pixel
+    /// memory. The result is cached until another context is selected.
     #[inline]
     fn context_columns(&mut self) -> Option<ContextColumns> {
         if self.selected.is_none_or(|known| known.base != self.controller.base) {
@@ -52,8 +53,8 @@ impl Lanes {
         })
     }
 
-    /// Returns the columns that hold x, y and z of the selected context's normals. Returns `None` if the layout has no
-    /// normals.
+    /// Returns the columns (arrays of words) that hold x, y and z of the normals in the selected context, which is a
+    /// region in pixel memory. Returns `None` if the layout has no normals.
     fn normal_columns(&self) -> Option<[usize; 3]> {
         let x = self.column(self.layout.normal(0)?)?;
         let y = self.column(self.layout.normal(1)?)?;
@@ -61,14 +62,15 @@ impl Lanes {
         Some([x, y, z])
     }
 
-    /// Returns the index of the column that holds exactly this field, or `None` if no column holds exactly this field.
+    /// Returns the index of the column (array of words) that holds exactly this field, or `None` if no column holds
+    /// exactly this field.
     pub(super) fn column(&self, operand: Operand) -> Option<usize> {
         let FieldBits { first, width, .. } = self.controller.bits(operand).ok()?;
         self.columns.find(first, width)
     }
 
-    /// Executes a clear. The function reads the depth from the words, because words can also clear Z to a depth that
-    /// [`crate::Clear`] does not use.
+    /// Executes a clear command. The function reads the depth from the words of the command, because words can also
+    /// clear Z to a depth that [`crate::Clear`] does not use.
     fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.clear.as_ref()?;
         let (&[_, _, colour, _, depth], behind) = template.split(words)?;
@@ -145,8 +147,8 @@ impl Lanes {
     }
 }
 
-/// Returns the word position of the last coefficients in the last of some commands. Returns `None` if there are no
-/// commands.
+/// Returns the index of the word at which the last coefficients begin, in a sequence of commands with `words` words
+/// each. The coefficients belong to the last command. Returns `None` if there are no commands.
 fn last(commands: usize, words: usize) -> Option<usize> {
     Some(commands.checked_sub(1)? * words + COMPONENTS_AT[2])
 }

@@ -6,7 +6,7 @@
 use super::{FOUR, ROW, SimdVector};
 use std::arch::wasm32::*;
 
-/// Eight lanes. The first of the two vectors holds the first four lanes.
+/// Eight lanes of 32 bits. The first of the two vectors holds the first four lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Simd128([v128; 2]);
 

@@ -1,4 +1,5 @@
-//! Pipelines that draw six faces around the head, for a display that chooses the texels at scan-out.
+//! Pipelines that draw the six faces of a cube around the viewer's head, for a display that chooses the texels at
+//! scan-out.
 //!
 //! ```text
 //!   policy (plan, objects, cells) --requests--> pipeline: host and firmware, or ideal faces --swaps--> history

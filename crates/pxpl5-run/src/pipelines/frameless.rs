@@ -10,9 +10,10 @@ use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
 use pphigs::TransformCost;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, ConfigError, Machine, MachineConfig, Record};
+use pxpl5_machine::{Arrival, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -20,8 +21,8 @@ use tracking::view::RandomOrder;
 
 /// The pipeline of frameless rendering, which draws blocks of the frame in a random order, each block once per pass.
 ///
-/// Each batch of blocks uses the newest view and is shown at once. A *pass* draws every block once. The papers update
-/// single pixels, but a message with a single pixel would take 17 words on the ring.
+/// Each batch of blocks uses the newest view and is shown immediately, without a swap. A *pass* draws every block once.
+/// The papers update single pixels, but a message with a single pixel would take 17 words on the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frameless {
     /// Width and height of a block, 4 to 128 pixels.
@@ -73,8 +74,8 @@ impl Frameless {
         RegionGrid { region_width: self.block, region_height: self.block, ..RegionGrid::FRAME }
     }
 
-    fn order(&self) -> Result<BlockOrder, ConfigError> {
-        let order = RandomOrder::new(self.blocks(), self.seed).map_err(|e| ConfigError::Board(e.to_string()))?;
+    fn order(&self) -> Result<BlockOrder, SettingError> {
+        let order = RandomOrder::new(self.blocks(), self.seed)?;
         Ok(BlockOrder::new(move |step| RegionId(order.pixel(step) as u16)))
     }
 }
@@ -85,8 +86,8 @@ impl Default for Frameless {
     }
 }
 
-/// Smallest number of blocks in a batch (assumed). With fewer blocks, the master's 24 us per order would limit the
-/// rate.
+/// Smallest number of blocks in a batch (assumed). With fewer blocks, the master would limit the rate, because each of
+/// its orders to a slave takes 24 us.
 ///
 /// With more blocks than [`MOST_BATCH`], a view would be in use for too long (assumed).
 const LEAST_BATCH: u64 = 4;
@@ -132,10 +133,9 @@ impl Pipeline for Frameless {
         None
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         if !(4..=128).contains(&self.block) {
-            let what = "block of frameless rendering, pixels".to_owned();
-            return Err(ConfigError::Value { what, expected: (4, 128), found: u64::from(self.block) });
+            return Err(SettingError::limits("block of frameless rendering, pixels", (4, 128), self.block));
         }
         let master = machine.record().ports().gps[0];
         let runs_code = machine.processor(master, Priority::Foreground).runs_code();
@@ -153,7 +153,8 @@ impl Pipeline for Frameless {
 }
 
 impl PictureRules for Frameless {
-    /// Returns the updates. The last block of an update defines the times of the whole update.
+    /// Returns the updates, each of which draws one batch of blocks. The last block of an update defines the times of
+    /// the whole update.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
@@ -195,7 +196,7 @@ impl PictureRules for Frameless {
         "no picture is ever due: each block is shown when it arrives, and there are no frames"
     }
 
-    /// Returns the number of updates in a pass, because a pass draws a whole picture.
+    /// Returns the number of updates (batches of blocks) in a pass, because a pass draws a whole picture.
     fn updates_per_picture(&self, record: &Record) -> f64 {
         f64::from(self.blocks()) / f64::from(record.observation().most_regions_of_a_picture().max(1))
     }

@@ -9,9 +9,10 @@ use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, ho
 use pphigs::{Share, TransformCost};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, NamedTable, Record};
+use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::Aim;
 use pxpl5_wire::{CopyTarget, FieldParity, PictureNumber, RegionGrid, RegionId, ViewNumber};
 use std::collections::BTreeMap;
@@ -25,7 +26,8 @@ pub use jitp::{Interpolation, Viewpoint};
 pub struct Jitp {
     /// The instants for which the parts of a picture are computed.
     pub viewpoint: Viewpoint,
-    /// True if strips reach the frame buffer just before the display's beam. False if strips arrive one field earlier.
+    /// True if strips arrive at the frame buffer just before the display's beam scans them. False if strips arrive one
+    /// field earlier.
     pub racing: bool,
     /// Number of lines in a strip, 1 to 128.
     pub strip_rows: u32,
@@ -52,7 +54,7 @@ impl Jitp {
         viewpoints.iter().flat_map(|v| [false, true].map(|racing| Self::new(*v, racing))).collect()
     }
 
-    fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, ConfigError> {
+    fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, SettingError> {
         let schedule =
             DrawingSchedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
         config(self.name(), record, schedule, self.layout(), pixels)
@@ -71,7 +73,7 @@ pub(super) fn config(
     schedule: DrawingSchedule,
     layout: Layout,
     pixels: bool,
-) -> Result<JitpConfig, ConfigError> {
+) -> Result<JitpConfig, SettingError> {
     // The firmware needs the beam times of an interlaced display.
     let ports = record.ports();
     let display = ntsc(record, pipeline)?;
@@ -88,7 +90,7 @@ pub(super) fn config(
         pixels,
         timing: record.config().firmware_table().copied().unwrap_or(JitpTiming::PAPERS),
     };
-    config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
+    config.check()?;
     Ok(config)
 }
 
@@ -136,8 +138,8 @@ fn due(video: &Video, target: &CopyTarget) -> Time {
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions: the number before the field's end, the number before the display's beam, and the time
-/// of the middle strip.
+/// Arrivals of a field's regions. Two numbers count the regions that arrived before the field's end, and before the
+/// beam reached them. The time is the arrival time of the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,
@@ -179,7 +181,7 @@ impl Pipeline for Jitp {
         None
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let config = JitpConfig { aim: setup.aim, ..self.config(machine.record(), setup.pixels)? };
         load(machine, setup, &config);
         Ok(())

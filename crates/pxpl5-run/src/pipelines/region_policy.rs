@@ -10,8 +10,9 @@ use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use pphigs::{DisplayList, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Fault, Gp, Priority, Stage};
-use pxpl5_machine::{ConfigError, Machine, Ports, Record};
+use pxpl5_machine::{Machine, Ports, Record};
 use pxpl5_renderer::Layout;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{
     Body, CopyContent, CopyOrder, CopyPath, CopyTarget, Lines, NodeId, PictureNumber, RegionId, ViewNumber,
@@ -19,7 +20,6 @@ use pxpl5_wire::{
 };
 use std::fmt::Debug;
 use std::sync::Arc;
-use thiserror::Error;
 
 /// A frame after TRANSFORM, as a policy receives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,53 +72,29 @@ pub trait RegionPolicy: Debug + Send + Sync {
     fn assign(&self, frame: &PolicyFrame) -> Option<Vec<RegionAssignment>>;
 }
 
-/// An answer of a policy that does not assign every region once to an existing renderer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum PolicyError {
-    /// The answer contains an unknown or repeated region, or an unknown renderer.
-    #[error(
-        "a policy: expected each of {regions} regions once, for one of {renderers} renderers, found ({region}, {renderer})"
-    )]
-    Assignment {
-        /// Number of regions of the frame.
-        regions: usize,
-        /// Number of renderers in the machine.
-        renderers: usize,
-        /// Region in the answer.
-        region: u16,
-        /// Renderer in the answer.
-        renderer: usize,
-    },
-    /// The answer lacks a region.
-    #[error("a policy: expected all {regions} regions, found none for region {missing}")]
-    Missing {
-        /// Number of regions of the frame.
-        regions: usize,
-        /// First region without a renderer.
-        missing: usize,
-    },
-}
-
 impl PolicyFrame {
     /// Checks that the assignments contain every region exactly once and only existing renderers.
     ///
     /// # Errors
     ///
-    /// Returns [`PolicyError`] with the first wrong assignment.
-    pub fn check(&self, assignments: &[RegionAssignment]) -> Result<(), PolicyError> {
+    /// Returns a [`SettingError`] with the first wrong assignment.
+    pub fn check(&self, assignments: &[RegionAssignment]) -> Result<(), SettingError> {
         let (regions, renderers) = (self.primitives.len(), self.renderers);
         let mut seen = vec![false; regions];
         for &(RegionId(region), renderer) in assignments {
             // An unknown region, a repeated region and an unknown renderer are errors.
             let known = seen.get_mut(usize::from(region)).filter(|seen| !**seen && renderer < renderers);
             let Some(known) = known else {
-                return Err(PolicyError::Assignment { regions, renderers, region, renderer });
+                let expected = format!("each of {regions} regions once, for one of {renderers} renderers");
+                return Err(SettingError::value("a policy", expected, format_args!("({region}, {renderer})")));
             };
             *known = true;
         }
         match seen.iter().position(|seen| !seen) {
-            Some(missing) => Err(PolicyError::Missing { regions, missing }),
+            Some(missing) => {
+                let found = format_args!("none for region {missing}");
+                Err(SettingError::value("a policy", format_args!("all {regions} regions"), found))
+            }
             None => Ok(()),
         }
     }
@@ -165,7 +141,7 @@ impl Drawing {
         gp: &Gp,
         frame: PictureNumber,
         pass: &Pass,
-    ) -> Result<Option<Vec<RegionAssignment>>, PolicyError> {
+    ) -> Result<Option<Vec<RegionAssignment>>, SettingError> {
         let grid = self.picture.viewport.grid();
         let regions = grid.regions() as u16;
         let about = PolicyFrame {
@@ -261,7 +237,7 @@ impl Pipeline for PolicyPipeline {
         self.shading
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let ports = machine.ports().clone();
         let views = Arc::clone(&setup.views);
         let node = ports.gps[0];
@@ -319,12 +295,12 @@ mod tests {
             pairs.iter().map(|(region, renderer)| (RegionId(*region), *renderer)).collect()
         };
         assert_eq!(frame().check(&answer(&[(2, 0), (0, 1), (1, 1)])), Ok(()));
-        let missing = Err(PolicyError::Missing { regions: 3, missing: 1 });
-        assert_eq!(frame().check(&answer(&[(2, 0), (0, 1)])), missing);
+        let refusal = |pairs: &[(u16, usize)]| frame().check(&answer(pairs)).expect_err("refused").to_string();
+        assert_eq!(refusal(&[(2, 0), (0, 1)]), "a policy: expected all 3 regions, found none for region 1");
         for (wrong, region, renderer) in [([(0, 0), (0, 1)], 0, 1), ([(0, 0), (3, 1)], 3, 1), ([(0, 0), (1, 2)], 1, 2)]
         {
-            let expected = Err(PolicyError::Assignment { regions: 3, renderers: 2, region, renderer });
-            assert_eq!(frame().check(&answer(&wrong)), expected);
+            let expected = "a policy: expected each of 3 regions once, for one of 2 renderers";
+            assert_eq!(refusal(&wrong), format!("{expected}, found ({region}, {renderer})"));
         }
     }
 }

@@ -8,8 +8,9 @@ use image::RgbImage;
 use pphigs::{Picture, RegionBinning, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{Arrival, ConfigError, Machine, MachineConfig, Record};
+use pxpl5_machine::{Arrival, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::Surface;
 use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
@@ -42,7 +43,8 @@ pub enum FinishedRegions {
 }
 
 impl FinishedRegions {
-    /// All actions. The first action is the default.
+    /// All actions of a renderer with a finished region whose frame buffer is not available. The first action is the
+    /// default.
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
     /// Returns the name of the action in experiment files.
@@ -81,13 +83,13 @@ impl RenderingControl {
     }
 
     /// Returns the properties of an eye's picture on a display with the given surfaces.
-    fn drawn(self, surfaces: &[Surface], pixels: bool) -> Result<Picture, ConfigError> {
+    fn drawn(self, surfaces: &[Surface], pixels: bool) -> Result<Picture, SettingError> {
         let grid = surfaces.first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
-        let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| ConfigError::Board(error.to_string()))?;
+        let viewport = Viewport::new(grid, Lines::Frame)?;
         Ok(Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels })
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, ConfigError> {
+    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, SettingError> {
         let ports = machine.ports();
         // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
@@ -110,12 +112,8 @@ impl RenderingControl {
     }
 }
 
-fn too_few_gps(found: u64) -> ConfigError {
-    ConfigError::Value {
-        what: "n_gps of Rendering Control (a master and slaves)".to_owned(),
-        expected: (2, 1_000),
-        found,
-    }
+fn too_few_gps(found: u64) -> SettingError {
+    SettingError::limits("n_gps of Rendering Control (a master and slaves)", (2, 1_000), found)
 }
 
 impl Pipeline for RenderingControl {
@@ -146,7 +144,7 @@ impl Pipeline for RenderingControl {
         None
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let config = self.config(machine, setup.pixels)?;
         let foreground = Priority::Foreground;
         let views = Arc::clone(&setup.views);
@@ -218,7 +216,8 @@ fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {
     (0..ports).map(|port| port_span(record, surface, port, ports)).max().unwrap_or(Span::ZERO)
 }
 
-/// Returns the transfer time of every `ports`-th region of a surface, starting with the region `first`.
+/// Returns the transfer time of the regions that go to one port: every `ports`-th region of a surface, beginning with
+/// the region `first`.
 fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span {
     let timing = record.ring().timing();
     let grid = surface.grid();

@@ -8,9 +8,10 @@ use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{RegionBinning, Shading, Share};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Priority};
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
+use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::LightTimes;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, SurfaceId, ViewNumber};
 use slats::{CopySchedule, SlatsConfig, host, processor};
@@ -31,7 +32,7 @@ pub enum Code {
 pxpl5_sim::parameters::named!(Code, "version of the code", Code::ALL);
 
 impl Code {
-    /// All versions with their names in experiment files.
+    /// All versions of the graphics processor's code, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("1994", Self::Of1994), ("1995", Self::Of1995), ("optimised", Self::Optimised)];
 
     const fn timing(self) -> GpTiming {
@@ -63,7 +64,7 @@ pub enum SlatsLighting {
 pxpl5_sim::parameters::named!(SlatsLighting, "lighting", SlatsLighting::ALL);
 
 impl SlatsLighting {
-    /// Both choices with their names in experiment files.
+    /// Both sources of vertex colours, with their names in experiment files.
     pub const ALL: [(&str, Self); 2] = [("precomputed", Self::Precomputed), ("gp", Self::OnGp)];
 
     const fn shading(self) -> Shading {
@@ -179,11 +180,11 @@ impl Pipeline for Slats {
         None
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         ntsc(machine.record(), self.name())?;
         let config = self.config(machine, setup.pixels);
         // The configuration also fixes which renderer serves which regions.
-        let binding = config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
+        let binding = config.check()?;
         let foreground = Priority::Foreground;
         let views = Arc::clone(&setup.views);
         let reports = Arc::clone(&setup.reports);
@@ -286,11 +287,11 @@ impl PictureRules for Slats {
     }
 }
 
-/// Number of retraces after a late field's own retrace within which a backup can still show the field. Within these
-/// retraces, the lines of the field are scanned twice more.
+/// Number of retraces after a late field's own retrace within which [`Slats::backup`] can still show the field. Within
+/// these retraces, the display scans the lines of the field twice more.
 const LATER_RETRACES: u64 = 4;
 
-/// State of the copy of a field to the display.
+/// Progress of the copy of a field to the display.
 #[derive(Clone, Copy, Debug, Default)]
 struct Copied {
     regions: usize,
@@ -311,7 +312,7 @@ impl Copied {
     }
 }
 
-/// Buffers that each frame buffer displayed, for runs with a backup.
+/// The buffer that each eye's frame buffer displayed over time, for runs of [`Slats::backup`].
 struct Backup {
     /// For each surface, the first period and the buffer of each swap, in order.
     swaps: [Vec<(PeriodNumber, u8)>; 2],

@@ -21,6 +21,7 @@ pub(super) struct Rules {
 }
 
 /// A possible collapse of an edge, with its cost. One end of the edge moves onto the other end.
+#[derive(Clone)]
 struct Candidate {
     cost: f64,
     from: u32,
@@ -55,14 +56,70 @@ impl Eq for Candidate {}
 
 /// A surface during decimation. For each point, the decimator stores a quadric, which measures the error of moving the
 /// point, and the number of changes.
-pub(super) struct Decimator<'s, 'a> {
-    surface: &'s mut Surface<'a>,
+#[derive(Clone)]
+pub(super) struct Decimator {
+    pub(super) surface: Surface,
     quadrics: Vec<Quadric>,
     changes: Vec<u32>,
+    /// Least number of triangles that any collapse tried so far would have left. Up to this wanted number, all decisions
+    /// so far are the same.
+    least_left: usize,
 }
 
-impl<'s, 'a> Decimator<'s, 'a> {
-    pub(super) fn new(surface: &'s mut Surface<'a>) -> Self {
+/// Rules of the first pass, which allow no damage.
+const FIRST: Rules = Rules { may_flip_triangles: false, may_overshoot: false };
+
+/// Rules of the later passes. They allow more damage: the second too few triangles, the third also folded triangles.
+const LATER: [Rules; 2] =
+    [Rules { may_flip_triangles: false, may_overshoot: true }, Rules { may_flip_triangles: true, may_overshoot: true }];
+
+/// A decimation within its first pass over the surface.
+#[derive(Clone)]
+pub(super) struct FirstPass {
+    decimator: Decimator,
+    queue: BinaryHeap<Candidate>,
+}
+
+impl FirstPass {
+    pub(super) fn new(surface: Surface) -> Self {
+        let decimator = Decimator::new(surface);
+        let queue = decimator.queue();
+        Self { decimator, queue }
+    }
+
+    /// Returns true if the pass has come to this state for every wanted number of triangles up to `wanted`.
+    pub(super) const fn serves(&self, wanted: usize) -> bool {
+        wanted <= self.decimator.least_left
+    }
+
+    /// Returns the number of triangles that remain.
+    pub(super) const fn left(&self) -> usize {
+        self.decimator.surface.left
+    }
+
+    /// Collapses edges until at most `pause` triangles remain or the pass ends. `wanted` is the number of triangles that
+    /// should remain in the end.
+    pub(super) fn until(&mut self, pause: usize, wanted: usize) {
+        self.decimator.pass(&mut self.queue, pause, wanted, FIRST);
+    }
+
+    /// Completes all passes, and returns the surface.
+    pub(super) fn end(mut self, wanted: usize) -> Surface {
+        let whole = self.decimator.surface.triangles.len();
+        if self.left() > wanted {
+            self.until(wanted, wanted);
+            // Further passes follow only if the first pass has removed triangles.
+            if self.left() < whole {
+                self.decimator.until(wanted, FIRST);
+            }
+        }
+        LATER.into_iter().for_each(|rules| self.decimator.until(wanted, rules));
+        self.decimator.surface
+    }
+}
+
+impl Decimator {
+    pub(super) fn new(surface: Surface) -> Self {
         let points = surface.places.len();
         let mut quadrics = vec![Quadric::default(); points];
         for (_, corners) in surface.all() {
@@ -85,29 +142,34 @@ impl<'s, 'a> Decimator<'s, 'a> {
                 }
             }
         }
-        Self { surface, quadrics, changes: vec![0; points] }
+        Self { surface, quadrics, changes: vec![0; points], least_left: usize::MAX }
     }
 
     /// Collapses edges, the cheapest first, until at most `wanted` triangles remain or no edge can be collapsed.
     pub(super) fn until(&mut self, wanted: usize, rules: Rules) {
         while self.surface.left > wanted {
             let before = self.surface.left;
-            self.pass(wanted, rules);
+            let mut queue = self.queue();
+            self.pass(&mut queue, wanted, wanted, rules);
             if self.surface.left == before {
                 return;
             }
         }
     }
 
-    fn pass(&mut self, wanted: usize, rules: Rules) {
+    /// Returns the collapses of all edges.
+    fn queue(&self) -> BinaryHeap<Candidate> {
         let mut queue = BinaryHeap::new();
         for point in 0..self.surface.places.len() as u32 {
             self.enter(point, &mut queue);
         }
-        while let Some(candidate) = queue.pop() {
-            if self.surface.left <= wanted {
-                return;
-            }
+        queue
+    }
+
+    /// Collapses edges from the queue until at most `pause` triangles remain.
+    fn pass(&mut self, queue: &mut BinaryHeap<Candidate>, pause: usize, wanted: usize, rules: Rules) {
+        while self.surface.left > pause {
+            let Some(candidate) = queue.pop() else { return };
             let Candidate { from, onto, changes, .. } = candidate;
             // Drop an outdated cost. A newer candidate for these points is in the queue.
             let is_current = changes == [self.changes[from as usize], self.changes[onto as usize]];
@@ -120,7 +182,7 @@ impl<'s, 'a> Decimator<'s, 'a> {
             self.quadrics[onto as usize] += moved;
             self.changes[from as usize] += 1;
             self.changes[onto as usize] += 1;
-            self.enter(onto, &mut queue);
+            self.enter(onto, queue);
             for neighbour in self.surface.neighbours(onto) {
                 queue.push(self.candidate(neighbour, onto));
             }
@@ -140,9 +202,11 @@ impl<'s, 'a> Decimator<'s, 'a> {
 
     /// Returns true if a collapse keeps the surface intact. A closed surface stays closed, no triangle occurs twice,
     /// and no connected piece vanishes.
-    fn may_collapse(&self, from: u32, onto: u32, wanted: usize, rules: Rules) -> bool {
+    fn may_collapse(&mut self, from: u32, onto: u32, wanted: usize, rules: Rules) -> bool {
+        let round = self.surface.round(from);
+        let (going, staying): (Vec<_>, Vec<_>) = round.partition(|(_, points)| points.contains(&onto));
+        self.least_left = self.least_left.min(self.surface.left.saturating_sub(going.len()));
         let surface = &self.surface;
-        let (going, staying): (Vec<_>, Vec<_>) = surface.round(from).partition(|(_, points)| points.contains(&onto));
         let leaves_too_few = surface.left < wanted + going.len();
         if going.is_empty() || (leaves_too_few && !rules.may_overshoot) {
             return false;

@@ -1,14 +1,16 @@
 //! A surface whose edges can be collapsed. Its triangles connect points. All vertices at one position share one point.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::scene::{Scene, Vertex};
 
 /// The triangles of a scene during decimation. Each distinct position of a structure's vertices is one point.
-pub(super) struct Surface<'a> {
-    vertices: &'a [Vertex],
+#[derive(Clone)]
+pub(super) struct Surface {
+    vertices: Arc<[Vertex]>,
     /// Position of each point.
     pub(super) places: Vec<DVec3>,
     /// Index of the point at which each vertex lies.
@@ -23,15 +25,15 @@ pub(super) struct Surface<'a> {
     pub(super) left: usize,
 }
 
-impl<'a> Surface<'a> {
+impl Surface {
     /// Creates a surface of all triangles of a scene. Triangles with two corners at one point have no area and are left
     /// out.
-    pub(super) fn new(scene: &'a Scene) -> Self {
-        let vertices = scene.vertices();
+    pub(super) fn new(scene: &Scene) -> Self {
+        let vertices: Arc<[Vertex]> = scene.vertices().into();
         let mut surface = Self {
             vertices,
             places: Vec::new(),
-            point_of: vec![0; vertices.len()],
+            point_of: vec![0; scene.vertices().len()],
             vertices_on: Vec::new(),
             triangles: scene.triangles().iter().copied().map(Some).collect(),
             around: Vec::new(),

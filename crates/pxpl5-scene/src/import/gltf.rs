@@ -15,6 +15,7 @@ use gltf_json::accessor::ComponentType;
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 use gltf_json::{Node, Root};
+use pxpl5_sim::parameters::FileError;
 
 use self::buffers::Buffers;
 use self::container::Chunks;
@@ -23,7 +24,6 @@ use self::numbers::Numbers;
 use super::Source;
 use super::model::{Model, Places, counted, direction, push_with_slow_growth};
 use crate::config::{DEFAULT_COLOUR, MAX_COORDINATE};
-use crate::error::LoadError;
 
 /// Extensions that a file may require although the importer does not read them. All but one of these extensions change
 /// only materials, textures and lights. `KHR_mesh_quantization` allows other types of numbers, which the importer can
@@ -38,7 +38,7 @@ const HARMLESS: [&str; 6] = [
 ];
 const HARMLESS_PREFIX: &str = "KHR_materials_";
 
-pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
+pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
     let mut model = Model::new(Places::Single(Vec::new()));
     let chunks = Chunks::of(source)?;
     let parsed_bytes = chunks.parsed_bytes();
@@ -55,7 +55,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     Ok(reader.finished())
 }
 
-fn check_version(source: &Source<'_>, root: &Root) -> Result<(), LoadError> {
+fn check_version(source: &Source<'_>, root: &Root) -> Result<(), FileError> {
     let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     match needed.as_str() {
         "2.0" => Ok(()),
@@ -65,7 +65,7 @@ fn check_version(source: &Source<'_>, root: &Root) -> Result<(), LoadError> {
     }
 }
 
-fn check_extensions(source: &Source<'_>, root: &Root) -> Result<(), LoadError> {
+fn check_extensions(source: &Source<'_>, root: &Root) -> Result<(), FileError> {
     for (number, name) in root.extensions_required.iter().enumerate() {
         if HARMLESS.contains(&name.as_str()) || name.starts_with(HARMLESS_PREFIX) {
             continue;
@@ -102,7 +102,7 @@ impl<'a> Reader<'a> {
     ///
     /// If the file names no default scene, the first scene is read. If the file has no scenes, all nodes without a
     /// parent are read.
-    fn scene(&mut self) -> Result<(), LoadError> {
+    fn scene(&mut self) -> Result<(), FileError> {
         let Document { source, root, .. } = self.document;
         let number = root.scene.map_or(0, |scene| scene.value());
         let roots: Vec<usize> = match root.scenes.get(number) {
@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn node(&mut self, node: &Node, to_world: DMat4) -> Result<(), LoadError> {
+    fn node(&mut self, node: &Node, to_world: DMat4) -> Result<(), FileError> {
         let Document { source, root, .. } = self.document;
         let Some(number) = node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
         let Some(mesh) = root.meshes.get(number) else {
@@ -162,7 +162,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds the triangles of a primitive.
-    fn primitive(&mut self, part: &str, primitive: &Primitive, to_world: DMat4) -> Result<(), LoadError> {
+    fn primitive(&mut self, part: &str, primitive: &Primitive, to_world: DMat4) -> Result<(), FileError> {
         let document = self.document;
         let mode = match primitive.mode {
             Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
@@ -217,7 +217,7 @@ impl<'a> Reader<'a> {
         accessor: usize,
         components: &[usize],
         kinds: &[ComponentType],
-    ) -> Result<Numbers<'a>, LoadError> {
+    ) -> Result<Numbers<'a>, FileError> {
         Numbers::of(self.document, accessor, components, kinds)
     }
 
@@ -227,7 +227,7 @@ impl<'a> Reader<'a> {
         vertices: &PrimitiveVertices<'_>,
         corners: &Corners<'_>,
         triangles: usize,
-    ) -> Result<(), LoadError> {
+    ) -> Result<(), FileError> {
         let first = self.model.places.len() as u32;
         for vertex in 0..vertices.positions.count {
             self.push(vertices, vertex)?;
@@ -248,7 +248,7 @@ impl<'a> Reader<'a> {
         vertices: &PrimitiveVertices<'_>,
         corners: &Corners<'_>,
         triangles: usize,
-    ) -> Result<(), LoadError> {
+    ) -> Result<(), FileError> {
         for triangle in 0..triangles {
             let corners = vertices.oriented(corners.triangle(self.document.source, vertices.part, triangle)?);
             if !is_triangle(corners) {
@@ -264,7 +264,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds a vertex of a primitive to the model.
-    fn push(&mut self, vertices: &PrimitiveVertices<'_>, vertex: usize) -> Result<(), LoadError> {
+    fn push(&mut self, vertices: &PrimitiveVertices<'_>, vertex: usize) -> Result<(), FileError> {
         let place = vertices.place(vertex);
         if place.is_nan() || place.abs().max_element() > MAX_COORDINATE {
             let part = format!("{}.attributes.POSITION", vertices.part);
@@ -293,7 +293,7 @@ impl<'a> Reader<'a> {
 
     /// Returns the base colour of a primitive in linear light. `None` stands for [`DEFAULT_COLOUR`], the colour of a
     /// primitive without a material and without colours of its vertices.
-    fn base_colour(&self, part: &str, primitive: &Primitive, has_colours: bool) -> Result<Option<[f64; 3]>, LoadError> {
+    fn base_colour(&self, part: &str, primitive: &Primitive, has_colours: bool) -> Result<Option<[f64; 3]>, FileError> {
         let materials = &self.document.root.materials;
         let Some(number) = primitive.material.map(|material| material.value()) else {
             return Ok(has_colours.then_some([1.0; 3]));
@@ -338,7 +338,7 @@ fn roots_of(nodes: &[Node]) -> Vec<usize> {
 }
 
 /// Returns the transform from a node to its parent.
-fn transform(source: &Source<'_>, number: usize, node: &Node) -> Result<DMat4, LoadError> {
+fn transform(source: &Source<'_>, number: usize, node: &Node) -> Result<DMat4, FileError> {
     if let Some(matrix) = node.matrix {
         return Ok(DMat4::from_cols_array(&matrix.map(f64::from)));
     }
@@ -432,7 +432,7 @@ impl Corners<'_> {
     /// # Errors
     ///
     /// Fails if the corners do not make whole triangles, or if there are more vertices than 32 bits can number.
-    fn triangles(&self, source: &Source<'_>, part: &str) -> Result<usize, LoadError> {
+    fn triangles(&self, source: &Source<'_>, part: &str) -> Result<usize, FileError> {
         let count = self.count();
         if u32::try_from(self.vertices).is_err() {
             let found = self.vertices.to_string();
@@ -450,7 +450,7 @@ impl Corners<'_> {
     /// # Errors
     ///
     /// Fails if a vertex does not exist.
-    fn triangle(&self, source: &Source<'_>, part: &str, n: usize) -> Result<[u32; 3], LoadError> {
+    fn triangle(&self, source: &Source<'_>, part: &str, n: usize) -> Result<[u32; 3], FileError> {
         // The corners have the order that section 3.7.2.1 of the specification defines.
         let corners = match self.mode {
             Mode::TriangleStrip => [n, n + 1 + n % 2, n + 2 - n % 2],

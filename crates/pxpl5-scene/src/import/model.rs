@@ -1,6 +1,7 @@
 //! The common result of the readers of mesh formats. A model has lists only for data that its file contains. A model
 //! therefore needs at most seven times the memory of the file.
 
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::hash::{BuildHasher, RandomState};
 
 use glam::{DVec3, Vec3};
@@ -10,7 +11,6 @@ use super::mesh::{Fit, area, seen_by, unit};
 use super::polygon::{self, Cut, MOST_CORNERS, has_area};
 use super::{Placement, Source};
 use crate::config::{DEFAULT_COLOUR, MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
-use crate::error::LoadError;
 use crate::scene::{Scene, Vertex};
 
 /// Positions of points. The positions are in single precision if this precision is exact for the file, and otherwise in
@@ -181,13 +181,13 @@ impl Model {
 
     /// Returns an error if the model needs too much memory for the size of its file. `more_triangles` is the number of
     /// triangles still to be read.
-    pub(super) fn check_reading(&self, source: &Source<'_>, more_triangles: usize) -> Result<(), LoadError> {
+    pub(super) fn check_reading(&self, source: &Source<'_>, more_triangles: usize) -> Result<(), FileError> {
         self.check_reading_bytes(source, more_triangles.saturating_mul(size_of::<[u32; 3]>()))
     }
 
     /// Returns an error if the model needs too much memory for the size of its files. `more` is the number of bytes that
     /// the reader needs in addition to the model.
-    pub(super) fn check_reading_bytes(&self, source: &Source<'_>, more: usize) -> Result<(), LoadError> {
+    pub(super) fn check_reading_bytes(&self, source: &Source<'_>, more: usize) -> Result<(), FileError> {
         let of_files = source.bytes.len() + self.more_file_bytes;
         let found = of_files + self.lists_bytes() + self.corners.len() * TABLE_BYTES;
         check_memory(source.name, found.saturating_add(more), of_files)
@@ -206,13 +206,13 @@ impl Model {
     }
 
     /// Returns an error if no triangle has a visible area.
-    fn check_areas(&self, name: &str) -> Result<(), LoadError> {
+    fn check_areas(&self, name: &str) -> Result<(), FileError> {
         let least = self.places.least_height();
         if self.triangles.iter().any(|&t| has_area(self.corner_places(t), least)) {
             return Ok(());
         }
         let expected = if self.triangles.is_empty() { "triangle" } else { "triangle with an area" };
-        Err(LoadError::NothingToDraw { file: name.to_owned(), expected })
+        Err(crate::error::nothing_to_draw(name, expected))
     }
 
     /// Makes a scene of the mesh. The bytes of the file may be freed before this.
@@ -221,7 +221,7 @@ impl Model {
         name: &str,
         file_bytes: usize,
         placement: Placement,
-    ) -> Result<Scene, LoadError> {
+    ) -> Result<Scene, FileError> {
         if self.too_long > 0 {
             self.warnings.push(format!(
                 "{} with a notch and more than {MOST_CORNERS} corners: the notch is filled",
@@ -355,7 +355,7 @@ impl Model {
     }
 
     /// Returns an error if making the scene needs too much memory. The bytes of the file are not counted.
-    fn check_memory(&self, name: &str, file_bytes: usize) -> Result<(), LoadError> {
+    fn check_memory(&self, name: &str, file_bytes: usize) -> Result<(), FileError> {
         let sums = self.shadings_per_pass().min(self.shaded()) * size_of::<DVec3>();
         check_memory(name, self.lists_bytes() + sums + self.vertices() * size_of::<Vertex>(), file_bytes)
     }
@@ -374,10 +374,13 @@ pub(super) fn counted(count: usize, noun: &str) -> String {
 
 /// Returns an error if a model needs more than [`MEMORY_TIMES_FILE`] times the size of its file plus
 /// [`MEMORY_FLOOR_BYTES`].
-fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), LoadError> {
+fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), FileError> {
     let expected = MEMORY_TIMES_FILE * file_bytes as u64 + MEMORY_FLOOR_BYTES;
-    let found = found as u64;
-    if found <= expected { Ok(()) } else { Err(LoadError::TooMuchMemory { file: name.to_owned(), expected, found }) }
+    if found as u64 <= expected {
+        return Ok(());
+    }
+    let expected = format_args!("a model that takes at most {expected} bytes, as its size allows");
+    Err(FileError::new(FileErrorKind::TooLarge, expected, found).in_file(name))
 }
 
 /// Greatest number of bytes per vertex in the hash table. A slot has five bytes, and between 7/16 and 7/8 of the slots

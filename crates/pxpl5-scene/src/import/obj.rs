@@ -4,14 +4,15 @@
 //! content.
 
 use glam::{DVec3, Vec3};
+use pxpl5_sim::parameters::FileError;
 
 use super::Source;
 use super::model::{Model, Places, Vertices, counted, direction, push_with_slow_growth};
 use super::source::{excerpt, is_not_a_number, text};
 use crate::config::DEFAULT_COLOUR;
-use crate::error::{FilePlace, LoadError};
+use crate::error::FilePlace;
 
-pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
+pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
     let mut reader = Reader::new(source)?;
     // Faces may come before the vertices that they refer to, so points are read first.
     for (number, line) in statements(source) {
@@ -112,7 +113,7 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(source: &'a Source<'a>) -> Result<Self, LoadError> {
+    fn new(source: &'a Source<'a>) -> Result<Self, FileError> {
         let counts = Counts::of(source);
         // Allocate the lists with their final lengths.
         let mut model = Model::new(Places::Double(Vec::new()));
@@ -145,7 +146,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a statement that defines a point (`v`) or a normal (`vn`).
-    fn point(&mut self, at: FilePlace, line: &[u8]) -> Result<(), LoadError> {
+    fn point(&mut self, at: FilePlace, line: &[u8]) -> Result<(), FileError> {
         let mut words = words(line);
         match words.next() {
             Some(b"v") => {
@@ -164,7 +165,7 @@ impl<'a> Reader<'a> {
 
     /// Reads a statement that defines a face or the shading of faces. Statements for texture coordinates, groups,
     /// objects, materials and curves are ignored.
-    fn surface(&mut self, at: FilePlace, line: &[u8]) -> Result<(), LoadError> {
+    fn surface(&mut self, at: FilePlace, line: &[u8]) -> Result<(), FileError> {
         let mut words = words(line);
         match words.next() {
             Some(b"v") => self.points += 1,
@@ -177,7 +178,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a face with any number of corners and cuts it into triangles.
-    fn face<'w>(&mut self, at: FilePlace, line: &[u8], words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
+    fn face<'w>(&mut self, at: FilePlace, line: &[u8], words: impl Iterator<Item = &'w [u8]>) -> Result<(), FileError> {
         let first = self.model.triangles.len();
         // The normal of a flat face is computed after its corners are read. The normal will then get this index.
         let flat = self.model.normals.len() as u32 + 1;
@@ -212,7 +213,7 @@ impl<'a> Reader<'a> {
         self.model.check_reading(self.source, 0)
     }
 
-    fn vector<'w>(&self, at: FilePlace, words: &mut impl Iterator<Item = &'w [u8]>) -> Result<[f64; 3], LoadError> {
+    fn vector<'w>(&self, at: FilePlace, words: &mut impl Iterator<Item = &'w [u8]>) -> Result<[f64; 3], FileError> {
         let mut v = [0.0; 3];
         for (x, axis) in v.iter_mut().zip(["x", "y", "z"]) {
             *x = self.number(at, axis, words.next().unwrap_or_default())?;
@@ -220,7 +221,7 @@ impl<'a> Reader<'a> {
         Ok(v)
     }
 
-    fn number(&self, at: FilePlace, what: &str, word: &[u8]) -> Result<f64, LoadError> {
+    fn number(&self, at: FilePlace, what: &str, word: &[u8]) -> Result<f64, FileError> {
         match text(word) {
             word if is_not_a_number(word) => Ok(f64::NAN),
             word => word.parse().map_err(|_| self.source.syntax(at, format!("a number for {what}"), excerpt(word))),
@@ -228,7 +229,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads the direction of a normal. NaN gives a zero vector. The normal is then computed as if the file had none.
-    fn normal<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<Vec3, LoadError> {
+    fn normal<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<Vec3, FileError> {
         let normal = DVec3::from_array(self.vector(at, &mut words)?);
         if normal.is_finite() {
             return Ok(direction(normal));
@@ -239,7 +240,7 @@ impl<'a> Reader<'a> {
 
     /// Reads the colour that may follow the coordinates of a point. A single number after the coordinates is a weight
     /// and is ignored.
-    fn colour<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<(), LoadError> {
+    fn colour<'w>(&mut self, at: FilePlace, mut words: impl Iterator<Item = &'w [u8]>) -> Result<(), FileError> {
         let found = [words.next(), words.next(), words.next()];
         let colour = match found {
             [Some(red), Some(green), Some(blue)] => {
@@ -264,7 +265,7 @@ impl<'a> Reader<'a> {
 
     /// Reads a corner in one of the forms point, point/texture, point//normal or point/texture/normal. Returns the
     /// indices of the point (from 0) and of the normal (from 1).
-    fn corner(&self, at: FilePlace, word: &[u8]) -> Result<(u32, Option<u32>), LoadError> {
+    fn corner(&self, at: FilePlace, word: &[u8]) -> Result<(u32, Option<u32>), FileError> {
         let mut fields = text(word).splitn(3, '/');
         let point = fields.next().unwrap_or_default();
         let point = self.index(at, "vertices", point, [self.points, self.counts.points])?;
@@ -283,7 +284,7 @@ impl<'a> Reader<'a> {
         what: &'static str,
         word: &str,
         [so_far, all]: [usize; 2],
-    ) -> Result<u32, LoadError> {
+    ) -> Result<u32, FileError> {
         let written: i64 =
             word.parse().map_err(|_| self.source.syntax(at, format!("an index of {what}"), excerpt(word)))?;
         let zero_based = if written < 0 { written.saturating_add(so_far as i64) } else { written - 1 };

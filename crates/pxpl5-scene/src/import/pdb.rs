@@ -1,6 +1,7 @@
 //! Reader of Protein Data Bank files. Columns have fixed positions and count from 1, as in the format's guide, version
 //! 3.3.
 
+use pxpl5_sim::parameters::FileError;
 use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
@@ -8,7 +9,7 @@ use glam::DVec3;
 use super::mesh::{Fit, seen_by};
 use super::source::{excerpt, text};
 use super::{Placement, Source};
-use crate::error::{FilePlace, LoadError};
+use crate::error::{FilePlace, nothing_to_draw};
 use crate::scene::{Scene, Sphere};
 
 /// An atom of a Protein Data Bank file.
@@ -62,10 +63,10 @@ const ELEMENTS: [Element; 20] = [
 /// Radius and colour of an element that is not in the table. The radius is assumed, within the range of the table.
 const OTHER: Element = element("?", 1.80, [255, 20, 147]);
 
-pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, LoadError> {
+pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, FileError> {
     let atoms = read_atoms(source)?;
     if atoms.is_empty() {
-        return Err(LoadError::NothingToDraw { file: source.name.to_owned(), expected: "atom" });
+        return Err(nothing_to_draw(source.name, "atom"));
     }
     let fit = placement.fit(atoms.iter().map(|a| (a.position, a.element.radius)));
     let spheres = atoms.iter().map(|a| a.sphere(a.position, &fit)).collect();
@@ -85,7 +86,7 @@ impl Atom {
 
 /// Reads the atoms of the first model in the file, in their order. If an atom has alternate locations, only the first
 /// is kept.
-pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
+pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, FileError> {
     let mut atoms = Vec::new();
     let mut alternates = Alternates::default();
     for (number, line) in source.lines() {
@@ -123,7 +124,7 @@ impl<'a> Alternates<'a> {
     }
 }
 
-fn atom(source: &Source<'_>, at: FilePlace, line: &[u8]) -> Result<Atom, LoadError> {
+fn atom(source: &Source<'_>, at: FilePlace, line: &[u8]) -> Result<Atom, FileError> {
     let mut position = [0.0; 3];
     for (x, (axis, first)) in position.iter_mut().zip([("x", 31), ("y", 39), ("z", 47)]) {
         let field = text(columns(line, first, first + 7));

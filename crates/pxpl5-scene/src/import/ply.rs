@@ -1,6 +1,7 @@
 //! Reader of PLY files. A library parses the header and binary rows. This module interprets the rows, parses ASCII rows
 //! and finds the positions of errors.
 
+use pxpl5_sim::parameters::FileError;
 use std::io::{Cursor, ErrorKind};
 use std::str::FromStr;
 
@@ -14,9 +15,9 @@ use super::Source;
 use super::model::{Detail, Model, Places, Vertices, counted, direction, push_with_slow_growth};
 use super::source::{MARK, excerpt, is_not_a_number, text};
 use crate::config::DEFAULT_COLOUR;
-use crate::error::{FilePlace, LoadError};
+use crate::error::FilePlace;
 
-pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
+pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
     let mut rows = Rows::after_header(source)?;
     let mut mesh = Model::new(Places::Single(Vec::new()));
     let elements: Vec<ElementDef> = rows.header.elements.values().cloned().collect();
@@ -109,7 +110,7 @@ fn header_of(bytes: &[u8]) -> (String, usize, u8) {
 }
 
 impl<'a> Rows<'a> {
-    fn after_header(source: &'a Source<'a>) -> Result<Self, LoadError> {
+    fn after_header(source: &'a Source<'a>) -> Result<Self, FileError> {
         let (text, behind, end) = header_of(source.bytes);
         // Parse the cleaned header with the library, and find the line of an error.
         let mut reader = Reader::new(Cursor::new(text.as_bytes()));
@@ -146,7 +147,7 @@ impl<'a> Rows<'a> {
 
     /// Returns an error if the rest of the file is too short for the announced number of rows. No memory has been
     /// allocated for these rows yet.
-    fn check_length(&self, element: &ElementDef) -> Result<(), LoadError> {
+    fn check_length(&self, element: &ElementDef) -> Result<(), FileError> {
         let left = self.source.bytes.len() as u64 - self.cursor.position();
         let row = least_row_bytes(element, self.header.encoding);
         let need = element.count as u128 * u128::from(row);
@@ -158,7 +159,7 @@ impl<'a> Rows<'a> {
         Err(self.source.truncated(self.place(), expected, format!("{left} bytes")))
     }
 
-    fn next<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<(FilePlace, E), LoadError> {
+    fn next<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<(FilePlace, E), FileError> {
         let at = self.place();
         let parser = Parser::<E>::new();
         let row = match self.header.encoding {
@@ -172,7 +173,7 @@ impl<'a> Rows<'a> {
         row.map(|row| (at, row)).map_err(|e| self.row_fault(at, element, &e))
     }
 
-    fn row_fault(&self, at: FilePlace, element: &ElementDef, error: &ParseError) -> LoadError {
+    fn row_fault(&self, at: FilePlace, element: &ElementDef, error: &ParseError) -> FileError {
         match error.kind() {
             ErrorKind::UnexpectedEof => self.source.truncated(at, row_of(element), "the end of the file"),
             // All numbers exist, but a property has a type in the header that it cannot have.
@@ -181,7 +182,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Parses the numbers of one line. The library's own parser accepts neither `.5` nor `nan`.
-    fn ascii_row<E: PropertyAccess>(&self, at: FilePlace, element: &ElementDef) -> Result<E, LoadError> {
+    fn ascii_row<E: PropertyAccess>(&self, at: FilePlace, element: &ElementDef) -> Result<E, FileError> {
         let wrong = || self.source.syntax(at, row_of(element), excerpt(self.text));
         let mut words = self.text.split_ascii_whitespace();
         let mut row = E::new();
@@ -208,7 +209,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Finds the next line that is not blank.
-    fn next_line(&mut self, element: &ElementDef) -> Result<(), LoadError> {
+    fn next_line(&mut self, element: &ElementDef) -> Result<(), FileError> {
         loop {
             // The line extends to the next line end, or to the end of the file.
             let begin = self.cursor.position() as usize;
@@ -230,7 +231,7 @@ impl<'a> Rows<'a> {
 
     /// Returns an error for a list that is too long, before it is copied. If corners of one or two bytes repeat, a copy
     /// would take many times the memory of the file.
-    fn check_list(&self, at: FilePlace, length: usize) -> Result<(), LoadError> {
+    fn check_list(&self, at: FilePlace, length: usize) -> Result<(), FileError> {
         if length <= self.longest_list {
             return Ok(());
         }
@@ -239,7 +240,7 @@ impl<'a> Rows<'a> {
         Err(self.source.syntax(at, expected, length.to_string()))
     }
 
-    fn vertices(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
+    fn vertices(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), FileError> {
         // All three coordinates are required. Normals and colours are optional.
         for axis in ["x", "y", "z"] {
             if !element.properties.contains_key(axis) {
@@ -276,7 +277,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Reads the faces of an element and cuts them into triangles.
-    fn faces(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
+    fn faces(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), FileError> {
         let has_colours = has_colours(element);
         self.has_both_colours |= has_colours && !mesh.colours.is_empty();
         let has_colours = has_colours && mesh.colours.is_empty();
@@ -311,7 +312,7 @@ impl<'a> Rows<'a> {
         n: usize,
         colour: Option<[u8; 3]>,
         mesh: &mut Model,
-    ) -> Result<u32, LoadError> {
+    ) -> Result<u32, FileError> {
         let point = self.corner(at, row, n, mesh)?;
         let Some([red, green, blue]) = colour else { return Ok(point) };
         // A point becomes one vertex for each colour of its faces.
@@ -329,14 +330,14 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn corner(&self, at: FilePlace, row: &FaceRow, n: usize, mesh: &Model) -> Result<u32, LoadError> {
+    fn corner(&self, at: FilePlace, row: &FaceRow, n: usize, mesh: &Model) -> Result<u32, FileError> {
         let corner = row.corner(n);
         self.source.index(at, "vertices", corner, mesh.places.len(), corner)
     }
 
     /// Reads strips of corners, separated by -1. Every corner of a strip after the first two completes a triangle with
     /// the two corners before it. Every second triangle is reversed.
-    fn strips(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
+    fn strips(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), FileError> {
         for _ in 0..element.count {
             let (at, row) = self.next::<FaceRow>(element)?;
             self.check_list(at, row.len())?;
@@ -363,7 +364,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Returns an error if the file has anything except white space after the last row.
-    fn check_end(&self) -> Result<(), LoadError> {
+    fn check_end(&self) -> Result<(), FileError> {
         let rest = &self.source.bytes[self.cursor.position() as usize..];
         if rest.iter().all(u8::is_ascii_whitespace) {
             return Ok(());
@@ -374,7 +375,7 @@ impl<'a> Rows<'a> {
         Err(self.source.syntax(self.place(), expected, excerpt(&found)))
     }
 
-    fn skip(&mut self, element: &ElementDef) -> Result<(), LoadError> {
+    fn skip(&mut self, element: &ElementDef) -> Result<(), FileError> {
         (0..element.count).try_for_each(|_| self.next::<Skipped>(element).map(|_| ()))
     }
 }
@@ -418,7 +419,7 @@ fn row_of(element: &ElementDef) -> String {
 
 /// Checks two rules that the library does not check. The version must be 1.0, and an element must not have a property
 /// twice.
-fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
+fn check_header(source: &Source<'_>, header: &str) -> Result<(), FileError> {
     let mut known = Vec::new();
     for (number, line) in (1..).zip(header.lines()) {
         // `known` collects the properties of the current element.
@@ -474,7 +475,7 @@ fn numbers<'w, T: FromStr>(words: &mut impl Iterator<Item = &'w str>, length: us
     (list.len() == length).then_some(list)
 }
 
-fn header_fault(source: &Source<'_>, text: &str, line: u64, error: &ParseError) -> LoadError {
+fn header_fault(source: &Source<'_>, text: &str, line: u64, error: &ParseError) -> FileError {
     let at = FilePlace::Line(line);
     match (error.kind(), text.lines().nth(line as usize - 1)) {
         (ErrorKind::UnexpectedEof, _) | (_, None) => {

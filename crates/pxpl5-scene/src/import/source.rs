@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use crate::config::MAX_COORDINATE;
-use crate::error::{FilePlace, LoadError};
+use crate::error::FilePlace;
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
+use std::fmt::Display;
 
 pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
@@ -15,10 +17,11 @@ pub(crate) struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// Returns an error if the file is UTF-16 text, which begins with a byte order mark.
-    pub(crate) fn check_is_bytes_of_text(&self) -> Result<(), LoadError> {
+    pub(crate) fn check_is_bytes_of_text(&self) -> Result<(), FileError> {
         match self.bytes {
             [found @ 0xff, 0xfe, ..] | [found @ 0xfe, 0xff, ..] => {
-                Err(LoadError::NotText { file: self.name.to_owned(), at: FilePlace::Byte(0), found: *found })
+                let found = format_args!("byte {found:#04x}");
+                Err(self.error(FileErrorKind::NotText, FilePlace::Byte(0), "UTF-8 text", found))
             }
             _ => Ok(()),
         }
@@ -33,36 +36,31 @@ impl<'a> Source<'a> {
         (1..).zip(text.split(move |byte| *byte == end).map(|line| line.strip_suffix(b"\r").unwrap_or(line)))
     }
 
-    pub(crate) fn syntax(&self, at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> LoadError {
-        LoadError::Syntax { file: self.name.to_owned(), at, expected: expected.into(), found: found.into() }
+    pub(crate) fn syntax(&self, at: FilePlace, expected: impl Display, found: impl Display) -> FileError {
+        self.error(FileErrorKind::Syntax, at, expected, found)
     }
 
-    pub(crate) fn truncated(&self, at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> LoadError {
-        LoadError::Truncated { file: self.name.to_owned(), at, expected: expected.into(), found: found.into() }
+    pub(crate) fn truncated(&self, at: FilePlace, expected: impl Display, found: impl Display) -> FileError {
+        self.error(FileErrorKind::Truncated, at, expected, found)
     }
 
-    /// Returns an error for a part of a glTF file.
+    fn error(&self, kind: FileErrorKind, at: impl Display, expected: impl Display, found: impl Display) -> FileError {
+        FileError::new(kind, expected, found).at(at).in_file(self.name)
+    }
+
+    /// Returns an error for a part of a glTF file, given by its path in the JSON of the file.
     #[cfg(feature = "gltf")]
-    pub(crate) fn part(
-        &self,
-        part: impl Into<String>,
-        expected: impl Into<String>,
-        found: impl Into<String>,
-    ) -> LoadError {
-        LoadError::Part {
-            file: self.name.to_owned(),
-            part: part.into(),
-            expected: expected.into(),
-            found: found.into(),
-        }
+    pub(crate) fn part(&self, part: impl Display, expected: impl Display, found: impl Display) -> FileError {
+        self.error(FileErrorKind::Syntax, part, expected, found)
     }
 
     /// Returns the vector if all its coordinates are finite and within the limit, and an error otherwise.
-    pub(crate) fn coordinates(&self, at: FilePlace, v: [f64; 3]) -> Result<[f64; 3], LoadError> {
+    pub(crate) fn coordinates(&self, at: FilePlace, v: [f64; 3]) -> Result<[f64; 3], FileError> {
         match v.into_iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {
             None => Ok(v),
             Some(found) => {
-                Err(LoadError::Coordinate { file: self.name.to_owned(), at, expected: MAX_COORDINATE, found })
+                let expected = format_args!("a coordinate between -{MAX_COORDINATE:e} and {MAX_COORDINATE:e}");
+                Err(self.error(FileErrorKind::Number, at, expected, found))
             }
         }
     }
@@ -76,10 +74,13 @@ impl<'a> Source<'a> {
         zero_based: i64,
         count: usize,
         found: i64,
-    ) -> Result<u32, LoadError> {
+    ) -> Result<u32, FileError> {
         match u32::try_from(zero_based) {
             Ok(index) if (index as usize) < count => Ok(index),
-            _ => Err(LoadError::Index { file: self.name.to_owned(), at, what, expected: count, found }),
+            _ => {
+                let expected = format_args!("an index of one of {count} {what}");
+                Err(self.error(FileErrorKind::Index, at, expected, found))
+            }
         }
     }
 }

@@ -4,18 +4,19 @@
 //! binary file as text if the header begins with `solid`. The library also refuses normals that are not numbers.
 
 use glam::DVec3;
+use pxpl5_sim::parameters::FileError;
 
 use super::Source;
 use super::model::{Model, Places, counted, push_with_slow_growth};
 use super::source::{MARK, excerpt, is_not_a_number, text};
-use crate::error::{FilePlace, LoadError};
+use crate::error::FilePlace;
 
 /// Number of bytes before the first triangle of a binary file: a header of 80 bytes and the number of triangles.
 const HEADER: usize = 84;
 /// Number of bytes of a binary triangle: a normal and three corners of three numbers each, and two attribute bytes.
 const TRIANGLE: usize = 50;
 
-pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
+pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
     match announced_bytes(source.bytes) {
         // Some programs begin the header of a binary file with `solid`, so only the length of the file shows the
         // format.
@@ -57,7 +58,7 @@ fn push_flat(model: &mut Model, corners: [[f64; 3]; 3]) {
     push_with_slow_growth(&mut model.triangles, [first, first + 1, first + 2]);
 }
 
-fn read_binary(source: &Source<'_>) -> Result<Model, LoadError> {
+fn read_binary(source: &Source<'_>) -> Result<Model, FileError> {
     let triangles = source.bytes[HEADER..].chunks_exact(TRIANGLE);
     let mut model = Model::new(Places::Single(Vec::new()));
     model.places.reserve_exact(3 * triangles.len());
@@ -109,7 +110,7 @@ impl Expects {
     }
 }
 
-fn read_text(source: &Source<'_>) -> Result<Model, LoadError> {
+fn read_text(source: &Source<'_>) -> Result<Model, FileError> {
     let mut model = Model::new(Places::Double(Vec::new()));
     let mut expects = Expects::Solid;
     let mut corners = [[0.0; 3]; 3];
@@ -150,7 +151,7 @@ fn read_text(source: &Source<'_>) -> Result<Model, LoadError> {
     Ok(model)
 }
 
-fn vertex(source: &Source<'_>, at: FilePlace, words: [&[u8]; 3]) -> Result<[f64; 3], LoadError> {
+fn vertex(source: &Source<'_>, at: FilePlace, words: [&[u8]; 3]) -> Result<[f64; 3], FileError> {
     let mut place = [0.0; 3];
     for ((number, word), axis) in place.iter_mut().zip(words).zip(["x", "y", "z"]) {
         let word = text(word);

@@ -1,46 +1,229 @@
-//! Errors that occur when a parameter is read, set or checked.
+//! The error of a setting or an argument.
 
-use crate::parameters::{ParameterInfo, Value};
-use thiserror::Error;
+use crate::parameters::{FileError, FileErrorKind, Value, nearest};
+use std::fmt::{self, Display};
 
-/// The reason why a parameter cannot be read or set, or why the model rejects its value.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+/// Largest number of names that an error lists after the most similar name.
+const MAX_LISTED: usize = 12;
+
+/// Largest number of names that an error lists without the most similar name.
+const FEW_NAMES: usize = 4;
+
+/// Error of a setting or an argument that cannot be used. The message states the place, the name, the expected and the
+/// found value.
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum ParameterError {
-    /// No parameter has this name.
-    #[error("there is no parameter `{name}`; expected one of {}", valid.join(", "))]
-    Unknown {
-        /// Requested name.
-        name: String,
-        /// Names of all parameters of the table, in the order of the fields.
-        valid: Vec<&'static str>,
-    },
-    /// The value is not whole, but the field holds whole numbers.
-    #[error("{name} must be a whole number, found {found}")]
-    NotWhole {
-        /// Field name of the parameter within its table.
-        name: &'static str,
-        /// Rejected value.
-        found: Value,
-    },
-    /// A value lies outside the limits of the model.
-    #[error("{name} must be {} to {}, found {found}", limits.0, limits.1)]
-    OutOfLimits {
-        /// Field name of the parameter within its table.
-        name: &'static str,
-        /// Smallest and largest value that the model can use.
-        limits: (Value, Value),
-        /// Rejected value.
-        found: Value,
-    },
+pub struct SettingError {
+    /// Reason why the setting cannot be used.
+    pub kind: SettingErrorKind,
+    /// Place of the setting, such as a file with a line, or a command line option. Empty if the caller knows the place.
+    pub place: Box<str>,
+    /// Name or path of the setting, such as `ring.word_ns`. For an unknown name, the kind of thing that was named.
+    pub name: Box<str>,
+    /// The expected value, in words.
+    pub expected: Box<str>,
+    /// The value that was found.
+    pub found: Box<str>,
+    /// The valid name that is most similar to an unknown name. Empty for other errors.
+    pub nearest: Box<str>,
 }
 
-impl ParameterError {
-    /// Makes the error for a table that has no parameter called `name`. Tables that are written without the macro can
-    /// also use this function.
+/// Reason why a setting or an argument cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SettingErrorKind {
+    /// The value is not one of the expected values.
+    Value,
+    /// A number lies outside its limits, or is not whole.
+    Limits,
+    /// Nothing has the given name.
+    UnknownName,
+    /// The setting is a fixed property of a chip. Programs can read it but not set it.
+    ReadOnly,
+    /// The setting is missing.
+    Missing,
+    /// The settings exclude each other, a setting does not apply, or its text has another fault.
+    Combination,
+    /// A scene has contents that its reader cannot use.
+    Scene,
+    /// A file that the setting names cannot be used.
+    File(FileErrorKind),
+}
+
+impl SettingError {
+    fn new(kind: SettingErrorKind, name: &str, expected: impl Display, found: impl Display) -> Self {
+        let [expected, found] = [expected.to_string().into(), found.to_string().into()];
+        Self { kind, place: "".into(), name: name.into(), expected, found, nearest: "".into() }
+    }
+
+    /// Creates the error for a value: `name: expected ..., found ...`.
     #[must_use]
-    pub fn unknown(name: &str, infos: &[ParameterInfo]) -> Self {
-        let valid = infos.iter().map(|info| info.name).collect();
-        Self::Unknown { name: name.to_owned(), valid }
+    pub fn value(name: &str, expected: impl Display, found: impl Display) -> Self {
+        Self::new(SettingErrorKind::Value, name, expected, found)
+    }
+
+    /// Creates the error of a text that has the wrong form as a whole: `expected ..., found "..."`.
+    #[must_use]
+    pub fn text(expected: impl Display, text: &str) -> Self {
+        Self::value("", expected, format_args!("{text:?}"))
+    }
+
+    /// Creates the error of a number outside its limits: `name must be LOW to HIGH, found ...`.
+    #[must_use]
+    pub fn limits<N: Display>(name: &str, (low, high): (N, N), found: impl Display) -> Self {
+        Self::new(SettingErrorKind::Limits, name, format_args!("{low} to {high}"), found)
+    }
+
+    /// Creates the error of a number that has a fraction or a sign, for a setting that is whole.
+    #[must_use]
+    pub fn not_whole(name: &str, found: impl Display) -> Self {
+        Self::new(SettingErrorKind::Limits, name, "a whole number", found)
+    }
+
+    /// Creates the error of a name that nothing has. `what` is the kind of thing that was named, such as `pipeline`.
+    ///
+    /// The message states the most similar name first, then all valid names. If there are many, the message leaves them
+    /// out.
+    #[must_use]
+    pub fn unknown<S: AsRef<str>>(what: &str, found: &str, valid: impl IntoIterator<Item = S>) -> Self {
+        let valid: Vec<S> = valid.into_iter().collect();
+        let names: Vec<&str> = valid.iter().map(AsRef::as_ref).collect();
+        let near = nearest(found, names.iter().copied()).unwrap_or_default();
+        let expected = match names.as_slice() {
+            [first @ .., last] if (1..MAX_LISTED).contains(&first.len()) => format!("{} or {last}", first.join(", ")),
+            [only] => (*only).to_owned(),
+            _ => String::new(),
+        };
+        Self { nearest: near.into(), ..Self::new(SettingErrorKind::UnknownName, what, expected, found) }
+    }
+
+    /// Creates the error of a path that no setting has. The message states only the most similar path.
+    #[must_use]
+    pub fn unknown_path<S: AsRef<str>>(what: &str, found: &str, valid: impl IntoIterator<Item = S>) -> Self {
+        Self { expected: "".into(), ..Self::unknown(what, found, valid) }
+    }
+
+    /// Creates the error of a parameter that is a fixed property of a chip. `origin` is the source of its value.
+    #[must_use]
+    pub fn read_only(path: &str, value: Value, origin: &str) -> Self {
+        Self::new(SettingErrorKind::ReadOnly, path, origin, value)
+    }
+
+    /// Creates the error of a missing setting. `how` is an example of a value, in words.
+    #[must_use]
+    pub fn missing(name: &str, how: impl Display) -> Self {
+        Self::new(SettingErrorKind::Missing, name, how, "")
+    }
+
+    /// Creates the error of settings that exclude each other, or of a setting that does not apply. The reason is a
+    /// sentence with the expected and the found values.
+    #[must_use]
+    pub fn combination(reason: impl Display) -> Self {
+        Self::new(SettingErrorKind::Combination, "", "", reason)
+    }
+
+    /// Creates the error of a scene that its reader cannot use. `part` is the name of the scene and the wrong part.
+    #[must_use]
+    pub fn scene(part: &str, expected: impl Display, found: impl Display) -> Self {
+        Self::new(SettingErrorKind::Scene, part, expected, found)
+    }
+
+    /// Returns an error of a value unless `holds` is true.
+    ///
+    /// # Errors
+    ///
+    /// The error of [`SettingError::value`].
+    pub fn require(holds: bool, name: &str, expected: impl Display, found: impl Display) -> Result<(), Self> {
+        if holds { Ok(()) } else { Err(Self::value(name, expected, found)) }
+    }
+
+    /// Adds the place of the setting: a file with a line, or a command line option.
+    #[must_use]
+    pub fn at(self, place: impl Display) -> Self {
+        Self { place: joined(place, ": ", &self.place), ..self }
+    }
+
+    /// Adds the name of the table to the name of the setting: `word_ns` in `ring` becomes `ring.word_ns`.
+    #[must_use]
+    pub fn in_table(self, table: impl Display) -> Self {
+        Self { name: joined(table, ".", &self.name), ..self }
+    }
+}
+
+fn joined(first: impl Display, separator: &str, second: &str) -> Box<str> {
+    if second.is_empty() { first.to_string().into() } else { format!("{first}{separator}{second}").into() }
+}
+
+impl fmt::Display for SettingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, place, name, expected, found, nearest } = self;
+        if !place.is_empty() {
+            write!(f, "{place}: ")?;
+        }
+        match kind {
+            SettingErrorKind::Limits => write!(f, "{name} must be {expected}, found {found}"),
+            SettingErrorKind::UnknownName if nearest.is_empty() => write!(f, "there is no {name} `{found}`"),
+            // A reader sees at a glance which of a few names is the nearest.
+            SettingErrorKind::UnknownName if !expected.is_empty() && expected.matches(", ").count() < FEW_NAMES - 1 => {
+                write!(f, "expected {expected}, found `{found}`")
+            }
+            SettingErrorKind::UnknownName => {
+                write!(f, "there is no {name} `{found}`; did you mean `{nearest}`?")?;
+                if expected.is_empty() { Ok(()) } else { write!(f, " (expected {expected})") }
+            }
+            SettingErrorKind::ReadOnly => {
+                write!(f, "{name} is {found} in every machine ({expected}); it is listed, but cannot be set")
+            }
+            SettingErrorKind::Missing => write!(f, "{name} is missing: give {expected}"),
+            _ if expected.is_empty() => f.write_str(found),
+            _ if name.is_empty() => write!(f, "expected {expected}, found {found}"),
+            _ => write!(f, "{name}: expected {expected}, found {found}"),
+        }
+    }
+}
+
+impl std::error::Error for SettingError {}
+
+impl From<FileError> for SettingError {
+    fn from(error: FileError) -> Self {
+        Self::new(SettingErrorKind::File(error.kind), "", "", error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_message_states_place_name_expected_and_found_value() {
+        let value = SettingError::value("line rate", "300 to 115200", f64::NAN);
+        assert_eq!(value.to_string(), "line rate: expected 300 to 115200, found NaN");
+        let limits = SettingError::limits("word_ns", (1, 9), 10).in_table("ring").at("--set");
+        assert_eq!(limits.to_string(), "--set: ring.word_ns must be 1 to 9, found 10");
+        assert_eq!(SettingError::not_whole("n", 0.5).to_string(), "n must be a whole number, found 0.5");
+        assert_eq!(
+            SettingError::value("", "a text", 1).at("line 2").at("f").to_string(),
+            "f: line 2: expected a text, found 1"
+        );
+        let clock = SettingError::read_only("i860.chip.clock", Value::Whole(40), "data sheet");
+        assert!(clock.to_string().starts_with("i860.chip.clock is 40 in every machine (data sheet);"), "{clock}");
+        assert_eq!(SettingError::missing("scene", "a scene").to_string(), "scene is missing: give a scene");
+    }
+
+    #[test]
+    fn the_nearest_name_comes_first_and_only_a_short_list_is_printed() {
+        let short = SettingError::unknown("level", "cycles", ["analytic", "transaction", "cycle"]);
+        assert_eq!(short.to_string(), "expected analytic, transaction or cycle, found `cycles`");
+        assert_eq!(&*short.nearest, "cycle");
+        let letters = ["a1", "b1", "c1", "d1", "e1", "f1", "g1", "h1", "i1", "j1", "k1", "l1", "m1"];
+        let some = SettingError::unknown("letter", "c2", &letters[..5]);
+        assert_eq!(some.to_string(), "there is no letter `c2`; did you mean `c1`? (expected a1, b1, c1, d1 or e1)");
+        let long = SettingError::unknown("letter", "k2", letters);
+        assert_eq!(long.to_string(), "there is no letter `k2`; did you mean `k1`?");
+        let path = SettingError::unknown_path("key", "titel", ["title", "fields"]);
+        assert_eq!(path.to_string(), "there is no key `titel`; did you mean `title`?");
+        assert_eq!(SettingError::unknown("letter", "a", ["b"]).to_string(), "expected b, found `a`");
+        let none: [&str; 0] = [];
+        assert_eq!(SettingError::unknown("letter", "a", none).to_string(), "there is no letter `a`");
     }
 }

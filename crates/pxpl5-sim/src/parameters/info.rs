@@ -1,6 +1,6 @@
 //! Unit, provenance, range and source of a parameter.
 
-use crate::parameters::Value;
+use crate::parameters::{SettingError, Value};
 use serde::{Deserialize, Serialize};
 
 /// The provenance of a parameter's value: printed, calculated or assumed.
@@ -11,7 +11,8 @@ pub enum Provenance {
     Published,
     /// The value follows by arithmetic from published figures.
     Derived,
-    /// The value comes from memory or from an estimate. Its range is as wide as the published figures allow.
+    /// The value comes from memory or from an estimate. The range of the value is as wide as the published figures
+    /// allow.
     Assumed,
 }
 
@@ -36,9 +37,9 @@ pub struct ParameterInfo {
     pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),
-    /// Smallest and largest value that the model can use.
+    /// Smallest and largest value with which the model works.
     pub limits: (Value, Value),
-    /// Source of the value: a paper's short name, a formula or a reason.
+    /// Source of the value: the short name of a paper, a formula, or a reason.
     pub source: &'static str,
 }
 
@@ -51,4 +52,11 @@ impl ParameterInfo {
             _ => None,
         }
     }
+}
+
+/// Creates the error of a table that has no parameter called `name`. Tables that are written without the macro can also
+/// use this function.
+#[must_use]
+pub fn unknown_parameter(name: &str, infos: &[ParameterInfo]) -> SettingError {
+    SettingError::unknown_path("parameter", name, infos.iter().map(|info| info.name))
 }

@@ -67,10 +67,10 @@ macro_rules! parameter_table {
                 Self::INFOS
             }
 
-            fn get(&self, name: &str) -> ::core::result::Result<$crate::parameters::Value, $crate::parameters::ParameterError> {
+            fn get(&self, name: &str) -> ::core::result::Result<$crate::parameters::Value, $crate::parameters::SettingError> {
                 match name {
                     $(stringify!($field) => ::core::result::Result::Ok(self.$field.into()),)*
-                    _ => ::core::result::Result::Err($crate::parameters::ParameterError::unknown(name, Self::INFOS)),
+                    _ => ::core::result::Result::Err($crate::parameters::unknown_parameter(name, Self::INFOS)),
                 }
             }
 
@@ -78,15 +78,15 @@ macro_rules! parameter_table {
                 &mut self,
                 name: &str,
                 value: $crate::parameters::Value,
-            ) -> ::core::result::Result<(), $crate::parameters::ParameterError> {
+            ) -> ::core::result::Result<(), $crate::parameters::SettingError> {
                 match name {
                     $(stringify!($field) => $crate::parameters::Number::assign(&mut self.$field, stringify!($field), value),)*
-                    _ => ::core::result::Result::Err($crate::parameters::ParameterError::unknown(name, Self::INFOS)),
+                    _ => ::core::result::Result::Err($crate::parameters::unknown_parameter(name, Self::INFOS)),
                 }
             }
 
             // The comparison uses constants and looks up no names, because programs check many machines.
-            fn check(&self) -> ::core::result::Result<(), $crate::parameters::ParameterError> {
+            fn check(&self) -> ::core::result::Result<(), $crate::parameters::SettingError> {
                 $($crate::parameters::check_value(
                     stringify!($field),
                     self.$field.into(),

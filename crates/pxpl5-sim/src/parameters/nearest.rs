@@ -1,10 +1,27 @@
 //! Search for the name that is most similar to an unknown name, for error messages.
 
 /// Returns the candidate that begins with `name`, for example a parameter of the table `name`. Otherwise returns the
-/// candidate that differs from `name` by the fewest single-letter changes. Returns `None` if there are no candidates.
+/// candidate that shares the most words with `name`, and of these the one with the fewest single-letter changes.
+/// Returns `None` if there are no candidates.
+///
+/// Capital and small letters are the same. Words end at punctuation, and similar words count as the same word.
 #[must_use]
 pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    candidates.min_by_key(|candidate| (!candidate.starts_with(name), strsim::levenshtein(name, candidate)))
+    let name = &name.to_lowercase();
+    candidates.min_by_key(|candidate| {
+        let foreign = words(name).filter(|word| !words(candidate).any(|other| are_similar(word, other)));
+        (!candidate.starts_with(name), foreign.count(), strsim::levenshtein(name, candidate))
+    })
+}
+
+fn words(name: &str) -> impl Iterator<Item = &str> {
+    name.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty())
+}
+
+/// Returns true if at most half of the letters differ.
+fn are_similar(word: &str, other: &str) -> bool {
+    let longer = word.chars().count().max(other.chars().count());
+    2 * strsim::levenshtein(word, other) <= longer
 }
 
 #[cfg(test)]
@@ -17,6 +34,21 @@ mod tests {
         for (name, expected) in [("gp", "gp.pass_ns"), ("gp.tri", "gp.triangle_ns"), ("fi", "fit"), ("tilte", "title")]
         {
             assert_eq!(nearest(name, keys.into_iter()), Some(expected), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_name_of_the_same_family_is_nearer_than_a_shorter_word() {
+        let names =
+            ["euc", "mig", "slats", "jitp-beam", "jitp-dual-view", "renderer.swap_ns", "n_renderers", "machine.n_gps"];
+        for (name, expected) in [
+            ("jitp-bean", "jitp-beam"),
+            ("jitp-duel", "jitp-dual-view"),
+            ("slast", "slats"),
+            ("renderers", "n_renderers"),
+            ("machine.n_gpus", "machine.n_gps"),
+        ] {
+            assert_eq!(nearest(name, names.into_iter()), Some(expected), "{name}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Number types of parameters, and the check of a value against its limits.
 
-use crate::parameters::{ParameterError, Value};
+use crate::parameters::{SettingError, Value};
 
 /// A number type that a field of a table can have: `u64` or `f64`.
 pub trait Number: Copy + Into<Value> {
@@ -11,9 +11,9 @@ pub trait Number: Copy + Into<Value> {
     ///
     /// # Errors
     ///
-    /// Returns [`ParameterError::NotWhole`] if the field needs a whole number and the value is not whole.
-    fn assign(&mut self, name: &'static str, value: Value) -> Result<(), ParameterError> {
-        *self = Self::from_value(value).ok_or(ParameterError::NotWhole { name, found: value })?;
+    /// Returns a [`SettingError`] if the field needs a whole number and the value is not whole.
+    fn assign(&mut self, name: &'static str, value: Value) -> Result<(), SettingError> {
+        *self = Self::from_value(value).ok_or(SettingError::not_whole(name, value))?;
         Ok(())
     }
 }
@@ -35,8 +35,8 @@ impl Number for f64 {
 ///
 /// # Errors
 ///
-/// Returns [`ParameterError::OutOfLimits`] if the number is outside `limits`, the smallest and largest allowed value.
-pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<(), ParameterError> {
+/// Returns a [`SettingError`] if the number is outside `limits`, the smallest and largest allowed value.
+pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<(), SettingError> {
     check_value(name, found.into(), (limits.0.into(), limits.1.into()))
 }
 
@@ -44,9 +44,9 @@ pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<
 /// compiles to two comparisons.
 #[doc(hidden)]
 #[inline]
-pub fn check_value(name: &'static str, found: Value, limits: (Value, Value)) -> Result<(), ParameterError> {
+pub fn check_value(name: &'static str, found: Value, limits: (Value, Value)) -> Result<(), SettingError> {
     if limits.0 <= found && found <= limits.1 {
         return Ok(());
     }
-    Err(ParameterError::OutOfLimits { name, limits, found })
+    Err(SettingError::limits(name, limits, found))
 }

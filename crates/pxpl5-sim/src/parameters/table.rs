@@ -1,6 +1,6 @@
 //! Access to the parameters of a table by name, for any table type.
 
-use crate::parameters::{ParameterError, ParameterInfo, Value};
+use crate::parameters::{ParameterInfo, SettingError, Value};
 
 /// A parameter of a table together with its current value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,17 +38,17 @@ pub trait ParameterTable {
     ///
     /// # Errors
     ///
-    /// Returns [`ParameterError::Unknown`] if no parameter has this name.
-    fn get(&self, name: &str) -> Result<Value, ParameterError>;
+    /// Returns a [`SettingError`] if no parameter has this name.
+    fn get(&self, name: &str) -> Result<Value, SettingError>;
 
     /// Changes the value of a parameter. This function does not check the range and the limits. To check them, call
     /// [`ParameterTable::check`].
     ///
     /// # Errors
     ///
-    /// Returns [`ParameterError::Unknown`] if no parameter has this name. Returns [`ParameterError::NotWhole`] if the
-    /// field holds whole numbers and the value is not whole.
-    fn set(&mut self, name: &str, value: Value) -> Result<(), ParameterError>;
+    /// Returns a [`SettingError`] if no parameter has this name, or if the field holds whole numbers and the
+    /// value is not whole.
+    fn set(&mut self, name: &str, value: Value) -> Result<(), SettingError>;
 
     /// Returns all parameters with their current values, in the order of the fields.
     fn entries(&self) -> Vec<Entry> {
@@ -64,12 +64,12 @@ pub trait ParameterTable {
     ///
     /// # Errors
     ///
-    /// Returns [`ParameterError::OutOfLimits`] for the first parameter whose value is outside its limits.
-    fn check(&self) -> Result<(), ParameterError> {
+    /// Returns a [`SettingError`] for the first parameter whose value is outside its limits.
+    fn check(&self) -> Result<(), SettingError> {
         for info in self.infos() {
             let value = self.get(info.name)?;
             if !(Entry { info, value }).is_within_limits() {
-                return Err(ParameterError::OutOfLimits { name: info.name, limits: info.limits, found: value });
+                return Err(SettingError::limits(info.name, info.limits, value));
             }
         }
         Ok(())

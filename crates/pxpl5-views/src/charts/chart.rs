@@ -88,7 +88,7 @@ pub struct Chart {
     pub size: ChartSize,
 }
 
-/// Lengths of a drawing as integers, in units so small that rounding is invisible.
+/// Lengths of a chart as integers, in drawing units. These units are so small that rounding is invisible.
 #[derive(Clone, Copy, Debug)]
 struct Measures {
     width: u32,
@@ -107,7 +107,7 @@ const UNITS_A_MM: f64 = 40.0;
 const COLUMN_EM_MM: f64 = 7.5 * 25.4 / 72.0;
 /// Ratio of height to width of a chart in a column, without the legend.
 const COLUMN_HEIGHT: f64 = 0.66;
-/// Height of a line of the legend, relative to the height of text.
+/// Height of a row of the legend, relative to the height of text.
 const NAME_HEIGHT_EM: f64 = 1.4;
 const NAMES_A_LINE: usize = 2;
 
@@ -210,7 +210,7 @@ impl Chart {
     }
 }
 
-/// A point in axis coordinates, with the ends of its interval.
+/// A point in axis coordinates, with the ends of its confidence interval.
 #[derive(Clone, Copy)]
 struct Placed {
     at: (f64, f64),
@@ -218,7 +218,7 @@ struct Placed {
     is_hollow: bool,
 }
 
-/// Splits points into runs without gaps. A point without a position (NaN) ends a run.
+/// Splits the points of a series into sequences, so that a line has a gap at each point without a position (NaN).
 fn runs(points: &[ChartPoint], axes: (&Axis, &Axis)) -> Vec<Vec<Placed>> {
     let placed = |point: &ChartPoint| {
         let at = (axes.0.place(point.at.0), axes.1.place(point.at.1));

@@ -6,7 +6,7 @@ use crate::svg::{Tenths, anchored, hint, line};
 /// Width of the chart in SVG units.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 200.0;
-/// Space on the left of the bars.
+/// Space on the left of the bars, in SVG units.
 const LEFT: f64 = 44.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 14.0;
@@ -50,7 +50,7 @@ fn place_of(bin: usize) -> f64 {
     LEFT + STEP * bin as f64
 }
 
-/// Numbers of values in equal intervals of their range.
+/// A count of values for each bar of a histogram. The range of the values is divided into intervals of equal width.
 struct Bins {
     begin: f64,
     width: f64,
@@ -58,7 +58,7 @@ struct Bins {
 }
 
 impl Bins {
-    /// Counts values by interval. If all values are equal, they lie in the middle interval.
+    /// Counts the values in each interval. If all values are equal, the middle interval contains all values.
     fn of(values: &[f64]) -> Self {
         let low = values.iter().copied().fold(f64::MAX, f64::min);
         let high = values.iter().copied().fold(f64::MIN, f64::max);

@@ -16,8 +16,8 @@ pub struct SpeedAndError {
 
 /// Returns an SVG chart of simulated fields per host second, on a logarithmic axis, against the mean error.
 ///
-/// The error covers the published figures that were not used to fit parameters. A line joins the best entries: no other
-/// entry is both faster and more accurate.
+/// The error covers the published figures that were not used to fit parameters. A line joins the best levels of
+/// modelling: no other level is both faster and more accurate.
 #[must_use]
 pub fn level_chart(levels: &[SpeedAndError]) -> String {
     let axes = ChartAxes {
@@ -34,13 +34,15 @@ fn series_of(level: &SpeedAndError) -> ChartSeries {
     ChartSeries { name, points: vec![point_of(level)], look: SeriesStyle::Points }
 }
 
-/// Returns the chart position of an entry. Speeds below one field per second are drawn at one.
+/// Returns the chart position of a level of modelling. A speed below one field per second is drawn at one field per
+/// second.
 const fn point_of(level: &SpeedAndError) -> ChartPoint {
     let at = (level.fields_per_host_second.max(1.0), level.mean_error_percent);
     ChartPoint { at, interval: (f64::NAN, f64::NAN), is_hollow: false }
 }
 
-/// Returns the line through the best entries, starting with the fastest. Returns `None` for fewer than two entries.
+/// Returns a line through the levels that no other level exceeds in both speed and accuracy, starting with the fastest
+/// level. Returns `None` if there are fewer than two such levels.
 fn front(levels: &[SpeedAndError]) -> Option<ChartSeries> {
     let mut sorted: Vec<&SpeedAndError> = levels.iter().collect();
     sorted.sort_by(|a, b| {
@@ -79,7 +81,7 @@ mod tests {
         assert_eq!(super::front(&[at(10.0, 1.0)]), None);
     }
 
-    /// Marks of the first series are discs, and its legend has a second disc. A fifth series has discs again.
+    /// Tests the position of the first disc in the chart. The markers of the first series are discs.
     #[test]
     fn a_tenth_of_the_speed_stands_a_power_further_left() {
         let place = |speed: f64| {

@@ -10,7 +10,7 @@ use plotters::style::{Color, RGBColor, ShapeStyle};
 /// more series, their lines are dashed.
 const COLOURS: [u32; 8] = [0x00_0000, 0xe6_9f00, 0x56_b4e9, 0x00_9e73, 0x00_72b2, 0xd5_5e00, 0xcc_79a7, 0xb8_a900];
 
-/// Lengths of dashes and gaps, in tenths of the height of text.
+/// Lengths of dashes and gaps, in tenths of the height of text. `None` is a solid line.
 const DASHES: [Option<(u32, u32)>; 3] = [None, Some((5, 3)), Some((2, 3))];
 
 /// Colour, dashes and marker of a series.
@@ -20,7 +20,7 @@ pub(super) struct Look {
     pub(super) colour: RGBColor,
     /// Height of text in drawing units.
     pub(super) em: u32,
-    /// True for a series whose marker is a wide ring.
+    /// True if the marker is hollow. A hollow marker is a wide ring.
     is_hollow: bool,
 }
 
@@ -46,8 +46,8 @@ impl Look {
         dashes.map(|(on, off)| (on * self.em / 10, off * self.em / 10))
     }
 
-    /// Draws the marker of the series. The shape depends on the series: a disc, a triangle, a cross or a ring, and then
-    /// a disc again.
+    /// Draws the marker of the series. Successive series have a disc, a triangle, a cross and a ring, then a disc
+    /// again.
     pub(super) fn mark<B, C>(
         &self,
         area: &DrawingArea<B, C>,

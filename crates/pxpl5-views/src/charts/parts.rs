@@ -34,7 +34,8 @@ pub(crate) fn colour_of_part(name: &str) -> &'static str {
 
 /// Returns a single bar with the mean parts of the latency, as SVG for a page.
 ///
-/// A frame marks the parts that the papers count as latency. The text is empty if the sum of the parts is not positive.
+/// A frame marks the parts that the papers count as latency. The SVG text is empty if the sum of the parts is not
+/// positive.
 #[must_use]
 pub fn part_bar(parts: &[MeanPart]) -> String {
     part_bar_element(parts).map_or_else(String::new, |svg| svg.to_string())
@@ -71,8 +72,8 @@ fn piece(part: &MeanPart, x: f64, width: f64) -> Element {
     piece.child(&hint(format_args!("{}: {:.3} ms", part.name, part.mean_ms)))
 }
 
-/// Horizontal range of the frame in chart units, from the left edge of the first published part to the right edge of
-/// the last.
+/// Horizontal range of the frame in chart units, around the published parts: from the left edge of the first to the
+/// right edge of the last.
 struct Frame {
     from: f64,
     to: f64,

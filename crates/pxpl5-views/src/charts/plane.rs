@@ -103,7 +103,8 @@ mod tests {
         assert!(svg.contains("a &lt; b") && svg.contains("error, px"));
     }
 
-    /// 0.1 to 100 are three decades: 1 lies at a third of the height, and 0 has no position.
+    /// The axis from 0.1 to 100 has three decades. The value 1 therefore lies at a third of the height, and the value 0
+    /// has no position.
     #[test]
     fn decades_are_equally_high() {
         let points = vec![(0.0, 0.1), (1.0, 1.0), (2.0, 0.0), (3.0, 100.0), (4.0, 10.0)];

@@ -17,7 +17,7 @@ pub enum AxisScale {
     Names(Vec<String>),
 }
 
-/// An axis with a range that contains all numbers.
+/// An axis of a chart, with a range that contains all drawn numbers.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     scale: AxisScale,
@@ -41,7 +41,8 @@ impl Axis {
         Self { ends, ..blank }
     }
 
-    /// Returns the position of a number, or NaN if the number has no position.
+    /// Returns the position of a number on the axis (its logarithm on a logarithmic axis), or NaN if the number has no
+    /// position.
     pub(super) fn place(&self, number: f64) -> f64 {
         match &self.scale {
             AxisScale::Decades if number > 0.0 => number.log10(),
@@ -76,7 +77,7 @@ impl Axis {
     }
 }
 
-/// Makes the axis usable in the crate `plotters`, with positions as values.
+/// Makes the axis usable in the crate `plotters`. The values that `plotters` receives are positions on the axis.
 impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
@@ -95,7 +96,8 @@ impl Ranged for Axis {
     }
 }
 
-/// Extends a range by a twentieth of its length on both sides. A range of length zero is extended too.
+/// Extends a range by a twentieth of its length on both sides, so that no point lies on the edge of the chart. A range
+/// of length zero is extended too.
 fn widened(low: f64, high: f64) -> (f64, f64) {
     let room = if high > low { (high - low) / 20.0 } else { (high.abs() / 10.0).max(1e-9) };
     (low - room, high + room)
@@ -112,7 +114,7 @@ mod tests {
         assert_eq!(axis.marks(), [14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0]);
     }
 
-    /// 0.1 to 60 lies within the decades from 0.1 to 100. Numbers that are not positive have no position.
+    /// The numbers 0.1 to 60 lie within the decades from 0.1 to 100. Numbers that are not positive have no position.
     #[test]
     fn decades_end_at_powers_of_ten() {
         let axis = Axis::reaching(&AxisScale::Decades, [0.1, 60.0, 0.0, -3.0, f64::NAN].into_iter());

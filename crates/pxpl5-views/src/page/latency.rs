@@ -25,7 +25,7 @@ pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
     all
 }
 
-/// Returns a note that states the number of pictures in the statistics.
+/// Returns a note that states the number of pictures from which the statistics are computed.
 fn of_how_many(n: &Value) -> Option<Element> {
     match n.as_u64()? {
         0 => Some(paragraph("No complete picture was shown after the warm-up, so there is no latency.")),
@@ -33,7 +33,8 @@ fn of_how_many(n: &Value) -> Option<Element> {
     }
 }
 
-/// Returns the numbers of due pictures by result. If the scene was too heavy, a prominent line states this.
+/// Returns a table with the numbers of due pictures: shown, late, incomplete and so on. If the scene was too heavy for
+/// the pipeline, a prominent line states this.
 pub(super) fn due(report: &Value) -> Vec<Element> {
     let heavy = report["too_heavy"]["advice"].as_str().map(|advice| {
         let [missed, due] = ["not_shown", "due"].map(|key| known(&report["too_heavy"][key]));

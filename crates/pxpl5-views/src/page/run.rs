@@ -1,4 +1,4 @@
-//! Input of a page.
+//! The data from which a page is made.
 
 use serde_json::Value;
 

@@ -11,7 +11,8 @@ pub(super) fn utilisation(report: &Value) -> Vec<Element> {
     all
 }
 
-/// A kind of board: its title, the report keys of its shares, and the keys and labels of further shares.
+/// A kind of board: its title, the report keys of its busy share of time, and the keys and labels of further shares of
+/// time.
 type Kind = (&'static str, [&'static str; 2], &'static [(&'static str, &'static str)]);
 
 const KINDS: [Kind; 4] = [

@@ -15,7 +15,7 @@ pub struct Column {
     pub name: String,
     /// Definition of the values, in a sentence.
     pub definition: String,
-    /// True if a value may be missing, which CSV shows as an empty field.
+    /// True if a value may be missing, which CSV shows as an empty cell.
     pub optional: bool,
 }
 
@@ -29,7 +29,8 @@ impl Column {
     }
 }
 
-/// Returns the columns in order: first the fields of [`PictureTimes`], then the parts in [`LATENCY_PARTS`].
+/// Returns the columns in order: first the members of [`PictureTimes`], then the parts of the latency in
+/// [`LATENCY_PARTS`].
 #[must_use]
 pub fn columns() -> Vec<Column> {
     // Identity, state and times of a picture come first.

@@ -7,7 +7,8 @@ use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
 use pxpl5_wire::display::Display;
 
-/// Returns the dependencies of the chosen picture as arrows.
+/// Returns the dependencies between the stages of the chosen picture as arrows. Arrows outside the drawn time are left
+/// out.
 pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<&PictureTimes>) -> Vec<Arrow> {
     let Some(chosen) = chosen else { return Vec::new() };
     let bars = located(timeline);
@@ -52,8 +53,9 @@ fn from_tracker(timeline: &Timeline, bars: &[Located<'_>]) -> Option<Arrow> {
 
 /// Returns the bar on which another bar depends. Usually this is the previous stage of the same surface.
 ///
-/// If the previous stage has no surfaces, its only bar is used. The second surface's TRANSFORM depends on the first
-/// surface's TRANSFORM. The bottom half of a picture depends on the top half.
+/// There are three other cases. A stage that does not work for single surfaces has one bar, and this bar is used. The
+/// second surface's TRANSFORM depends on the first surface's TRANSFORM. The bottom half of a picture depends on the top
+/// half.
 fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     let sibling = bars.iter().find(|other| other.bar.stage == bar.stage && is_sequel(other.bar, bar)).copied();
     if sibling.is_some() {
@@ -75,7 +77,7 @@ fn of_stage<'a>(bars: &[Located<'a>], stage: Stage, surface: Option<SurfaceId>) 
     of_stage.find(|located| concerns(located.bar.surface, surface)).copied()
 }
 
-/// Returns true if work for one surface also concerns another surface. `None` stands for all surfaces.
+/// Returns true if two bars have a surface in common. `None` stands for all surfaces.
 fn concerns(one: Option<SurfaceId>, other: Option<SurfaceId>) -> bool {
     one.is_none() || other.is_none() || one == other
 }
@@ -101,9 +103,10 @@ fn follow(earlier: Located<'_>, later: Located<'_>) -> Arrow {
     Arrow { from, begin: earlier.bar.end.min(later.bar.begin), to, end: later.bar.begin }
 }
 
-/// Returns the time at which the first copied pixel is lit.
+/// Returns the time at which the display lights the first line of a COPY bar, in the period that first shows the
+/// picture.
 ///
-/// If no swap shows the picture, returns the time at which the part that defines the picture's times is lit.
+/// The result is never earlier than the time from which the picture counts as shown (`shown_at`).
 fn light(display: &dyn Display, chosen: &PictureTimes, bar: &Bar) -> Time {
     let period = display.period_at(chosen.shown_at);
     let surface = bar.surface.map_or(0, SurfaceId::index);

@@ -1,7 +1,7 @@
 //! Builds a timeline from the observations of a run.
 
 use super::arrows::arrows;
-use super::model::{Scan, Timeline, TimelineRow};
+use super::model::{Timeline, TimelineRow, TimelineScan};
 use super::options::{MAX_FIELDS, TimelineOptions};
 use super::rows::{rows, set_lanes};
 use crate::updates::Updates;
@@ -12,7 +12,7 @@ use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
-/// Bars share a lane if they overlap by less than the drawn time divided by this number.
+/// Divisor of the drawn time span. Two bars that overlap by less than the quotient can share a lane.
 const TOUCHING: u64 = 300;
 
 /// Smallest number of display periods in a drawing, if the user gives no number.
@@ -101,10 +101,10 @@ fn samples(run: &SoFar<'_>, within: Range<Time>) -> Vec<(PictureNumber, Time)> {
     begun.filter(|mark| within.contains(&mark.time)).map(|mark| (mark.picture, mark.time)).collect()
 }
 
-fn scan(display: &dyn Display, pictures: &[PictureTimes], period: PeriodNumber) -> Option<Scan> {
+fn scan(display: &dyn Display, pictures: &[PictureTimes], period: PeriodNumber) -> Option<TimelineScan> {
     let next = display.tick(period.next());
     let shown = pictures.iter().rev().find(|times| times.shown_at < next);
-    Some(Scan {
+    Some(TimelineScan {
         period,
         picture: shown.map(|times| times.picture),
         begin: display.first_light(0, period)?,

@@ -1,7 +1,7 @@
 //! Draws a timeline as SVG.
 
 use super::legend::legend;
-use super::model::{Arrow, Bar, DrawingPlace, Scan, Timeline, TimelineRow};
+use super::model::{Arrow, Bar, DrawingPlace, Timeline, TimelineRow, TimelineScan};
 use super::style::{class_of, definitions, letters, pattern, style};
 use crate::markup::Element;
 use crate::svg::{self, Units, caption, hint, rectangle, segment};
@@ -25,7 +25,7 @@ const SHOWN: i64 = 18;
 /// Number of periods from which the axis omits the word `field`, because space is short.
 const CROWDED: usize = 10;
 
-/// A timeline with the vertical positions of its parts.
+/// A timeline that is being drawn, with the vertical positions of its rows.
 struct Drawing<'a> {
     timeline: &'a Timeline,
     out: Element,
@@ -35,7 +35,7 @@ struct Drawing<'a> {
     beam: i64,
 }
 
-/// Texts around a timeline: title and origin.
+/// Texts around a timeline: the title, and the origin of the drawing.
 pub(super) struct Words {
     pub(super) title: String,
     pub(super) subtitle: String,
@@ -239,7 +239,7 @@ impl<'a> Drawing<'a> {
     }
 
     /// Draws the path of the display's beam in a period, and the number of the displayed picture.
-    fn scan(&mut self, scan: &Scan) {
+    fn scan(&mut self, scan: &TimelineScan) {
         let x = self.x(scan.begin);
         let end = self.x(scan.end);
         let y = Units::whole(self.beam);

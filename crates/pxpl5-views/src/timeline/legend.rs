@@ -6,7 +6,7 @@ use crate::markup::Element;
 use crate::svg::{Units, caption, rectangle, segment};
 use pxpl5_wire::display::Surface;
 
-/// Draws a legend of two lines. `x` and `y` are the left end of the first line's baseline.
+/// Draws a legend of two lines. `x` and `y` are the coordinates of the left end of the first line's baseline.
 pub(super) fn legend(out: &mut Element, timeline: &Timeline, [x, y]: [i64; 2]) {
     let mut first = Line { out, x, y };
     for (stage, title) in STAGES.iter().filter(|(stage, _)| timeline.bars().any(|bar| bar.stage == *stage)) {
@@ -32,7 +32,8 @@ fn second_line(mut line: Line<'_>, timeline: &Timeline) {
     line.stroke("beam", "beam");
 }
 
-/// Adds the samples of surfaces. The sample of the first surface is plain, and all others are hatched.
+/// Adds a sample of the fill pattern of each surface to the legend. The sample of the first surface is plain, and the
+/// samples of all other surfaces are hatched.
 fn surfaces(line: &mut Line<'_>, surfaces: &[Surface]) {
     match surfaces {
         [first, second] => {
@@ -47,7 +48,7 @@ fn surfaces(line: &mut Line<'_>, surfaces: &[Surface]) {
     }
 }
 
-/// A line of the legend that grows to the right.
+/// A line of the legend, to which entries are added from left to right.
 struct Line<'a> {
     out: &'a mut Element,
     x: i64,
@@ -76,7 +77,7 @@ impl Line<'_> {
     }
 }
 
-/// Estimates the width of a text. Capitals are wider than other letters.
+/// Estimates the width of a text in SVG units. Capitals count as wider than other letters.
 fn width(text: &str) -> i64 {
     text.chars().map(|c| if c.is_uppercase() { 11 } else { 8 }).sum()
 }

@@ -11,8 +11,8 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 pub struct Bar {
     /// Stage of the work.
     pub stage: Stage,
-    /// Number of the picture. If the host sends views independently of pictures, a bar of SEND has the view's number
-    /// instead.
+    /// Number of the picture. If the host sends head poses (views) independently of pictures, a bar of SEND has the
+    /// number of the view instead.
     pub picture: PictureNumber,
     /// Surface for which the stage works. `None` for work on all surfaces, or if the display has only one surface.
     pub surface: Option<SurfaceId>,
@@ -35,7 +35,7 @@ pub struct Bar {
 /// A row of a timeline, for a resource that works independently of other resources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineRow {
-    /// Name on the left of the row.
+    /// Name of the resource, drawn on the left of the row.
     pub name: String,
     /// Bars, in the order of their start.
     pub bars: Vec<Bar>,
@@ -48,7 +48,7 @@ pub struct TimelineRow {
 
 /// The scan of the first display's first surface in one period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Scan {
+pub struct TimelineScan {
     /// Period of the scan. For NTSC, the period is a field.
     pub period: PeriodNumber,
     /// Picture that is displayed in this period, if any.
@@ -68,17 +68,18 @@ pub struct Timeline {
     pub to: Time,
     /// Retraces of the first display, each with the period that begins at the retrace.
     pub retraces: Vec<(PeriodNumber, Time)>,
-    /// Sampled poses, each with the number of its picture or view. `None` if samples are not drawn.
+    /// Sampled head poses, each with the number of the picture or update for which the pose was sampled. `None` if
+    /// samples are not drawn.
     pub samples: Option<Vec<(PictureNumber, Time)>>,
     /// Rows, from top to bottom.
     pub rows: Vec<TimelineRow>,
     /// Scans of the first display.
-    pub scans: Vec<Scan>,
+    pub scans: Vec<TimelineScan>,
     /// Surfaces of all displays, in order of their numbers.
     pub surfaces: Vec<Surface>,
     /// Picture whose dependencies are drawn.
     pub picture: Option<PictureNumber>,
-    /// Number of the SEND that supplied the view of the picture whose dependencies are drawn.
+    /// Number of the SEND that supplied the head pose of the picture whose dependencies are drawn.
     pub update: Option<PictureNumber>,
     /// Dependencies of the picture in the field `picture`.
     pub arrows: Vec<Arrow>,
@@ -111,7 +112,7 @@ pub struct Arrow {
     pub end: Time,
 }
 
-/// A row of a drawing, with the lane if it is a row of boards.
+/// One end of an arrow: a row of the drawing, and the lane if the row belongs to boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawingPlace {
     /// The row of the tracker.

@@ -10,7 +10,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// Returns all rows of a run, from the host's row to the row of the last surface.
+/// Returns all rows of a run from top to bottom: the host's row first, and the row of the last surface at the end.
 pub(super) fn rows(run: &SoFar<'_>, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
     let mut rows = Vec::new();
     if !options.without_host {
@@ -30,7 +30,8 @@ fn row(name: &str, mut bars: Vec<Bar>) -> TimelineRow {
     TimelineRow { name: name.to_owned(), bars, lanes: 1, shown: Vec::new() }
 }
 
-/// Returns the row of a port that swaps independently: the data that it received and the pictures that it showed.
+/// Returns the row of a port that swaps independently: the data that the port received and the pictures that the port
+/// showed.
 fn port_row(run: &SoFar<'_>, port: &DisplayPort) -> TimelineRow {
     let bars = copies(run, |arrival| arrival.target.frame_buffer == port.node);
     TimelineRow { shown: shown(run, port.node), ..row(&port.name, bars) }
@@ -63,8 +64,8 @@ fn has_many_surfaces(record: &Record) -> bool {
 /// Copies to a display, by picture and by part of the picture.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
-/// Returns the COPY bars of a surface or a port. A picture has one bar, or two if it arrived in two parts, one after
-/// the other.
+/// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two
+/// parts, one after the other.
 fn copies(run: &SoFar<'_>, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
     let message = run.record().message_span();
     let mut parts = Parts::new();
@@ -97,7 +98,8 @@ fn copy_bar(record: &Record, arrival: &Arrival, begin: Time) -> Bar {
     }
 }
 
-/// Returns the first line of a surface that a region fills. The picture may have fewer lines than the surface.
+/// Returns the first line of a surface that a region fills. If the picture has fewer lines than the surface, the line
+/// is scaled to the height of the surface.
 fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     let grid = &arrival.target.grid;
     let [_, top, _, _] = grid.rectangle(arrival.target.region);
@@ -105,7 +107,7 @@ fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     top * height / grid.height.max(1)
 }
 
-/// Labels the bars that are halves of a picture. A picture has halves if the surface received both halves.
+/// Marks each bar as the top or bottom half of its picture, if the surface received both halves one after the other.
 fn name_halves(parts: &mut Parts) {
     let bottoms: Vec<PictureNumber> =
         parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();
@@ -133,7 +135,8 @@ fn join(times: &mut Vec<(Time, Time)>) {
     *times = joined;
 }
 
-/// Assigns each bar of a row to the first lane that is free at its time.
+/// Assigns each bar of a row to the first lane that is free when the bar begins. An overlap of at most `touching` is
+/// allowed.
 pub(super) fn set_lanes(row: &mut TimelineRow, touching: Span) {
     let mut free_at: Vec<Time> = Vec::new();
     for bar in &mut row.bars {

@@ -51,7 +51,8 @@ pub(super) const fn class_of(stage: Stage) -> &'static str {
 const PLAIN: &str = "plain";
 const HATCHED: &str = "right";
 
-/// Returns the suffix of the CSS class whose pattern shows the surface of the work.
+/// Returns the suffix of the CSS class of a bar. The fill pattern of this class shows for which surface the stage
+/// works.
 pub(super) const fn pattern(surface: Option<SurfaceId>) -> &'static str {
     match surface {
         Some(SurfaceId(0)) | None => PLAIN,
@@ -100,7 +101,7 @@ pub(super) fn style() -> Element {
     Element::new("style").text(text)
 }
 
-/// CSS class of the legend's sample for the first surface, which has no pattern.
+/// CSS class of the sample for the first surface in the legend. This sample has no hatching pattern.
 pub(super) const PLAIN_SURFACE: &str = "left-eye";
 pub(super) const HATCHED_SURFACE: &str = "right-eye";
 

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 ///
 /// # Errors
 ///
-/// Any error of the writer.
+/// Returns any error of the writer `out`.
 pub fn chrome(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     let origin: Map<String, Value> = trace.origin.iter().map(|(key, value)| ((*key).into(), json!(value))).collect();
     write!(out, "{{\"displayTimeUnit\":\"ns\",\"otherData\":{},\n\"traceEvents\":[", Value::Object(origin))?;
@@ -38,7 +38,7 @@ fn names(trace: &Trace) -> Vec<String> {
     groups.chain(tracks).map(|event| event.to_string()).collect()
 }
 
-/// Returns an event as JSON. `rest` contains additional JSON members.
+/// Returns an event of the trace as a JSON object. `rest` contains additional members of this object.
 fn event(place: &str, kind: &str, time: Time, name: &str, rest: &str) -> String {
     format!(r#"{{"name":{},"ph":"{kind}","ts":{},{place}{rest}}}"#, json!(name), us(time.0))
 }

@@ -184,7 +184,7 @@ fn period_slice(display: &dyn Display, pictures: &[PictureTimes], period: Period
     Slice { name: format!("field {period}{shown}"), begin, end: display.tick(period.next()), picture, flow: None }
 }
 
-/// Returns the picture that is shown in the period that begins at a retrace.
+/// Returns the picture that the display shows in the period after a retrace.
 fn shown(pictures: &[PictureTimes], retrace: Time) -> Option<PictureNumber> {
     let after = pictures.partition_point(|times| times.shown_at <= retrace);
     after.checked_sub(1).map(|last| pictures[last].picture)

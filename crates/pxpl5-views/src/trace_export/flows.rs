@@ -17,7 +17,7 @@ struct Stop {
     place: usize,
 }
 
-/// Connects the slices of each shown picture by a flow.
+/// Connects the slices of each shown picture by a flow (a chain of arrows).
 pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     let updates = Updates::of(&outcome.so_far(), &outcome.stages());
     let sends = firsts(trace, &[Stage::Send]);
@@ -35,8 +35,8 @@ pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     }
 }
 
-/// Returns the first slices of the given stages, by picture. Each name of a slice counts separately, so each surface
-/// has its own first slice.
+/// Returns the first slices of the given stages, by picture. Slices with different names count separately, so that the
+/// result has the first slice of each surface.
 fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>> {
     let mut all: BTreeMap<(PictureNumber, String), Stop> = BTreeMap::new();
     let names: Vec<&str> = stages.iter().map(|stage| stage_name(*stage)).collect();

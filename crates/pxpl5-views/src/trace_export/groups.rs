@@ -19,7 +19,7 @@ impl Group {
     }
 }
 
-/// Returns all boards and surfaces of a machine, in the order of the schematic.
+/// Returns all boards and surfaces of a machine, in the order host, graphics processors, renderers, displays.
 pub(super) fn groups(record: &Record) -> Vec<Group> {
     let ports = record.ports();
     let mut groups = vec![Group::of_port("host".to_owned(), ports.host)];

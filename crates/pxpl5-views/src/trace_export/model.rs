@@ -6,7 +6,7 @@ use pxpl5_wire::PictureNumber;
 /// A run as a set of tracks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trace {
-    /// Origin of the trace, from which it can be reproduced, as pairs of key and value.
+    /// Origin of the trace: the facts from which the trace can be reproduced, as pairs of key and value.
     pub origin: Vec<(&'static str, String)>,
     /// Names of the groups: boards, surfaces and others.
     pub groups: Vec<String>,
@@ -14,7 +14,7 @@ pub struct Trace {
     pub tracks: Vec<Track>,
 }
 
-/// A named line of a trace viewer, with its events.
+/// A named row of a trace viewer, with the events of this row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Track {
     /// Index of the track's group.

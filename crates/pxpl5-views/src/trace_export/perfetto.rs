@@ -40,14 +40,14 @@ mod proto {
 }
 use proto::*;
 
-/// Identifier of the sequence of packets. One number suffices, because a trace has a single writer.
+/// Identifier of the sequence of packets. All packets have the same number, because a trace has a single writer.
 const SEQUENCE: u64 = 1;
 
 /// Writes a trace in the Perfetto format.
 ///
 /// # Errors
 ///
-/// Any error of the writer.
+/// Returns any error of the writer `out`.
 pub fn perfetto(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     // Descriptors of tracks come before their events.
     for packet in descriptors(trace) {
@@ -75,8 +75,8 @@ const fn ns(time: Time) -> u64 {
     time.0 / 1_000
 }
 
-/// Returns the identifier of a group's track. Tracks of groups have the lowest identifiers. Zero is not a valid
-/// identifier.
+/// Returns the identifier of a group's track. Tracks of groups have the lowest identifiers, from 1 on, because zero is
+/// not a valid identifier.
 const fn group_uuid(group: usize) -> u64 {
     group as u64 + 1
 }

@@ -19,7 +19,7 @@ pub(super) const fn stage_name(stage: Stage) -> &'static str {
     }
 }
 
-/// Returns the slice of a picture's stage, for one surface with a label or for all surfaces.
+/// Returns the slice of a picture's stage, for the surface with the given label or for all surfaces.
 pub(super) fn stage_slice(stage: Stage, picture: PictureNumber, label: Option<&str>, [begin, end]: [Time; 2]) -> Slice {
     let surface = label.map_or_else(String::new, |label| format!(" {label}"));
     let name = format!("{} {picture}{surface}", stage_name(stage));
@@ -32,8 +32,8 @@ pub(super) fn message_slice(transfer: &Transfer, toward: &str) -> Slice {
     Slice { name, begin: transfer.begin, end: transfer.end, picture: None, flow: None }
 }
 
-/// Returns the slice of a region during its transfer to a surface. `message` is the duration of one message of the
-/// region.
+/// Returns the slice of a region during its transfer to a surface. `message` is the duration of one ring message with a
+/// part of the region.
 pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
     Slice {
         name: format!("COPY region {}", arrival.target.region.0),

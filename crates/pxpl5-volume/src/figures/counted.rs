@@ -1,16 +1,17 @@
 //! Figures of the paper that are counted in views of the display, or measured in drawn volumes.
 
-use super::printed::{TRIANGLE, display, recording, row};
-use crate::error::VolumeError;
+use super::printed::{TRIANGLE, display, recording};
+use pxpl5_sim::figures::FigureRow;
+use pxpl5_sim::parameters::SettingError;
 use spatialgl::perspecta::PerspectaConfig;
-use spatialgl::perspecta::figures::Figure;
+use spatialgl::perspecta::figures::row;
 use spatialgl::{
-    BinLayout, Binning, CommandBuffer, Context, HostRenderer, Projection, SliceClip, SliceView, SpatialDisplay,
-    SweptDisplay, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
+    BinLayout, Binning, ColouredVertex, CommandBuffer, DrawContext, HostRenderer, Projection, SliceClip, SliceView,
+    SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
 /// Returns all figures of the paper that are counted or measured.
-pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
+pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;
     rows.extend(batches(&exact, workers)?);
@@ -25,7 +26,7 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError>
 const SMALL: u64 = 192;
 
 /// Returns figure P5: the number of draws of one triangle per slice, without bins.
-fn passes(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
+fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let published = [
         (SliceClip::UserPlanes, 2.0, "draws of a triangle for a slice with user clip planes"),
         (SliceClip::ShaderPlanes, 1.0, "with shader clip planes"),
@@ -39,29 +40,29 @@ fn passes(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
         // Without bins every slice issues the triangle once per pass.
         let display = small.swept(clip, Projection::Orthographic)?;
         let stats = render_volume(&display, &recording, &VolumeConfig::plain(), &HostRenderer, workers)?.stats;
-        Ok(row("P5", statement, "draws", passes, 0.0, stats.draws as f64 / stats.slices_rendered as f64))
+        Ok(row("P5", statement, "draws", (passes, 0.0), stats.draws as f64 / stats.slices_rendered as f64))
     };
     published.into_iter().map(count).collect()
 }
 
 /// Returns a recording of the triangle [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
-fn small_triangle() -> Result<CommandBuffer, VolumeError> {
+fn small_triangle() -> Result<CommandBuffer, SettingError> {
     let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
-    let corner = |corner: [f64; 3]| Vertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
+    let corner = |corner: [f64; 3]| ColouredVertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
     let buffer = VertexBuffer::new(TRIANGLE.map(corner).to_vec())?;
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.draw(&buffer, 0..3, Topology::Triangles)?;
     Ok(context.present())
 }
 
 /// Returns figures D8, P9 and D7. These figures are the numbers of queries and clears for a volume, with and without
 /// batches, and the number of words in a slice.
-fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
+fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let drawn = |batch| {
         // The same triangle is drawn with batches of one slice and of four slices.
         let tiling = Tiling { batch, ..Tiling::PAPER };
         let config = VolumeConfig { tiling, binning: Binning::AllPlanes, ..VolumeConfig::paper() };
-        render_volume(display, &recording()?, &config, &HostRenderer, workers).map_err(VolumeError::from)
+        render_volume(display, &recording()?, &config, &HostRenderer, workers)
     };
     let by_slice: VolumeStats = drawn(1)?.stats;
     let batched = drawn(Tiling::PAPER.batch)?;
@@ -69,17 +70,17 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<Figure>,
     let words = batched.planes.slice(0).len() as f64;
     let stats = batched.stats;
     Ok(vec![
-        row("P9", "pixels in a word of a slice that was drawn", "pixels", 8.0, 0.0, width * height / words),
-        row("D7", "a slice packed", "B", 294_912.0, 0.0, 4.0 * words),
-        row("D8", "queries of a volume, slice by slice", "queries", 228_096.0, 0.0, by_slice.queries as f64),
-        row("D8", "queries of a volume, in batches", "queries", 57_024.0, 0.0, stats.queries as f64),
-        row("D8", "stencil clears of a volume, slice by slice", "clears", 396.0, 0.0, by_slice.stencil_clears as f64),
-        row("D8", "stencil clears, in batches", "clears", 99.0, 0.0, stats.stencil_clears as f64),
+        row("P9", "pixels in a word of a slice that was drawn", "pixels", (8.0, 0.0), width * height / words),
+        row("D7", "a slice packed", "B", (294_912.0, 0.0), 4.0 * words),
+        row("D8", "queries of a volume, slice by slice", "queries", (228_096.0, 0.0), by_slice.queries as f64),
+        row("D8", "queries of a volume, in batches", "queries", (57_024.0, 0.0), stats.queries as f64),
+        row("D8", "stencil clears of a volume, slice by slice", "clears", (396.0, 0.0), by_slice.stencil_clears as f64),
+        row("D8", "stencil clears, in batches", "clears", (99.0, 0.0), stats.stencil_clears as f64),
     ])
 }
 
 /// Returns figures D1, D2 and D5 from the matrices of the views and the instants of the strobes (flashes).
-fn planes(views: &[SliceView]) -> Vec<Figure> {
+fn planes(views: &[SliceView]) -> Vec<FigureRow> {
     let across = |k: usize| views[k].view.transpose().x_axis.truncate();
     let angle = |k: usize| {
         let [this, next] = [across(k), across(k + 1)];
@@ -97,15 +98,14 @@ fn planes(views: &[SliceView]) -> Vec<Figure> {
     let rim = glam::DVec3::new(PerspectaConfig::PAPERS.width as f64 / 2.0, 0.0, 0.0);
     let voxel = |k: usize| views[k].view.inverse().transform_point3(rim);
     vec![
-        row("D1", "greatest angle between neighbouring slices", "deg", 0.909_091, 5e-7, pitch),
-        row("D2", "distinct planes", "planes", 198.0, 0.0, distinct.len() as f64),
-        row("D2", "times a second that a plane is strobed at 600 rpm", "Hz", 20.0, 1e-9, 1.0 / period_s),
+        row("D1", "greatest angle between neighbouring slices", "deg", (0.909_091, 5e-7), pitch),
+        row("D2", "distinct planes", "planes", (198.0, 0.0), distinct.len() as f64),
+        row("D2", "times a second that a plane is strobed at 600 rpm", "Hz", (20.0, 1e-9), 1.0 / period_s),
         row(
             "D5",
             "distance of the same pixel in neighbouring slices at the rim",
             "px",
-            6.09,
-            5e-3,
+            (6.09, 5e-3),
             (voxel(0) - voxel(1)).length(),
         ),
     ]
@@ -120,14 +120,14 @@ fn plane(view: &SliceView) -> [u64; 2] {
 
 /// Returns figures D3 and D4 by bisection. D3 is half the thickness of slice 0 at the rim. D4 is the radius at which
 /// half the thickness is half a pixel.
-fn slab(views: &[SliceView]) -> Vec<Figure> {
+fn slab(views: &[SliceView]) -> Vec<FigureRow> {
     let radius = PerspectaConfig::PAPERS.width as f64 / 2.0;
     let has = |u: f64, s: f64| views[0].volume.contains([u, 0.0, s], u, s);
     let rim = bisect([0.0, radius], |s| has(radius, s));
     let thin = bisect([0.0, radius], |u| !has(u, 0.5));
     vec![
-        row("D3", "half thickness at the rim", "px", 3.046_456_8, 5e-8, rim),
-        row("D4", "radius where the slab is one pixel thick", "px", 63.02, 5e-3, thin),
+        row("D3", "half thickness at the rim", "px", (3.046_456_8, 5e-8), rim),
+        row("D4", "radius where the slab is one pixel thick", "px", (63.02, 5e-3), thin),
     ]
 }
 
@@ -147,7 +147,7 @@ const STEPS: u32 = 3_600;
 /// Returns figure P14: for each region, the number of planes that bound it. Two conditions make a plane a bound. The
 /// plane's sign changes where a circle around the axis enters or leaves the region, and the layout lists the plane as a
 /// bound.
-fn bounds() -> Vec<Figure> {
+fn bounds() -> Vec<FigureRow> {
     let layout = BinLayout::double_wedges(0.0);
     let code = |step: u32| {
         let (sin, cos) = spatialgl::sin_cos_of_turn(i64::from(2 * step + 1), 2 * STEPS);
@@ -166,7 +166,7 @@ fn bounds() -> Vec<Figure> {
     let least = counts.iter().min().copied().unwrap_or(0);
     let most = counts.iter().max().copied().unwrap_or(0);
     vec![
-        row("P14", "planes that bound a bin region, fewest", "planes", 2.0, 0.0, f64::from(least)),
-        row("P14", "planes that bound a bin region, most", "planes", 2.0, 0.0, f64::from(most)),
+        row("P14", "planes that bound a bin region, fewest", "planes", (2.0, 0.0), f64::from(least)),
+        row("P14", "planes that bound a bin region, most", "planes", (2.0, 0.0), f64::from(most)),
     ]
 }

@@ -1,18 +1,20 @@
 //! The figures of the SpatialGL paper and the results of the model as a Markdown document.
 
-use super::row::{DefinitionRow, FigureRow, Figures, MeasuredScene};
-use super::shown::Shown;
+use super::row::{MeasuredScene, VolumeFigures};
+use super::shown::ShownStatement;
 use crate::settings::VolumeSettings;
+use pxpl5_sim::figures::column::NUMBER;
+use pxpl5_sim::figures::{Definition, FigureRow, TableColumn, significant, table};
 use pxpl5_sim::parameters::Entry;
 use std::fmt::Write as _;
 
 /// Returns the text of docs/volumetric.md. The text has every figure, the definitions, the statements without numbers,
 /// the scenes, and our own numbers with their ranges.
 #[must_use]
-pub fn markdown(figures: &Figures) -> String {
+pub fn markdown(figures: &VolumeFigures) -> String {
     let mut text = String::new();
     head(&mut text, figures);
-    figures.figures.iter().for_each(|row| line(&mut text, row));
+    text.push_str(&table(&COLUMNS, &figures.figures));
     missed(&mut text, &figures.figures);
     definitions(&mut text, &figures.definitions);
     shown(&mut text, &figures.shown);
@@ -22,7 +24,7 @@ pub fn markdown(figures: &Figures) -> String {
     text
 }
 
-fn head(text: &mut String, figures: &Figures) {
+fn head(text: &mut String, figures: &VolumeFigures) {
     let met = figures.figures.iter().filter(|row| row.is_met).count();
     let _ = write!(
         text,
@@ -40,37 +42,28 @@ fn head(text: &mut String, figures: &Figures) {
          The paper prints no times, rates or speed-ups. The times that `pxpl5 volume run` prints come from a model of a computer\n\
          of 2005.\n\n\
          The table has only rows for which the code could have produced another value. The section \"Definitions\" lists the\n\
-         inputs of the model and the numbers that follow from these inputs by arithmetic. The model meets {met} of {} rows.\n\n\
-         | # | statement | source | provenance | expected | model | error | |\n|---|---|---|---|---|---|---|---|\n",
+         inputs of the model and the numbers that follow from these inputs by arithmetic. The model meets {met} of {} rows.\n\n",
         figures.figures.len()
     );
 }
 
-fn line(text: &mut String, row: &FigureRow) {
-    let figure = &row.figure;
-    let scene = row.scene.as_ref().map_or_else(String::new, |scene| format!(" ({scene})"));
-    let mark = if row.is_met { "met" } else { "**missed**" };
-    let error = if figure.published == 0.0 { "-".to_owned() } else { format!("{:+.2} %", row.error_percent) };
-    let _ = writeln!(
-        text,
-        "| {} | {}{scene} | {} | {} | {} {} | {} | {error} | {mark} |",
-        figure.id,
-        figure.statement,
-        row.source,
-        provenance(row),
-        expected(figure.interval, figure.published),
-        figure.unit,
-        number(figure.computed),
-    );
-}
-
-fn provenance(row: &FigureRow) -> String {
-    let provenance = row.figure.provenance;
-    if row.scene.is_some() { format!("{provenance}, measured") } else { provenance.to_string() }
-}
+const COLUMNS: [TableColumn<FigureRow>; 8] = [
+    NUMBER,
+    ("statement", |row| match &row.scene {
+        Some(scene) => format!("{} ({scene})", row.statement),
+        None => row.statement.to_string(),
+    }),
+    ("source", |row| row.source.to_string()),
+    ("provenance", |row| format!("{}{}", row.origin, if row.scene.is_some() { ", measured" } else { "" })),
+    ("expected", |row| format!("{} {}", expected(row), row.unit)),
+    ("model", |row| number(row.simulated)),
+    ("error", |row| row.error_percent.map_or_else(|| "-".to_owned(), |error| format!("{error:+.2} %"))),
+    ("", |row| if row.is_met { "met" } else { "**missed**" }.to_owned()),
+];
 
 /// Returns the expected value as text. If the paper says "over", "about" or "most", the text includes the interval.
-fn expected([low, high]: [f64; 2], value: f64) -> String {
+fn expected(row: &FigureRow) -> String {
+    let ([low, high], value) = (row.accepted, row.published);
     let is_wide = high - low > 0.02 * value.abs().max(1e-12) + 1e-9;
     if is_wide { format!("{} ({} to {})", number(value), number(low), number(high)) } else { number(value) }
 }
@@ -82,56 +75,40 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
     }
     let _ = writeln!(text, "\n## Missed");
     for row in all {
-        let figure = &row.figure;
         let scene = row.scene.as_deref().unwrap_or("the model");
         let _ = writeln!(
             text,
             "\n- Row **{}** (\"{}\") is missed. The expected value is {} {}, and the value of {scene} is {}. {}",
-            figure.id,
-            figure.statement,
-            expected(figure.interval, figure.published),
-            figure.unit,
-            number(figure.computed),
-            cause(figure.id)
+            row.id,
+            row.statement,
+            expected(row),
+            row.unit,
+            number(row.simulated),
+            row.cause
         );
     }
 }
 
-/// Returns the known reason why the model misses the figure with this identifier.
-fn cause(id: &str) -> &'static str {
-    match id {
-        "P17" => {
-            "The paper says \"most scenes\" and does not name them. The interval from 5 to 20 is an assumption of the project. A slender \
-             object such as the Mig leaves most of the volume empty."
-        }
-        "section 6" => {
-            "The law holds for small triangles. The triangles of the Mig are large. They lie on several bin planes and go into several bins."
-        }
-        _ => "The cause is not known.",
-    }
-}
-
-fn definitions(text: &mut String, all: &[DefinitionRow]) {
+fn definitions(text: &mut String, all: &[Definition]) {
+    let columns: [TableColumn<Definition>; 5] = [
+        ("#", |one| one.id.to_owned()),
+        ("number", |one| one.statement.to_string()),
+        ("source", |one| one.source.to_owned()),
+        ("provenance", |one| one.provenance.to_string()),
+        ("value", |one| format!("{} {}", number(one.value), one.unit)),
+    ];
     let _ = write!(
         text,
         "\n## Definitions\n\n\
          The table lists the inputs that the paper prints, and the numbers that follow from these inputs by arithmetic. No\n\
-         simulation could change these numbers.\n\n\
-         | # | number | source | provenance | value |\n|---|---|---|---|---|\n"
+         simulation could change these numbers.\n\n{}",
+        table(&columns, all)
     );
-    for DefinitionRow { definition, source } in all {
-        let value = number(definition.value);
-        let _ = writeln!(
-            text,
-            "| {} | {} | {source} | {} | {value} {} |",
-            definition.id, definition.statement, definition.provenance, definition.unit
-        );
-    }
 }
 
-fn shown(text: &mut String, all: &[Shown]) {
+fn shown(text: &mut String, all: &[ShownStatement]) {
     let _ = write!(text, "\n## Statements without numbers\n\n| the paper says | the model | |\n|---|---|---|\n");
-    for Shown { statement, evidence, holds } in all {
+    for ShownStatement { statement, evidence, holds } in all {
         let _ = writeln!(text, "| {statement} | {evidence} | {} |", if *holds { "shown" } else { "**not shown**" });
     }
 }
@@ -198,12 +175,7 @@ fn numbers(text: &mut String) {
     }
 }
 
-/// Formats a number with at most nine significant digits, without trailing zeros.
+/// Formats a number with nine significant digits.
 fn number(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let digits = (8 - value.abs().log10().floor() as i32).clamp(0, 10) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    significant(value, 9)
 }

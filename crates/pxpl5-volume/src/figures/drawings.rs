@@ -4,20 +4,21 @@
 //! few slices, so that a single slice is visible.
 
 use crate::choices::{ClipKind, ProjectionKind};
-use crate::error::VolumeError;
 use crate::experiment::Volume;
 use crate::pictures::{grid, tiles_of_slice};
 use crate::settings::VolumeSettings;
 use image::imageops::{self, FilterType};
 use image::{Rgb, RgbImage};
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use spatialgl::{
-    BinLayout, BinTolerance, Context, SpatialDisplay, SweptDisplay, Tiling, Topology, Vertex, VertexBuffer, Workers,
+    BinLayout, BinTolerance, ColouredVertex, DrawContext, SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer,
+    Workers,
 };
 
 /// A figure of the paper, drawn again.
 #[derive(Clone, Debug)]
-pub struct Drawing {
+pub struct FigureDrawing {
     /// Number of the figure in the paper.
     pub number: u32,
     /// Subject of the figure in the paper's caption, and meaning of the pixels.
@@ -51,9 +52,9 @@ const COLOURS: [[u8; 3]; 8] = [
 ///
 /// # Errors
 ///
-/// Returns [`VolumeError`] if the scene cannot be drawn.
-pub fn drawings(scene: &Scene, workers: &dyn Workers) -> Result<Vec<Drawing>, VolumeError> {
-    let drawing = |number, about, picture| Drawing { number, about, picture };
+/// Returns [`SettingError`] if the scene cannot be drawn.
+pub fn drawings(scene: &Scene, workers: &dyn Workers) -> Result<Vec<FigureDrawing>, SettingError> {
+    let drawing = |number, about, picture| FigureDrawing { number, about, picture };
     Ok(vec![
         drawing(4, "slice volume: the double wedge of one slice of 12, seen along the axis", plan(ClipKind::Exact)?),
         drawing(5, "slice orientation: where the signed distances from the two planes are positive", orientation()?),
@@ -79,7 +80,7 @@ pub fn drawings(scene: &Scene, workers: &dyn Workers) -> Result<Vec<Drawing>, Vo
     ])
 }
 
-impl Drawing {
+impl FigureDrawing {
     /// Returns all drawings on one sheet, three in a row.
     #[must_use]
     pub fn sheet(all: &[Self]) -> RgbImage {
@@ -96,7 +97,7 @@ fn framed(picture: &RgbImage) -> RgbImage {
 }
 
 /// Returns a display of 12 slices with a radius of 64 px, a clip offset of 8 px and the corresponding bias of 64 px^2.
-fn few(clip: ClipKind) -> Result<SweptDisplay, VolumeError> {
+fn few(clip: ClipKind) -> Result<SweptDisplay, SettingError> {
     let mut settings = VolumeSettings { clip, projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() };
     settings.display.slices = FEW_SLICES;
     settings.display.width = 128;
@@ -115,7 +116,7 @@ fn place(x: u32, y: u32) -> [f64; 3] {
 
 /// Draws the volumes of three neighbouring slices, seen from above. The volume of slice 1 is bright, and the volumes of
 /// its neighbours are darker. Overlaps of enlarged volumes are white.
-fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
+fn plan(clip: ClipKind) -> Result<RgbImage, SettingError> {
     let display = few(clip)?;
     let views = display.views();
     Ok(RgbImage::from_fn(SIDE, SIDE, |x, y| {
@@ -136,7 +137,7 @@ fn plan(clip: ClipKind) -> Result<RgbImage, VolumeError> {
 /// Draws points red where the distance from the first plane is positive, and green where the distance from the second
 /// plane is positive. The lobe (half of the double wedge) with two positive distances is yellow, and the lobe with two
 /// negative distances dark.
-fn orientation() -> Result<RgbImage, VolumeError> {
+fn orientation() -> Result<RgbImage, SettingError> {
     let display = few(ClipKind::Exact)?;
     let spatialgl::SliceVolume::Wedge(planes, _) = display.views()[1].volume else {
         return Ok(RgbImage::new(SIDE, SIDE));
@@ -150,12 +151,12 @@ fn orientation() -> Result<RgbImage, VolumeError> {
 
 /// Draws the wall z = 20 in slices 20, 50, 70 and 90 of 396. In each further slice, the exact volume contains fewer
 /// pixels.
-fn sliver(workers: &dyn Workers) -> Result<RgbImage, VolumeError> {
+fn sliver(workers: &dyn Workers) -> Result<RgbImage, SettingError> {
     let wall = [[-380.0, -64.0, 20.0], [380.0, -64.0, 20.0], [380.0, 64.0, 20.0], [-380.0, 64.0, 20.0]];
     let mut columns = Vec::new();
     for clip in [ClipKind::Exact, ClipKind::Hyperbolic] {
-        let buffer = VertexBuffer::new(wall.map(|corner| Vertex::new(corner.into(), [255; 3])).to_vec())?;
-        let mut context = Context::default();
+        let buffer = VertexBuffer::new(wall.map(|corner| ColouredVertex::new(corner.into(), [255; 3])).to_vec())?;
+        let mut context = DrawContext::default();
         context.draw(&buffer, 0..4, Topology::TriangleFan)?;
         let settings = VolumeSettings { clip, projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "wall", context.present(), workers)?;
@@ -210,7 +211,7 @@ fn outcodes() -> RgbImage {
     })
 }
 
-fn tile_query(scene: &Scene, workers: &dyn Workers) -> Result<RgbImage, VolumeError> {
+fn tile_query(scene: &Scene, workers: &dyn Workers) -> Result<RgbImage, SettingError> {
     let volume = Volume::draw(&VolumeSettings::paper(), scene, workers)?;
     let whole = tiles_of_slice(&volume, 50, Tiling::PAPER);
     Ok(imageops::resize(&whole, SIDE, SIDE, FilterType::Triangle))

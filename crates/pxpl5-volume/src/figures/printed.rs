@@ -1,17 +1,15 @@
 //! Figures of the paper that are measured on single slices: rules of the clip, bits of a pixel, stencil, jitter.
 
-use crate::error::VolumeError;
+use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::parameters::Provenance;
+use pxpl5_sim::parameters::SettingError;
 use spatialgl::perspecta::PerspectaConfig;
-use spatialgl::perspecta::figures::Figure;
+use spatialgl::perspecta::figures::row;
 use spatialgl::{
-    BinLayout, CommandBuffer, Context, HalfWedge, HostRenderer, Jitter, Projection, SliceClip, SliceView, SliceVolume,
-    SpatialDisplay, Strobes, SweptDisplay, TieRule, Tiling, Topology, Vertex, VertexBuffer, VolumeConfig, VolumeFrame,
-    WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
+    BinLayout, ColouredVertex, CommandBuffer, DrawContext, HalfWedge, HostRenderer, Jitter, Projection, SliceClip,
+    SliceView, SliceVolume, SpatialDisplay, Strobes, SweptDisplay, TieRule, Tiling, Topology, VertexBuffer,
+    VolumeConfig, VolumeFrame, WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
 };
-
-const P: Provenance = Provenance::Published;
-const D: Provenance = Provenance::Derived;
 
 /// A triangle parallel to the axis, corners in pixels: the first triangle of the specification.
 pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
@@ -21,7 +19,7 @@ pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150
 const SLICE: usize = 13;
 
 /// Returns all figures of the paper that are measured on single slices.
-pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
+pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let frame = draw(&exact, workers)?;
     let mut rows = boundaries(&exact);
@@ -33,39 +31,26 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError>
     Ok(rows)
 }
 
-pub(super) fn row(
-    id: &'static str,
-    statement: &'static str,
-    unit: &'static str,
-    published: f64,
-    half_digit: f64,
-    computed: f64,
-) -> Figure {
-    let interval = [published - half_digit, published + half_digit];
-    let provenance = if id.starts_with('P') { P } else { D };
-    Figure { id, statement, unit, published, interval, computed, provenance }
+pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, SettingError> {
+    PerspectaConfig::PAPERS.swept(clip, projection)
 }
 
-pub(super) fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, VolumeError> {
-    Ok(PerspectaConfig::PAPERS.swept(clip, projection)?)
-}
-
-pub(super) fn recording() -> Result<CommandBuffer, VolumeError> {
-    let vertices = TRIANGLE.map(|corner| Vertex::new(corner.into(), [255; 3]));
+pub(super) fn recording() -> Result<CommandBuffer, SettingError> {
+    let vertices = TRIANGLE.map(|corner| ColouredVertex::new(corner.into(), [255; 3]));
     let buffer = VertexBuffer::new(vertices.to_vec())?;
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.draw(&buffer, 0..3, Topology::Triangles)?;
     Ok(context.present())
 }
 
-fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, VolumeError> {
+fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, SettingError> {
     let config = VolumeConfig { strobes: Strobes::Mirror, keeps_colours: true, ..VolumeConfig::paper() };
-    Ok(render_volume(display, &recording()?, &config, &HostRenderer, workers)?)
+    render_volume(display, &recording()?, &config, &HostRenderer, workers)
 }
 
 /// Returns the two rows of figure P2. The first row counts the planes of a slice that a circle around the axis crosses,
 /// each twice. The second row counts the slices whose planes both contain the axis.
-fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
+fn boundaries(display: &SweptDisplay) -> Vec<FigureRow> {
     let view = &display.views()[7];
     let steps = 100_000;
     let place = |i: u32| {
@@ -77,8 +62,8 @@ fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
     let crossings = (0..steps).filter(|i| accepts(*i) != accepts(i + 1)).count();
     let on_axis = display.views().iter().filter(|view| has_axis(view)).count();
     vec![
-        row("P2", "planes that bound a slice volume", "planes", 2.0, 0.0, crossings as f64 / 2.0),
-        row("P2", "slices whose planes both contain the axis", "slices", 396.0, 0.0, on_axis as f64),
+        row("P2", "planes that bound a slice volume", "planes", (2.0, 0.0), crossings as f64 / 2.0),
+        row("P2", "slices whose planes both contain the axis", "slices", (396.0, 0.0), on_axis as f64),
     ]
 }
 
@@ -105,7 +90,7 @@ fn percent(total: usize, agreeing: usize) -> f64 {
 /// Returns figures P3 and P4. P3 is the percentage of grid points whose bin code agrees with the printed rule. P4 is
 /// the percentage of grid points at which the clip agrees with the printed sign of the product of distances. There are
 /// two rows for P4, with the normals of the left and of the right part of the paper's figure 5.
-fn signs() -> Vec<Figure> {
+fn signs() -> Vec<FigureRow> {
     let layout = BinLayout::double_wedges(0.0);
     let rule = |plane: &[f64; 4], p: [f64; 3]| plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] >= 0.0;
     let expected = |p: [f64; 3]| {
@@ -118,9 +103,9 @@ fn signs() -> Vec<Figure> {
     let right = grid().filter(|p| agrees(*p, -1.0)).count();
     let total = grid().count();
     vec![
-        row("P3", "points that have the sign of the printed rule", "%", 100.0, 0.0, percent(total, coded)),
-        row("P4", "points accepted as printed, normals as in figure 5 left", "%", 100.0, 0.0, percent(total, left)),
-        row("P4", "points accepted as printed, normals as in figure 5 right", "%", 100.0, 0.0, percent(total, right)),
+        row("P3", "points that have the sign of the printed rule", "%", (100.0, 0.0), percent(total, coded)),
+        row("P4", "points accepted as printed, normals as in figure 5 left", "%", (100.0, 0.0), percent(total, left)),
+        row("P4", "points accepted as printed, normals as in figure 5 right", "%", (100.0, 0.0), percent(total, right)),
     ]
 }
 
@@ -140,14 +125,14 @@ fn agrees(p: [f64; 3], orientation: f64) -> bool {
 
 /// Returns figure P7: the number of bits per pixel that the projector can distinguish, from a word of eight white
 /// pixels.
-fn pixels() -> Figure {
+fn pixels() -> FigureRow {
     let white = packed_word(0xFF, 0xFF, 0xFF);
     let projector = (0..8).map(|pixel| pixel_of_word(white, pixel).count_ones()).sum::<u32>();
-    row("P7", "bits of a pixel on the projector", "bits", 3.0, 0.0, f64::from(projector) / 8.0)
+    row("P7", "bits of a pixel on the projector", "bits", (3.0, 0.0), f64::from(projector) / 8.0)
 }
 
 /// Returns figure P15: the pixels marked in the stencil, for a slice with drawn pixels and for an empty slice.
-fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
+fn stencil(frame: &VolumeFrame) -> Vec<FigureRow> {
     let marked = |slice: usize| frame.colours.as_ref().map_or(0, |colours| colours[slice].len()) as f64;
     let queries = Tiling::PAPER.grid(frame.planes.size()).tiles();
     // Every batch is cleared once and queried tile by tile.
@@ -157,21 +142,20 @@ fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
             "P15",
             "pixels equal to 1 after the clear: slice 99, which the triangle does not meet",
             "pixels",
-            0.0,
-            0.0,
+            (0.0, 0.0),
             marked(99),
         ),
-        Figure {
-            provenance: D,
-            ..row("P15", "pixels equal to 1 after 209 fragments", "pixels", 209.0, 2.0, marked(SLICE))
+        FigureRow {
+            origin: Provenance::Derived,
+            ..row("P15", "pixels equal to 1 after 209 fragments", "pixels", (209.0, 2.0), marked(SLICE))
         },
-        row("D8", "queries between two clears", "queries", f64::from(queries), 0.0, per_batch),
+        row("D8", "queries between two clears", "queries", (f64::from(queries), 0.0), per_batch),
     ]
 }
 
 /// Returns figure P19: the largest shift of a point by the shear at the face of a slice's slab, and the number of
 /// distinct eyes.
-fn jitter() -> Result<Vec<Figure>, VolumeError> {
+fn jitter() -> Result<Vec<FigureRow>, SettingError> {
     let clip = SliceClip::Hyperbolic(0.25);
     let wedge = HalfWedge::new(396, 384.0);
     let reach = clip.reach(wedge);
@@ -189,28 +173,25 @@ fn jitter() -> Result<Vec<Figure>, VolumeError> {
     matrices.sort_unstable();
     matrices.dedup();
     Ok(vec![
-        Figure {
-            interval: [0.0, 1.0],
-            ..row("P19", "largest shift by the shear: below a pixel", "px", 1.0, 0.0, largest)
-        },
-        row("P19", "eyes, one for each slice", "eyes", 396.0, 0.0, places.len() as f64),
-        row("P19", "matrices, one for all of a slice", "matrices", 396.0, 0.0, matrices.len() as f64),
+        row("P19", "largest shift by the shear: below a pixel", "px", (1.0, 0.0), largest).with_accepted([0.0, 1.0]),
+        row("P19", "eyes, one for each slice", "eyes", (396.0, 0.0), places.len() as f64),
+        row("P19", "matrices, one for all of a slice", "matrices", (396.0, 0.0), matrices.len() as f64),
     ])
 }
 
 /// Returns figures D10 and D11: the mean number of planes that contain a point, for points spread evenly over the disc.
-fn means() -> Result<Vec<Figure>, VolumeError> {
+fn means() -> Result<Vec<FigureRow>, SettingError> {
     let prism = mean_planes(SliceClip::Prism)?;
     let hyperbola = mean_planes(SliceClip::Hyperbolic(0.25))?;
     let exact = mean_planes(SliceClip::ShaderPlanes)?;
     Ok(vec![
-        row("D10", "planes that accept a point, mean over 20,000 points, prism", "planes", 2.0, 0.02, prism),
-        row("D11", "the same of the hyperbola, accepted", "planes", 1.081, 0.01, hyperbola),
-        row("D11", "the same of the exact clip", "planes", 1.0, 0.0, exact),
+        row("D10", "planes that accept a point, mean over 20,000 points, prism", "planes", (2.0, 0.02), prism),
+        row("D11", "the same of the hyperbola, accepted", "planes", (1.081, 0.01), hyperbola),
+        row("D11", "the same of the exact clip", "planes", (1.0, 0.0), exact),
     ])
 }
 
-fn mean_planes(clip: SliceClip) -> Result<f64, VolumeError> {
+fn mean_planes(clip: SliceClip) -> Result<f64, SettingError> {
     let display = display(clip, Projection::Orthographic)?;
     let views = &display.views()[..198];
     let points = 20_000;

@@ -1,54 +1,21 @@
 //! The data of the figures: rows, scenes, and the complete record.
 
-use super::shown::Shown;
+use super::shown::ShownStatement;
 use crate::experiment::Volume;
+use pxpl5_sim::figures::{Definition, FigureRow};
 use serde::Serialize;
-use spatialgl::perspecta::figures::{Definition, Figure};
-
-/// A figure with the scene on which it was measured.
-#[derive(Clone, Debug, Serialize)]
-pub struct FigureRow {
-    /// Figure with its printed or derived value and the value of the model.
-    #[serde(flatten)]
-    pub figure: Figure,
-    /// Section of the paper that prints the figure, or "derived" for figures that follow from printed values.
-    pub source: &'static str,
-    /// Scene that was drawn for the figure, or `None` if no scene was needed.
-    pub scene: Option<String>,
-    /// Relative error of the model, (computed - published) / published, in percent.
-    pub error_percent: f64,
-    /// True if the model agrees with the figure.
-    pub is_met: bool,
-}
-
-/// A definition, with the section of the paper that prints it. No run of the model can change the value of a
-/// definition.
-#[derive(Clone, Debug, Serialize)]
-pub struct DefinitionRow {
-    /// Definition with its value.
-    #[serde(flatten)]
-    pub definition: Definition,
-    /// Section of the paper that prints the number, or "derived" for numbers that follow from printed values.
-    pub source: &'static str,
-}
-
-impl DefinitionRow {
-    pub(super) fn of(definition: Definition) -> Self {
-        Self { source: source(definition.id), definition }
-    }
-}
 
 /// All figures of the paper, with the results of the model.
 #[derive(Clone, Debug, Serialize)]
-pub struct Figures {
+pub struct VolumeFigures {
     /// Name and version of this record's layout.
     pub schema: &'static str,
     /// One row for each figure that the code computes or counts: printed figures by number, then derived figures.
     pub figures: Vec<FigureRow>,
     /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
-    pub definitions: Vec<DefinitionRow>,
+    pub definitions: Vec<Definition>,
     /// Statements of the paper without numbers, each with the measurements that test it.
-    pub shown: Vec<Shown>,
+    pub shown: Vec<ShownStatement>,
     /// Scenes on which figures were measured.
     pub scenes: Vec<MeasuredScene>,
 }
@@ -92,14 +59,6 @@ impl MeasuredScene {
     }
 }
 
-impl FigureRow {
-    pub(super) fn of(figure: Figure, scene: Option<&str>) -> Self {
-        let error_percent = figure.error_percent();
-        let is_met = figure.is_met();
-        Self { source: source(figure.id), scene: scene.map(str::to_owned), error_percent, is_met, figure }
-    }
-}
-
 /// Returns a sort key for the identifier of a figure: printed figures first, then derived figures, then identifiers
 /// without a number.
 pub(super) fn order(id: &str) -> (u8, u32) {
@@ -108,23 +67,5 @@ pub(super) fn order(id: &str) -> (u8, u32) {
         (Some('P'), Some(number)) => (0, number),
         (Some('D'), Some(number)) => (1, number),
         _ => (2, 0),
-    }
-}
-
-/// Returns the section of the paper that prints the figure with this identifier.
-fn source(id: &str) -> &'static str {
-    match id {
-        "P1" => "SpatialGL Graphics Pipeline; Slice View Volume",
-        "P2" | "P3" | "P4" => "Shader Clip Planes",
-        "P5" => "Slice View Volume",
-        "P6" | "P7" | "P8" | "P9" | "P10" => "Image Reformatting",
-        "P11" => "SpatialGL Optimizations",
-        "P13" => "Vertex Outcodes",
-        "P14" => "Binning",
-        "P15" | "P16" | "P17" => "Tile Queries",
-        "P18" => "Tile Batching",
-        "P19" => "Degenerate Sections",
-        "P20" => "Introduction",
-        _ => "derived",
     }
 }

@@ -2,20 +2,20 @@
 
 use super::plain::plain;
 use crate::choices::{ClipKind, ProjectionKind};
-use crate::error::VolumeError;
 use crate::experiment::Volume;
 use crate::settings::VolumeSettings;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 use spatialgl::{
-    CommandBuffer, Context, HalfWedge, SliceClip, SliceVolume, TieRule, Topology, VertexBuffer, VolumeStats,
+    CommandBuffer, DrawContext, HalfWedge, SliceClip, SliceVolume, TieRule, Topology, VertexBuffer, VolumeStats,
     WedgePlanes, WedgeTest, Workers, gap_correlation, tessellated_sphere,
 };
 use std::sync::Arc;
 
 /// A statement of the paper without numbers, and the measurements that test it.
 #[derive(Clone, Debug, Serialize)]
-pub struct Shown {
+pub struct ShownStatement {
     /// Statement of the paper, in words.
     pub statement: &'static str,
     /// Measured numbers that confirm or refute the statement.
@@ -25,7 +25,7 @@ pub struct Shown {
 }
 
 /// Tests all statements. If a statement needs a scene, the test uses the first of `scenes`.
-pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Shown>, VolumeError> {
+pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<ShownStatement>, SettingError> {
     let mut shown = vec![dead_zone(), dilation()];
     if let Some(scene) = scenes.first() {
         let volume = Volume::draw(&plain(), scene, workers)?;
@@ -39,10 +39,10 @@ pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Sh
 }
 
 /// Compares the lit pixels of the prism with the lit pixels of the exact clip, in rings of 8 px.
-fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
+fn prism(scene: &Scene, workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let rings = |clip| {
         let volume = Volume::draw(&VolumeSettings { clip, ..plain() }, scene, workers)?;
-        Ok::<_, VolumeError>(volume.brightness().lit_voxels)
+        Ok::<_, SettingError>(volume.brightness().lit_voxels)
     };
     let prism = rings(ClipKind::Prism)?;
     let exact = rings(ClipKind::Exact)?;
@@ -53,7 +53,7 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
     // Rings 1 to 3 are near the axis, rings 36 to 42 near the rim.
     let near = ratio(1, 4);
     let far = ratio(36, 43);
-    Ok(Shown {
+    Ok(ShownStatement {
         statement: "the bounding prism is blurry and too bright near the axis",
         evidence: format!(
             "{}: {near:.1} times as many lit pixels as the exact clip from 8 to 32 px from the axis, {far:.2} times from 288 to 344 px",
@@ -65,7 +65,7 @@ fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
 
 /// Measures the radius around the axis within which no point is accepted if planes have few fraction bits. The derived
 /// radius is 2^-(bits + 1) / S, where S is the sine of half the angle between slices.
-fn dead_zone() -> Shown {
+fn dead_zone() -> ShownStatement {
     let radius = |bits: u32| {
         let wedge = HalfWedge::new(396, 384.0);
         // Walk along u in the middle of a wedge until a point is accepted.
@@ -76,7 +76,7 @@ fn dead_zone() -> Shown {
     };
     let four = radius(4);
     let eight = radius(8);
-    Shown {
+    ShownStatement {
         statement: "clip planes leave a dead zone at the axis",
         evidence: format!(
             "planes of 4 fraction bits accept nothing within {four:.2} px (formula 3.94), of 8 bits within {eight:.3} px (0.246)"
@@ -85,14 +85,14 @@ fn dead_zone() -> Shown {
     }
 }
 
-fn dilation() -> Shown {
+fn dilation() -> ShownStatement {
     let wedge = HalfWedge::new(396, 384.0);
     let more =
         |clip: SliceClip, u: f64| clip.half_thickness(wedge, u) - SliceClip::ShaderPlanes.half_thickness(wedge, u);
     // Compare the thickness at the axis and at the rim.
     let parallel = [0.0, 384.0].map(|u| more(SliceClip::Parallel(0.5), u));
     let hyperbola = [0.0, 384.0].map(|u| more(SliceClip::Hyperbolic(0.25), u));
-    Shown {
+    ShownStatement {
         statement: "parallel offsets dilate everywhere, the hyperbola mainly at the axis",
         evidence: format!(
             "half a slab is thicker by {:.3} and {:.3} px with parallel offsets, at the axis and at the rim, and by {:.3} and {:.3} px \
@@ -106,42 +106,42 @@ fn dilation() -> Shown {
 /// A triangle in a plane perpendicular to the axis, corners in pixels: the third triangle of the specification.
 const LEVEL: [[f64; 3]; 3] = [[-200.3, 10.2, -100.4], [250.6, 10.2, -150.3], [30.7, 10.2, 260.9]];
 
-fn orthographic(workers: &dyn Workers) -> Result<Shown, VolumeError> {
+fn orthographic(workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let fragments = |projection| {
-        let vertices = LEVEL.map(|corner| spatialgl::Vertex::new(corner.into(), [255; 3])).to_vec();
+        let vertices = LEVEL.map(|corner| spatialgl::ColouredVertex::new(corner.into(), [255; 3])).to_vec();
         let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "a level triangle", recording(vertices, &[0, 1, 2])?, workers)?;
-        Ok::<_, VolumeError>(volume.frame.stats.fragments_accepted)
+        Ok::<_, SettingError>(volume.frame.stats.fragments_accepted)
     };
     let along = fragments(ProjectionKind::Orthographic)?;
     let jittered = fragments(ProjectionKind::Jittered)?;
-    Ok(Shown {
+    Ok(ShownStatement {
         statement: "an orthographic projection loses every plane perpendicular to the axis",
         evidence: format!("a triangle of 87,200 px^2 in such a plane: {along} fragments, and {jittered} with jitter"),
         holds: along == 0 && jittered > 0,
     })
 }
 
-fn recording(vertices: Vec<spatialgl::Vertex>, indices: &[u32]) -> Result<CommandBuffer, VolumeError> {
+fn recording(vertices: Vec<spatialgl::ColouredVertex>, indices: &[u32]) -> Result<CommandBuffer, SettingError> {
     let buffer = VertexBuffer::new(vertices)?;
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.draw_indexed(&buffer, indices, Topology::Triangles)?;
     Ok(context.present())
 }
 
 /// Compares the gaps in a displayed sphere with and without jitter. The sphere has 198 x 396 facets and a radius of 300
 /// px. Every slice intersects equal facets, so all slices have the same gaps in an orthographic projection.
-fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
+fn noise(workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let likeness = |projection| {
         // As many facets around the sphere as slices make the gaps of all slices equal.
         let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 198, [255; 3]);
         let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "sphere", recording(vertices, &indices)?, workers)?;
-        Ok::<_, VolumeError>(gap_correlation(&volume.display, &volume.commands, &volume.frame).unwrap_or(f64::NAN))
+        Ok::<_, SettingError>(gap_correlation(&volume.display, &volume.commands, &volume.frame).unwrap_or(f64::NAN))
     };
     let along = likeness(ProjectionKind::Orthographic)?;
     let jittered = likeness(ProjectionKind::Jittered)?;
-    Ok(Shown {
+    Ok(ShownStatement {
         statement: "jitter turns moire into uncorrelated noise",
         evidence: format!(
             "gaps of neighbouring slices of a sphere of 198 x 396 facets (shown share of each row): correlation {along:.2} along the normal, {jittered:.2} \
@@ -152,7 +152,7 @@ fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
 }
 
 /// Compares the parts of the modelled GPU time. Also compares the bus times with and without packing and tiles.
-fn limits(volume: &Volume) -> Shown {
+fn limits(volume: &Volume) -> ShownStatement {
     let stats = &volume.frame.stats;
     let model = volume.settings.time_model();
     let size = volume.frame.planes.size();
@@ -162,7 +162,7 @@ fn limits(volume: &Volume) -> Shown {
     let vertices_only = VolumeStats { draws: stats.draws, ..VolumeStats::default() };
     let vertices_ms = model.unpacked(&vertices_only, size).gpu_ms;
     let fill_ms = unpacked.gpu_ms - vertices_ms;
-    Shown {
+    ShownStatement {
         statement: "rendering is limited by fill, and reading back is the narrow path",
         evidence: format!(
             "{}, model: fill {fill_ms:.1} ms against {vertices_ms:.1} ms for vertices; reading back {:.0} ms unpacked, {:.0} ms packed by \
@@ -176,7 +176,7 @@ fn limits(volume: &Volume) -> Shown {
     }
 }
 
-fn tiles(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
+fn tiles(scene: &Scene, workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     let mut found = Vec::new();
     for size in [64, 32, 16, 8] {
         let mut settings = plain();
@@ -192,7 +192,7 @@ fn tiles(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
         .iter()
         .map(|(size, share, ms)| format!("{size} px: {share:.1} % packed, {ms:.0} ms of queries"))
         .collect();
-    Ok(Shown {
+    Ok(ShownStatement {
         statement: "smaller tiles skip more and cost more",
         evidence: format!("{}: {}", scene.name(), text.join("; ")),
         holds: found.windows(2).all(|pair| pair[1].1 < pair[0].1 && pair[1].2 > pair[0].2),

@@ -2,10 +2,10 @@
 
 use super::command::{SliceCorner, SliceTriangle};
 use super::halftone::{halftone_clocks, halftone_words};
-use crate::error::VolumeError;
 use crate::settings::VolumeSettings;
 use crate::{ClipKind, ProjectionKind};
 use pxpl5_renderer::{BitSerial, Clear, Command, CommandKind, Lanes, Layout, PixelArray, SelectRegion};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::format::SUBPIXEL_BITS;
 use pxpl5_wire::{REGION_SIZE, Word};
 use serde::Serialize;
@@ -75,8 +75,8 @@ fn key_of(view: &SliceView) -> ViewKey {
 ///
 /// # Errors
 ///
-/// [`VolumeError::Missing`] names the setting that the renderers do not support.
-pub fn supported(settings: &VolumeSettings) -> Result<(), VolumeError> {
+/// [`SettingError`] names the setting that the renderers do not support.
+pub fn supported(settings: &VolumeSettings) -> Result<(), SettingError> {
     let rules = [
         (settings.clip == ClipKind::Hyperbolic, "--clip", "hyperbolic, which is one quadratic", settings.clip_text()),
         (
@@ -93,7 +93,7 @@ pub fn supported(settings: &VolumeSettings) -> Result<(), VolumeError> {
     match rules.into_iter().find(|(holds, ..)| !holds) {
         None => Ok(()),
         Some((_, what, expected, found)) => {
-            Err(VolumeError::Missing { what, expected: format!("{expected} with --on pixel-planes"), found })
+            Err(SettingError::value(what, format_args!("{expected} with --on pixel-planes"), found))
         }
     }
 }
@@ -104,7 +104,7 @@ impl PixelPlanesRenderer {
     /// # Errors
     ///
     /// The same as [`supported`].
-    pub fn new(settings: &VolumeSettings, kind: ArrayKind) -> Result<Self, VolumeError> {
+    pub fn new(settings: &VolumeSettings, kind: ArrayKind) -> Result<Self, SettingError> {
         supported(settings)?;
         let wedge = HalfWedge::new(settings.display.slices as u32, settings.radius());
         let work = Mutex::new(RendererWork::default());

@@ -25,10 +25,10 @@ use super::bounds::{BoundRow, SliceBounds};
 use super::command::SliceTriangle;
 use super::halftone::{halftone_clocks, halftone_words};
 use super::traffic::SliceTraffic;
-use crate::error::VolumeError;
 use pxpl5_gp::GpTiming;
 use pxpl5_renderer::{ArrayPool, CommandKind, Layout, Renderer, RendererEvent, RendererOutput, RendererTiming};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput, RingTiming};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Clock, Context, Cycles, EventQueue, Phase, Span, Time};
 use pxpl5_wire::display::{Display, DisplayConfig, DisplayEvent};
 use pxpl5_wire::{
@@ -74,13 +74,13 @@ const COPY_WORDS: u32 = 9;
 ///
 /// # Errors
 ///
-/// Returns [`VolumeError::Missing`] if there are more boards than ports on a ring.
+/// Returns a [`SettingError`] if there are more boards than ports on a ring.
 pub fn simulate(
     traffic: &SliceTraffic,
     bounds: &SliceBounds,
     renderers: u64,
     processors: u64,
-) -> Result<SimulatedRow, VolumeError> {
+) -> Result<SimulatedRow, SettingError> {
     Ok(Machine::new(traffic, renderers, processors)?.run(bounds))
 }
 
@@ -120,13 +120,10 @@ struct Machine<'a> {
 }
 
 impl<'a> Machine<'a> {
-    fn new(traffic: &'a SliceTraffic, renderers: u64, processors: u64) -> Result<Self, VolumeError> {
+    fn new(traffic: &'a SliceTraffic, renderers: u64, processors: u64) -> Result<Self, SettingError> {
         let boards = renderers.max(1) + processors.max(1) + 1;
-        let nodes = u16::try_from(boards).map_err(|_| VolumeError::Missing {
-            what: "boards",
-            expected: format!("at most {} on a ring", u16::MAX),
-            found: boards.to_string(),
-        })?;
+        let nodes = u16::try_from(boards)
+            .map_err(|_| SettingError::value("boards", format_args!("at most {} on a ring", u16::MAX), boards))?;
         let layout = Layout::rendering_control_phong();
         // Processors come first on the ring, then the renderers, then the display.
         let timing = slice_timing(&layout);
@@ -139,11 +136,9 @@ impl<'a> Machine<'a> {
         let board = |node| Renderer::new(NodeId(node), timing, word, cycle, Arc::clone(&pool));
         let [width, height] = traffic.size.map(u64::from);
         let display = PerspectaConfig { slices: traffic.slices.len() as u64, width, height, ..PerspectaConfig::PAPERS };
-        let display = display.build(&[NodeId(nodes - 1)]).map_err(|error| VolumeError::Missing {
-            what: "display",
-            expected: "one that takes the volume".to_owned(),
-            found: error.to_string(),
-        })?;
+        let display = display
+            .build(&[NodeId(nodes - 1)])
+            .map_err(|error| SettingError::value("display", "one that takes the volume", error))?;
         // Assign the slices to the processors in turn.
         let mut dealt: Vec<Processor> = (0..first).map(|_| Processor::default()).collect();
         for slice in 0..traffic.slices.len() {

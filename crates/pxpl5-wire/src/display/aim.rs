@@ -10,7 +10,8 @@ pub struct LightTimes {
     pub tick: Time,
     /// Time at which the first pixel of the picture starts to shine.
     pub first: Time,
-    /// Last time at which the last pixel of the picture starts to shine.
+    /// Last time at which the last pixel of the picture starts to shine. A picture that stays for several periods has
+    /// several such times.
     pub last: Time,
 }
 

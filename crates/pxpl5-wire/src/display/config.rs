@@ -2,7 +2,7 @@
 
 use crate::NodeId;
 use crate::display::Display;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use std::any::Any;
 use std::fmt::Debug;
 
@@ -32,10 +32,10 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     ///
     /// # Errors
     ///
-    /// Returns [`DisplayError`] with the name of the parameter, the expected range and the found value.
-    fn check(&self) -> Result<(), DisplayError> {
+    /// Returns [`SettingError`] with the name of the parameter, the expected range and the found value.
+    fn check(&self) -> Result<(), SettingError> {
         let mut tables = self.tables().into_iter();
-        tables.try_for_each(|(name, table)| table.check().map_err(|error| DisplayError(format!("{name}.{error}"))))
+        tables.try_for_each(|(name, table)| table.check().map_err(|error| error.in_table(name)))
     }
 
     /// Builds the display at the ring ports `nodes`. There must be as many ports as [`DisplayConfig::ports`] returns.
@@ -43,7 +43,7 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     /// # Errors
     ///
     /// Returns the errors of [`DisplayConfig::check`].
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError>;
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError>;
 
     /// Returns a copy of the configuration in a box.
     fn boxed(&self) -> Box<dyn DisplayConfig>;
@@ -78,11 +78,3 @@ impl Clone for Box<dyn DisplayConfig> {
 fn values(tables: Vec<(&'static str, &dyn ParameterTable)>) -> Vec<pxpl5_sim::parameters::Entry> {
     tables.into_iter().flat_map(|(_, table)| table.entries()).collect()
 }
-
-/// The reason why a display cannot be built.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct DisplayError(
-    /// Error message with the expected and the found value.
-    pub String,
-);

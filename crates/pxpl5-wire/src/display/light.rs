@@ -6,7 +6,7 @@ use serde::Serialize;
 /// The order in which the pixels of a surface start to shine within a period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Scan {
+pub enum ScanOrder {
     /// Line by line from the top, and from left to right in each line, like the beam of a cathode-ray tube.
     #[default]
     Down,
@@ -22,16 +22,16 @@ pub enum Scan {
 
 /// The brightness of a display's pixels over time: the order in which they start to shine, and for how long they shine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Light {
+pub struct PixelLight {
     /// Order in which the pixels start to shine.
-    pub scan: Scan,
+    pub scan: ScanOrder,
     /// Time for which the display drives a pixel in each period. Zero means that the pixel shines only for an instant.
     pub persistence: Span,
     /// Time constant of the first-order lag with which a pixel's brightness follows its drive. Zero means no lag.
     pub response: Span,
 }
 
-impl Light {
+impl PixelLight {
     /// Returns the time from the instant at which a pixel starts to shine to the centre of gravity of its brightness.
     /// This time is half of the persistence plus one time constant.
     #[must_use]
@@ -60,8 +60,8 @@ impl Light {
 mod tests {
     use super::*;
 
-    fn light(persistence: u64, response: u64) -> Light {
-        Light { scan: Scan::Down, persistence: Span(persistence), response: Span(response) }
+    fn light(persistence: u64, response: u64) -> PixelLight {
+        PixelLight { scan: ScanOrder::Down, persistence: Span(persistence), response: Span(response) }
     }
 
     #[test]

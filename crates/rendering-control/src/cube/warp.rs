@@ -1,7 +1,8 @@
 //! Region warping: the displacement of vertices before a slave transforms them.
 
-use address_recalculation::priority::{Cell, CellAssignment, Falloff, PriorityError, RegionWarp};
+use address_recalculation::priority::{Cell, CellAssignment, Falloff, RegionWarp};
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::Word;
 
 /// Displacement of an update's vertices near the border to the next slower memory. The slower memory was drawn from
@@ -31,8 +32,8 @@ impl FaceWarp {
     ///
     /// # Errors
     ///
-    /// Returns [`PriorityError`] if the length of the falloff is not positive and finite.
-    pub fn moved(&self, vertex: DVec3, memory: usize) -> Result<DVec3, PriorityError> {
+    /// Returns a [`SettingError`] if the length of the falloff is not positive and finite.
+    pub fn moved(&self, vertex: DVec3, memory: usize) -> Result<DVec3, SettingError> {
         let warp = RegionWarp::new(self.falloff, self.length_m, self.drawn_from, self.slower_from)?;
         Ok(warp.moved(vertex, self.dealing.to_slower(vertex, memory)))
     }

@@ -1,10 +1,10 @@
 //! A flat screen: one view of the whole scene, with hidden surfaces removed.
 
-use crate::error::{SpatialError, require};
 use crate::projection::Size;
 use crate::slice_volume::SliceVolume;
 use crate::view::{PixelFormat, SliceView, SpatialDisplay};
 use glam::{DMat4, DVec3};
+use pxpl5_sim::parameters::SettingError;
 
 /// A flat screen with the usual graphics pipeline: one picture of the scene from one eye, with a depth test.
 #[derive(Clone, Debug)]
@@ -18,8 +18,8 @@ impl FlatDisplay {
     ///
     /// # Errors
     ///
-    /// Returns [`SpatialError::Setting`] if a side of the size is out of range, or if the width is not a multiple of 8.
-    pub fn new(size: Size, view: DMat4, projection: DMat4) -> Result<Self, SpatialError> {
+    /// Returns a [`SettingError`] if a side of the size is out of range, or if the width is not a multiple of 8.
+    pub fn new(size: Size, view: DMat4, projection: DMat4) -> Result<Self, SettingError> {
         check_size(size)?;
         let mut only = SliceView::new(view, projection, SliceVolume::Frustum, size);
         only.hides = true;
@@ -32,7 +32,7 @@ impl FlatDisplay {
     /// # Errors
     ///
     /// The same as [`Self::new`].
-    pub fn around(size: Size, azimuth: f64, elevation: f64, distance: f64, focal: f64) -> Result<Self, SpatialError> {
+    pub fn around(size: Size, azimuth: f64, elevation: f64, distance: f64, focal: f64) -> Result<Self, SettingError> {
         let (sin_a, cos_a) = libm::sincos(azimuth);
         let (sin_e, cos_e) = libm::sincos(elevation);
         let eye = distance * DVec3::new(cos_e * sin_a, sin_e, cos_e * cos_a);
@@ -51,11 +51,11 @@ impl FlatDisplay {
     }
 }
 
-pub(super) fn check_size(size: Size) -> Result<(), SpatialError> {
+pub(super) fn check_size(size: Size) -> Result<(), SettingError> {
     let [width, height] = size;
-    require((8..=4096).contains(&width), "display.width", "8 to 4096", width)?;
-    require(width.is_multiple_of(8), "display.width", "a multiple of 8", width)?;
-    require((1..=4096).contains(&height), "display.height", "1 to 4096", height)
+    SettingError::require((8..=4096).contains(&width), "display.width", "8 to 4096", width)?;
+    SettingError::require(width.is_multiple_of(8), "display.width", "a multiple of 8", width)?;
+    SettingError::require((1..=4096).contains(&height), "display.height", "1 to 4096", height)
 }
 
 impl SpatialDisplay for FlatDisplay {

@@ -1,11 +1,11 @@
 //! A stack of planes: pictures one behind the other, each of which represents a slab of space.
 
 use super::flat::check_size;
-use crate::error::{SpatialError, require};
 use crate::projection::{Size, matrix_of_rows};
 use crate::slice_volume::SliceVolume;
 use crate::view::{PixelFormat, SliceView, SpatialDisplay};
 use glam::{DMat4, DVec3};
+use pxpl5_sim::parameters::SettingError;
 
 /// Parallel planes perpendicular to z, from the farthest (least z) to the nearest. The slabs of neighbouring planes
 /// touch.
@@ -22,11 +22,11 @@ impl PlaneStack {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] names the number, the expected range and the value found.
-    pub fn new(size: Size, planes: u32, depth: f64) -> Result<Self, SpatialError> {
+    /// [`SettingError`] names the number, the expected range and the value found.
+    pub fn new(size: Size, planes: u32, depth: f64) -> Result<Self, SettingError> {
         check_size(size)?;
-        require((1..=65_536).contains(&planes), "display.slices", "1 to 65536", planes)?;
-        require(depth.is_finite() && depth > 0.0, "display.depth", "a finite depth above 0 px", depth)?;
+        SettingError::require((1..=65_536).contains(&planes), "display.slices", "1 to 65536", planes)?;
+        SettingError::require(depth.is_finite() && depth > 0.0, "display.depth", "a finite depth above 0 px", depth)?;
         let views = (0..planes).map(|i| plane(size, planes, depth, i)).collect();
         Ok(Self { size, depth, views })
     }

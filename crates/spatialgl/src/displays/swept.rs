@@ -3,11 +3,11 @@
 use crate::angle::sin_cos_of_turn;
 use crate::bin::BinLayout;
 use crate::clip::{HalfWedge, SliceClip};
-use crate::error::{SpatialError, require};
 use crate::projection::{Projection, Size, matrix_of_rows};
 use crate::slice_volume::{TieRule, WedgePlanes};
 use crate::view::{PixelFormat, SliceView, SpatialDisplay};
 use glam::{DMat4, DVec3};
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 /// The direction in which the screen turns.
@@ -80,18 +80,18 @@ impl SweptConfig {
         HalfWedge::new(self.slices, self.radius())
     }
 
-    fn check(&self) -> Result<(), SpatialError> {
+    fn check(&self) -> Result<(), SettingError> {
         let slices = self.slices;
-        require((4..=65_536).contains(&slices), "display.slices", "4 to 65536", slices)?;
-        require(slices.is_multiple_of(2), "display.slices", "an even number", slices)?;
+        SettingError::require((4..=65_536).contains(&slices), "display.slices", "4 to 65536", slices)?;
+        SettingError::require(slices.is_multiple_of(2), "display.slices", "an even number", slices)?;
         let width = self.width;
-        require((8..=4096).contains(&width), "display.width", "8 to 4096", width)?;
-        require(width.is_multiple_of(8), "display.width", "a multiple of 8", width)?;
-        require((1..=4096).contains(&self.height), "display.height", "1 to 4096", self.height)?;
-        require(self.phase.is_finite(), "display.phase", "a finite angle", self.phase)?;
+        SettingError::require((8..=4096).contains(&width), "display.width", "8 to 4096", width)?;
+        SettingError::require(width.is_multiple_of(8), "display.width", "a multiple of 8", width)?;
+        SettingError::require((1..=4096).contains(&self.height), "display.height", "1 to 4096", self.height)?;
+        SettingError::require(self.phase.is_finite(), "display.phase", "a finite angle", self.phase)?;
         // Clip and projection depend on the display's radius.
         let bits = self.plane_fraction_bits.unwrap_or(0);
-        require(bits <= 52, "clip.plane_fraction_bits", "0 to 52", bits)?;
+        SettingError::require(bits <= 52, "clip.plane_fraction_bits", "0 to 52", bits)?;
         let wedge = self.half_wedge();
         self.clip.check(wedge)?;
         self.projection.check(wedge.radius, self.clip.reach(wedge))
@@ -111,8 +111,8 @@ impl SweptDisplay {
     ///
     /// # Errors
     ///
-    /// [`SpatialError::Setting`] names the number, the expected range and the value found.
-    pub fn new(config: SweptConfig) -> Result<Self, SpatialError> {
+    /// [`SettingError`] names the number, the expected range and the value found.
+    pub fn new(config: SweptConfig) -> Result<Self, SettingError> {
         config.check()?;
         let bins = BinLayout::double_wedges(config.clip.tolerance(config.half_wedge()));
         let views = (0..config.slices).map(|k| view(&config, k)).collect();

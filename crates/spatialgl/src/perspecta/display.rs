@@ -4,11 +4,9 @@ use crate::perspecta::store::{FrameStore, StoreReceipt};
 use crate::perspecta::timing::PerspectaConfig;
 use crate::pixel_of_word;
 use image::{Rgb, RgbImage};
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_sim::{Clock, Span, Time};
-use pxpl5_wire::display::{
-    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
-};
+use pxpl5_wire::display::{Counter, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, Surface};
 use pxpl5_wire::{Body, NodeId, PeriodNumber, Word};
 use std::sync::LazyLock;
 
@@ -152,11 +150,11 @@ impl DisplayConfig for PerspectaConfig {
         1
     }
 
-    fn check(&self) -> Result<(), DisplayError> {
-        Self::check(self).map_err(|error| DisplayError(error.to_string()))
+    fn check(&self) -> Result<(), SettingError> {
+        Self::check(self)
     }
 
-    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, SettingError> {
         DisplayConfig::check(self)?;
         let width = self.width as u32;
         let height = self.height as u32;

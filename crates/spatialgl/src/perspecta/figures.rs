@@ -1,82 +1,63 @@
-//! The figures of the SpatialGL paper. A [`Figure`] compares a number of the paper with a number that the code computes
-//! or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. A definition has
-//! no verdict.
+//! The figures of the SpatialGL paper. A [`FigureRow`] compares a number of the paper with a number that the code
+//! computes or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. A
+//! definition has no verdict.
 
 use crate::perspecta::timing::PerspectaConfig;
 use crate::{
     BinLayout, HalfWedge, PIXELS_PER_WORD, SliceClip, SpatialDisplay, SweptDisplay, Tiling, VolumeStats, pack_dense,
     packed_word,
 };
+use pxpl5_sim::figures::{Definition, FigureRow, around};
 use pxpl5_sim::parameters::Provenance;
-use serde::Serialize;
 
-/// A number of the paper that is an input of the model, or that follows from inputs of the model by arithmetic alone.
-///
-/// No run can give another value, so a definition is not compared with anything.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Definition {
-    /// Identifier in the specification. P numbers are printed in the paper, D numbers are derived.
-    pub id: &'static str,
-    /// Statement of the paper, in words.
-    pub statement: &'static str,
-    /// Value of the number in this model. Its unit is `unit`.
-    pub value: f64,
-    pub unit: &'static str,
-    /// Provenance of the value: printed or derived.
-    pub provenance: Provenance,
-}
-
-/// A figure of the paper, and the value that the model gives for it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Figure {
-    /// Identifier in the specification. P numbers are printed in the paper, D numbers are derived.
-    pub id: &'static str,
-    /// Statement of the paper, in words.
-    pub statement: &'static str,
-    /// Unit of both values and of the interval.
-    pub unit: &'static str,
-    /// Printed or derived value. If the paper prints only a bound or an approximate value ("over", "about"), the value
-    /// is an end or the middle of `interval`.
-    pub published: f64,
-    /// Least and greatest computed value that count as agreement with the figure.
-    pub interval: [f64; 2],
-    /// Value of the figure that this model computes.
-    pub computed: f64,
-    /// Provenance of the published value: printed or derived.
-    pub provenance: Provenance,
-}
-
-impl Figure {
-    /// Returns true if the model agrees with the figure.
-    #[must_use]
-    pub fn is_met(&self) -> bool {
-        (self.interval[0]..=self.interval[1]).contains(&self.computed)
-    }
-
-    /// Returns the difference between computed and published value, as a percentage of the published value.
-    #[must_use]
-    pub fn error_percent(&self) -> f64 {
-        100.0 * (self.computed - self.published) / self.published
-    }
-}
-
-/// Returns a figure whose interval of agreement extends by `half_digit` to both sides of the published value.
-const fn row(
+/// Returns the row of a figure. The values that differ from the published one by at most `half_digit` count as
+/// agreement.
+#[must_use]
+pub fn row(
     id: &'static str,
     statement: &'static str,
     unit: &'static str,
-    provenance: Provenance,
     (published, half_digit): (f64, f64),
     computed: f64,
-) -> Figure {
-    Figure {
-        id,
-        statement,
-        unit,
-        published,
-        interval: [published - half_digit, published + half_digit],
-        computed,
-        provenance,
+) -> FigureRow {
+    let row = FigureRow::new(id, statement, unit, [published, computed], around(published, half_digit));
+    FigureRow { source: source(id).into(), origin: origin(id), cause: cause(id), ..row }
+}
+
+/// Returns the provenance of a number: printed in the paper if `id` begins with P, and otherwise derived.
+fn origin(id: &str) -> Provenance {
+    if id.starts_with('P') { Provenance::Published } else { Provenance::Derived }
+}
+
+/// Returns the section of the paper that prints the number with this identifier.
+fn source(id: &str) -> &'static str {
+    match id {
+        "P1" => "SpatialGL Graphics Pipeline; Slice View Volume",
+        "P2" | "P3" | "P4" => "Shader Clip Planes",
+        "P5" => "Slice View Volume",
+        "P6" | "P7" | "P8" | "P9" | "P10" => "Image Reformatting",
+        "P11" => "SpatialGL Optimizations",
+        "P13" => "Vertex Outcodes",
+        "P14" => "Binning",
+        "P15" | "P16" | "P17" => "Tile Queries",
+        "P18" => "Tile Batching",
+        "P19" => "Degenerate Sections",
+        "P20" => "Introduction",
+        _ => "derived",
+    }
+}
+
+/// Returns the known cause for which the model misses the figure with this identifier.
+fn cause(id: &str) -> &'static str {
+    match id {
+        "P17" => {
+            "The paper says \"most scenes\" and does not name them. The interval from 5 to 20 is an assumption of the project. A slender \
+             object such as the Mig leaves most of the volume empty."
+        }
+        "section 6" => {
+            "The law holds for small triangles. The triangles of the Mig are large. They lie on several bin planes and go into several bins."
+        }
+        _ => "The cause is not known.",
     }
 }
 
@@ -85,9 +66,6 @@ pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
 
 /// Number of months in which the performance of CPUs doubles (published, P20).
 pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
-
-const P: Provenance = Provenance::Published;
-const D: Provenance = Provenance::Derived;
 
 /// Returns the inputs of the model that the paper prints, and the numbers that follow from them by arithmetic.
 #[must_use]
@@ -99,9 +77,8 @@ pub fn definitions() -> Vec<Definition> {
     all
 }
 
-/// Returns a definition. The number is printed in the paper if `id` begins with P. Otherwise the number is derived.
 fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static str) -> Definition {
-    Definition { id, statement, value, unit, provenance: if id.starts_with('P') { P } else { D } }
+    Definition { id, statement: statement.into(), source: source(id), value, unit, provenance: origin(id) }
 }
 
 /// Number of bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).
@@ -159,7 +136,7 @@ fn doubling() -> Vec<Definition> {
 
 /// Returns the figures that the model computes without drawing: trigonometry, bins, and the thickness of slabs.
 #[must_use]
-pub fn formulas() -> Vec<Figure> {
+pub fn formulas() -> Vec<FigureRow> {
     let config = PerspectaConfig::PAPERS;
     let wedge = HalfWedge::new(config.slices as u32, config.width as f64 / 2.0);
     let mut figures = geometry(&config, wedge);
@@ -169,32 +146,30 @@ pub fn formulas() -> Vec<Figure> {
 
 /// Returns figures that compare the counts of a volume with the paper's statements about "most scenes".
 #[must_use]
-pub fn measured(stats: &VolumeStats) -> Vec<Figure> {
-    let occupancy = Figure {
-        interval: [5.0, 20.0],
-        ..row("P17", "tiles that are not empty, most scenes", "%", P, (10.0, 0.0), stats.tile_occupancy_percent())
-    };
+pub fn measured(stats: &VolumeStats) -> Vec<FigureRow> {
+    let occupied = stats.tile_occupancy_percent();
+    let occupancy = row("P17", "tiles that are not empty, most scenes", "%", (10.0, 0.0), occupied);
     let draws = 100.0 * stats.draws as f64 / stats.draws_unbinned.max(1) as f64;
-    let binned = row("section 6", "draws that bins leave of all", "%", D, (28.5, 4.0), draws);
-    vec![occupancy, binned]
+    let binned = row("section 6", "draws that bins leave of all", "%", (28.5, 4.0), draws);
+    vec![occupancy.with_accepted([5.0, 20.0]), binned]
 }
 
 /// Returns figures from the packed words of white pixels: ten pixels per word (P10), and the percentage of unused bits
 /// in both packings (D6).
 #[must_use]
-pub fn packing() -> Vec<Figure> {
+pub fn packing() -> Vec<FigureRow> {
     let white = |pixels: usize| pack_dense(&vec![0b111; pixels]);
     let fits = (1..=32).take_while(|pixels| white(*pixels).len() == 1).count();
     let waste = |word: u32| 100.0 * (1.0 - f64::from(word.count_ones()) / 32.0);
     let dense = white(fits).first().map_or(f64::NAN, |word| waste(*word));
     vec![
-        row("P10", "3-bit pixels that a densely packed word holds", "pixels", P, (10.0, 0.0), fits as f64),
-        row("D6", "waste of a packed word", "%", D, (25.0, 0.0), waste(packed_word(0xFF, 0xFF, 0xFF))),
-        row("D6", "waste of a densely packed word", "%", D, (6.25, 0.0), dense),
+        row("P10", "3-bit pixels that a densely packed word holds", "pixels", (10.0, 0.0), fits as f64),
+        row("D6", "waste of a packed word", "%", (25.0, 0.0), waste(packed_word(0xFF, 0xFF, 0xFF))),
+        row("D6", "waste of a densely packed word", "%", (6.25, 0.0), dense),
     ]
 }
 
-fn geometry(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
+fn geometry(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<FigureRow> {
     let exact = config.swept(SliceClip::ShaderPlanes, crate::Projection::Orthographic).ok();
     let served = |display: SweptDisplay| {
         // The second half turn has the same planes.
@@ -203,19 +178,19 @@ fn geometry(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
     };
     let served = exact.map_or(0, served);
     vec![
-        row("D1", "sine of half the slice pitch", "1", D, (0.007_933_231_6, 5e-11), wedge.sin),
-        row("D1", "cosine of half of it", "1", D, (0.999_968_531_4, 5e-11), wedge.cos),
-        row("D1", "tangent of half of it", "1", D, (0.007_933_481_2, 5e-11), wedge.tan),
-        row("D9", "planes that a double wedge serves", "planes", D, (50.0, 0.0), served as f64),
+        row("D1", "sine of half the slice pitch", "1", (0.007_933_231_6, 5e-11), wedge.sin),
+        row("D1", "cosine of half of it", "1", (0.999_968_531_4, 5e-11), wedge.cos),
+        row("D1", "tangent of half of it", "1", (0.007_933_481_2, 5e-11), wedge.tan),
+        row("D9", "planes that a double wedge serves", "planes", (50.0, 0.0), served as f64),
     ]
 }
 
-fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
+fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<FigureRow> {
     let planes = config.slices as f64 / 2.0;
     let [prism, hyperbola] = [SliceClip::Prism, SliceClip::Hyperbolic(0.25)].map(|clip| mean(clip, wedge, planes));
     vec![
-        row("D10", "planes that show a point, mean over the disc, prism", "planes", D, (2.0, 5e-4), prism),
-        row("D11", "the same of the hyperbola", "planes", D, (1.081, 5e-4), hyperbola),
+        row("D10", "planes that show a point, mean over the disc, prism", "planes", (2.0, 5e-4), prism),
+        row("D11", "the same of the hyperbola", "planes", (1.081, 5e-4), hyperbola),
     ]
 }
 
@@ -261,7 +236,7 @@ mod tests {
     #[test]
     fn what_code_computes_and_packs_is_what_was_derived() {
         for figure in formulas().into_iter().chain(packing()) {
-            assert!(figure.is_met(), "{figure:?}");
+            assert!(figure.is_met, "{figure:?}");
         }
     }
 }

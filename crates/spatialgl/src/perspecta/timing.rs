@@ -1,8 +1,7 @@
 //! All parameters of the display, with their sources.
 
-use crate::perspecta::error::PerspectaError;
-use crate::{Rotation, SpatialError, SweptConfig};
-use pxpl5_sim::parameters::ParameterTable;
+use crate::{Rotation, SweptConfig};
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_sim::{Clock, Span, Time};
 
 pxpl5_sim::parameters::parameter_table! {
@@ -29,15 +28,11 @@ impl PerspectaConfig {
     ///
     /// # Errors
     ///
-    /// [`PerspectaError::Number`] names the number, the expected and the found value.
-    pub fn check(&self) -> Result<(), PerspectaError> {
-        ParameterTable::check(self).map_err(|error| PerspectaError::Number(format!("perspecta.{error}")))?;
-        let rule = |holds: bool, name: &str, expected: &str, found: u64| {
-            let text = format!("perspecta.{name}: expected {expected}, found {found}");
-            if holds { Ok(()) } else { Err(PerspectaError::Number(text)) }
-        };
-        rule(self.slices.is_multiple_of(2), "slices", "an even number", self.slices)?;
-        rule(self.width.is_multiple_of(8), "width", "a multiple of 8", self.width)
+    /// [`SettingError`] names the number, the expected and the found value.
+    pub fn check(&self) -> Result<(), SettingError> {
+        ParameterTable::check(self).map_err(|error| error.in_table("perspecta"))?;
+        SettingError::require(self.slices.is_multiple_of(2), "perspecta.slices", "an even number", self.slices)?;
+        SettingError::require(self.width.is_multiple_of(8), "perspecta.width", "a multiple of 8", self.width)
     }
 
     /// Returns a clock whose edges are the instants of strobe 0, the first flash of a revolution. The period is exactly
@@ -82,12 +77,12 @@ impl PerspectaConfig {
     ///
     /// # Errors
     ///
-    /// [`PerspectaError`] as for [`Self::check`], or for settings that the pipeline does not support.
+    /// [`SettingError`] as for [`Self::check`], or for settings that the pipeline does not support.
     pub fn swept(
         &self,
         clip: crate::SliceClip,
         projection: crate::Projection,
-    ) -> Result<crate::SweptDisplay, PerspectaError> {
+    ) -> Result<crate::SweptDisplay, SettingError> {
         self.check()?;
         let config = SweptConfig {
             slices: self.slices as u32,
@@ -96,6 +91,6 @@ impl PerspectaConfig {
             rotation: Rotation::XToZ,
             ..SweptConfig::perspecta(clip, projection)
         };
-        crate::SweptDisplay::new(config).map_err(|error: SpatialError| PerspectaError::Number(error.to_string()))
+        crate::SweptDisplay::new(config)
     }
 }

@@ -1,8 +1,8 @@
 //! The view of an eye at any position during one revolution: the sum of the light of all lit pixels in all strobes.
 
-use crate::perspecta::error::PerspectaError;
 use crate::{BitPlanes, ColourSample, Rotation, Size, VolumeFrame, Workers, sin_cos_of_turn};
 use image::{Rgb, RgbImage};
+use pxpl5_sim::parameters::SettingError;
 use std::sync::{Mutex, PoisonError};
 
 /// Units of light of one lit pixel in one strobe (flash). With 256 x 256 units, the shares of four neighbouring picture
@@ -40,12 +40,12 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// [`PerspectaError::Camera`] names the number that is out of range.
-    pub fn check_before(&self, slice: Size) -> Result<(), PerspectaError> {
+    /// [`SettingError`] names the number that is out of range.
+    pub fn check_before(&self, slice: Size) -> Result<(), SettingError> {
         let [half_width, half_height] = slice.map(|side| f64::from(side) / 2.0);
         let reach = libm::hypot(half_width, half_height);
-        let rule = |holds: bool, what, expected, found| {
-            if holds { Ok(()) } else { Err(PerspectaError::Camera { what, expected, found }) }
+        let rule = |holds: bool, name, expected, found: f64| {
+            SettingError::require(holds, name, expected, found).map_err(|error| error.in_table("view"))
         };
         rule(self.azimuth_deg.is_finite(), "azimuth", "a finite angle", self.azimuth_deg)?;
         rule(self.elevation_deg.is_finite(), "elevation", "a finite angle", self.elevation_deg)?;
@@ -110,13 +110,13 @@ impl ViewOptions {
 /// The light that reaches each pixel of a picture, in integer units. Integer sums are exact in any order and on any
 /// number of threads.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Light {
+pub struct PictureLight {
     size: Size,
     /// Light of each pixel of the picture: red, green and blue.
     sums: Vec<[u64; 3]>,
 }
 
-impl Light {
+impl PictureLight {
     fn dark(size: Size) -> Self {
         Self { size, sums: vec![[0; 3]; size[0] as usize * size[1] as usize] }
     }
@@ -190,13 +190,13 @@ impl Light {
 ///
 /// # Errors
 ///
-/// Returns [`PerspectaError::Camera`] if a number of the camera is out of range.
+/// Returns a [`SettingError`] if a number of the camera is out of range.
 pub fn view_planes(
     planes: &BitPlanes,
     camera: &Camera,
     options: ViewOptions,
     workers: &dyn Workers,
-) -> Result<Light, PerspectaError> {
+) -> Result<PictureLight, SettingError> {
     sum(planes.size(), planes.slices(), camera, options, workers, &|k, each| {
         let row = planes.size()[0] / 8;
         for (at, word) in (0u32..).zip(planes.slice(k)).filter(|(_, word)| **word != 0) {
@@ -225,7 +225,7 @@ pub fn view_undithered(
     camera: &Camera,
     options: ViewOptions,
     workers: &dyn Workers,
-) -> Result<Option<Light>, PerspectaError> {
+) -> Result<Option<PictureLight>, SettingError> {
     let Some(colours) = frame.colours.as_ref() else { return Ok(None) };
     let size = frame.planes.size();
     let light = sum(size, frame.planes.slices(), camera, options, workers, &|k, each| {
@@ -251,12 +251,12 @@ fn sum(
     options: ViewOptions,
     workers: &dyn Workers,
     pixels: &EachPixel<'_>,
-) -> Result<Light, PerspectaError> {
+) -> Result<PictureLight, SettingError> {
     camera.check_before(size)?;
     // Each task sums a range of slices, so that the lock is taken rarely.
-    let total = Mutex::new(Light::dark(camera.size));
+    let total = Mutex::new(PictureLight::dark(camera.size));
     let part = |first: u32| {
-        let mut light = Light::dark(camera.size);
+        let mut light = PictureLight::dark(camera.size);
         for k in first..(first + SLICES_PER_TASK).min(slices) {
             let strobe = Strobe::new(k, slices, size, camera, options);
             pixels(k, &mut |x, y, levels| strobe.add(&mut light, x, y, levels));
@@ -305,7 +305,7 @@ impl Strobe {
     }
 
     #[inline(always)]
-    fn add(&self, light: &mut Light, x: u32, y: u32, levels: [u64; 3]) {
+    fn add(&self, light: &mut PictureLight, x: u32, y: u32, levels: [u64; 3]) {
         let u = f64::from(x) + 0.5 - self.half[0];
         let v = self.half[1] - f64::from(y) - 0.5;
         if self.cut[usize::from(u >= 0.0)] {
@@ -345,7 +345,7 @@ pub fn film(
     options: ViewOptions,
     frames: u32,
     workers: &dyn Workers,
-) -> impl Iterator<Item = Result<RgbImage, PerspectaError>> {
+) -> impl Iterator<Item = Result<RgbImage, SettingError>> {
     let mut exposure = None;
     (0..frames).map(move |i| {
         let azimuth_deg = camera.azimuth_deg + 360.0 * f64::from(i) / f64::from(frames);

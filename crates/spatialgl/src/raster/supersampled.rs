@@ -2,9 +2,9 @@
 
 use super::{Coverage, SliceRenderer, SliceStats, SliceWork};
 use crate::command::Combine;
-use crate::error::{SpatialError, require};
 use crate::image::SliceImage;
 use crate::view::SliceView;
+use pxpl5_sim::parameters::SettingError;
 use std::sync::{Mutex, PoisonError};
 
 /// A renderer that draws each slice with 4 or 16 samples per pixel and returns the mean of each pixel's samples.
@@ -25,9 +25,9 @@ impl<R: SliceRenderer> Supersampled<R> {
     ///
     /// # Errors
     ///
-    /// Returns [`SpatialError::Setting`] unless `samples` is 4 or 16.
-    pub fn new(inner: R, samples: u32) -> Result<Self, SpatialError> {
-        require([4, 16].contains(&samples), "draw.samples", "4 or 16", samples)?;
+    /// Returns a [`SettingError`] unless `samples` is 4 or 16.
+    pub fn new(inner: R, samples: u32) -> Result<Self, SettingError> {
+        SettingError::require([4, 16].contains(&samples), "draw.samples", "4 or 16", samples)?;
         Ok(Self { inner, factor: samples.isqrt(), scratch: Mutex::new(Vec::new()) })
     }
 

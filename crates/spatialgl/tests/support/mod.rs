@@ -19,9 +19,9 @@ pub(crate) const ASIDE: Projection =
 
 /// Returns a recording of draw calls for white triangles.
 pub(crate) fn recording(triangles: &[Triangle]) -> CommandBuffer {
-    let vertices = triangles.iter().flatten().map(|p| Vertex::new(DVec3::from_array(*p), [255; 3])).collect();
+    let vertices = triangles.iter().flatten().map(|p| ColouredVertex::new(DVec3::from_array(*p), [255; 3])).collect();
     let buffer = VertexBuffer::new(vertices).expect("finite");
-    let mut context = Context::default();
+    let mut context = DrawContext::default();
     context.draw(&buffer, 0..buffer.len(), Topology::Triangles).expect("in range");
     context.present()
 }

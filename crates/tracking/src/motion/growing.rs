@@ -4,8 +4,8 @@ use super::{End, Motion, Recording};
 use crate::identity::SettingSink;
 use crate::pose::Pose;
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
-use thiserror::Error;
 
 /// A recorded head motion to which samples can be added during a run. Clones share the same recording.
 ///
@@ -14,16 +14,6 @@ use thiserror::Error;
 /// would change a pose that the simulation has already used.
 #[derive(Clone, Debug)]
 pub struct GrowingRecording(Arc<RwLock<Recording>>);
-
-/// The error for added samples whose first time stamp is not later than the last existing time stamp.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("expected samples after {last_ps} ps, found one at {found_ps} ps")]
-pub struct GrowthError {
-    /// Time stamp of the last existing sample, ps.
-    pub last_ps: u64,
-    /// Time stamp of the first added sample, ps.
-    pub found_ps: u64,
-}
 
 impl GrowingRecording {
     /// Creates a growing motion that starts with the samples of `begin`.
@@ -36,13 +26,14 @@ impl GrowingRecording {
     ///
     /// # Errors
     ///
-    /// Returns [`GrowthError`] unless the first new sample is later than the last existing sample. Nothing is appended
+    /// Returns a [`SettingError`] unless the first new sample is later than the last existing sample. Nothing is appended
     /// in this case.
-    pub fn extend(&self, more: &Recording) -> Result<(), GrowthError> {
+    pub fn extend(&self, more: &Recording) -> Result<(), SettingError> {
         let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
         let (last_ps, found_ps) = (known.span_ps().1, more.span_ps().0);
         if found_ps <= last_ps {
-            return Err(GrowthError { last_ps, found_ps });
+            let found = format_args!("one at {found_ps} ps");
+            return Err(SettingError::value("", format_args!("samples after {last_ps} ps"), found));
         }
         known.append(more);
         Ok(())

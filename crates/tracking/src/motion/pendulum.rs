@@ -1,11 +1,10 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec3;
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 
 use super::Motion;
 use crate::config as table;
-use crate::error::SettingError;
 use crate::identity::SettingSink;
 use crate::pose::Pose;
 use crate::rotation;
@@ -83,8 +82,8 @@ impl Pendulum {
 }
 
 impl Motion for Pendulum {
-    /// Writes the length of the arm and the modulus, which is the sine of half the amplitude. Frequency and period
-    /// follow from these two numbers.
+    /// Writes the length of the pendulum's arm and the modulus, which is the sine of half the amplitude. Frequency and
+    /// period follow from these two numbers.
     fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"pendulum");
         settings("motion.arm_m", &self.arm_m);
@@ -115,7 +114,8 @@ fn quarter_period(modulus: f64) -> f64 {
     FRAC_PI_2 / mean_ladder(modulus).0
 }
 
-/// Returns the arithmetic-geometric mean of 1 and k', and the ratio c_n / a_n of each step of its iteration.
+/// Returns the arithmetic-geometric mean of 1 and k', and the ratio c_n / a_n of each step of the iteration that
+/// computes this mean.
 fn mean_ladder(modulus: f64) -> (f64, [f64; LEVELS]) {
     let mut a = 1.0;
     let mut b = (1.0 - modulus * modulus).sqrt();

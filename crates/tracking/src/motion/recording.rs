@@ -1,7 +1,6 @@
 mod axes;
 mod columns;
 mod decimal;
-mod error;
 mod pose_log;
 mod read;
 #[cfg(test)]
@@ -9,8 +8,8 @@ mod tests;
 
 pub use axes::Axes;
 pub use columns::Columns;
-pub use error::RecordingError;
 
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::io::Read;
 
 use glam::DVec3;
@@ -102,8 +101,8 @@ impl Recording {
     ///
     /// # Errors
     ///
-    /// [`RecordingError`] names the line, the column, the expected content and the found content.
-    pub fn read(input: impl Read) -> Result<Self, RecordingError> {
+    /// [`FileError`] names the line, the column, the expected content and the found content.
+    pub fn read(input: impl Read) -> Result<Self, FileError> {
         Self::read_as(input, &RecordingFormat::default())
     }
 
@@ -113,9 +112,11 @@ impl Recording {
     /// # Errors
     ///
     /// The same as [`Self::read`].
-    pub fn read_as(mut input: impl Read, format: &RecordingFormat) -> Result<Self, RecordingError> {
+    pub fn read_as(mut input: impl Read, format: &RecordingFormat) -> Result<Self, FileError> {
         let mut bytes = Vec::new();
-        let unreadable = |why: String| RecordingError::Unreadable { why };
+        let unreadable = |why: String| {
+            FileError::new(FileErrorKind::Unreadable, "", format_args!("cannot read the recording: {why}"))
+        };
         input.read_to_end(&mut bytes).map_err(|error| unreadable(error.to_string()))?;
         if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
             return Err(unreadable("expected UTF-8 text, found text in units of 16 bits".to_owned()));
@@ -138,14 +139,14 @@ impl Recording {
     /// let walk = [0.0, 1.0, 2.0].map(|s| (s, Pose { position: DVec3::X * s, ..Pose::IDENTITY }));
     /// let walk = Recording::from_samples(walk)?;
     /// assert_eq!(walk.pose(1_500_000_000_000).position.x, 1.5);
-    /// # Ok::<(), tracking::motion::RecordingError>(())
+    /// # Ok::<(), pxpl5_sim::parameters::FileError>(())
     /// ```
     ///
     /// # Errors
     ///
-    /// [`RecordingError`] with the expected and the found value. The number of a line is the number of the sample,
+    /// [`FileError`] with the expected and the found value. The number of a line is the number of the sample,
     /// counted from 1.
-    pub fn from_samples(samples: impl IntoIterator<Item = (f64, Pose)>) -> Result<Self, RecordingError> {
+    pub fn from_samples(samples: impl IntoIterator<Item = (f64, Pose)>) -> Result<Self, FileError> {
         read::given_samples(samples).map(Self::of_samples)
     }
 

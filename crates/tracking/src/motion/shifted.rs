@@ -8,7 +8,7 @@ use crate::pose::Pose;
 /// `by_ps`.
 #[derive(Clone, Copy, Debug)]
 pub struct AdvancedMotion<M> {
-    /// The original motion, which this motion shows earlier by `by_ps`.
+    /// The original motion. Its poses occur earlier by `by_ps` in the advanced motion.
     pub motion: M,
     /// Time by which this motion is ahead of the original motion, ps.
     pub by_ps: u64,

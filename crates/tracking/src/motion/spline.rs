@@ -47,8 +47,8 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// Creates splines whose values have these standard deviations. Splines with the same seed `spells` have their
-    /// lively periods at the same times.
+    /// Creates splines whose values have the standard deviations `deviation`. Splines with the same seed `spells` have
+    /// their lively periods at the same times.
     pub(super) fn new(spacing_ps: u64, deviation: DVec3, activity: Activity, seed: u64, spells: u64) -> Self {
         let seeds = core::array::from_fn(|axis| stream(seed, axis as u64));
         Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, seeds, spells }

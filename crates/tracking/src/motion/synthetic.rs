@@ -1,9 +1,10 @@
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 use super::Motion;
 use super::spline::{Activity, Spline};
-use crate::error::SettingError;
+use crate::error::check;
 use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
 use crate::random::stream;
@@ -27,7 +28,7 @@ pub struct Band {
     pub power: u32,
 }
 
-/// Index of the random stream from which the seed of another motion of the same kind is drawn ([`Motion::sibling`]).
+/// Index of the random stream that gives the seed of another motion of the same kind ([`Motion::sibling`]).
 const SIBLING: u64 = 10;
 
 /// Settings of the random head motion [`Synthetic`]: one frequency band for each kind of movement, and the mean
@@ -78,7 +79,7 @@ impl Synthetic {
     /// Returns [`SettingError`] if a number is out of range.
     pub fn new(config: &SyntheticConfig, seed: u64) -> Result<Self, SettingError> {
         for metres in config.centre_m {
-            SettingError::check("centre of the motion", metres, -1e6, 1e6)?;
+            check("centre of the motion", metres, -1e6, 1e6)?;
         }
         let radians = std::f64::consts::PI / 180.0;
         Ok(Self {
@@ -141,11 +142,11 @@ impl Motion for Synthetic {
 }
 
 fn spline(band: &Band, unit: f64, seed: u64) -> Result<Spline, SettingError> {
-    SettingError::check("spacing of knots, s", band.spacing_s, 0.01, 1000.0)?;
-    SettingError::check("level of calm spells", band.calm, 0.0, 1.0)?;
-    SettingError::check("power of lively spells", f64::from(band.power), 1.0, 16.0)?;
+    check("spacing of knots, s", band.spacing_s, 0.01, 1000.0)?;
+    check("level of calm spells", band.calm, 0.0, 1.0)?;
+    check("power of lively spells", f64::from(band.power), 1.0, 16.0)?;
     for deviation in band.deviation {
-        SettingError::check("deviation of a band", deviation, 0.0, 1e6)?;
+        check("deviation of a band", deviation, 0.0, 1e6)?;
     }
     let activity = Activity { calm: band.calm, power: band.power };
     let deviation = DVec3::from_array(band.deviation) * unit;

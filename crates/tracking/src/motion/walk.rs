@@ -1,25 +1,26 @@
+use pxpl5_sim::parameters::SettingError;
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
 use super::Motion;
 use super::synthetic::Synthetic;
-use crate::error::SettingError;
+use crate::error::check;
 use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
 use crate::time::seconds;
 
-/// Distance along the path from a walking head to the point at which it looks, m. Assumed. The head turns towards a
-/// corner before it reaches the corner. At 1 m/s and a square corner it turns at up to 76 degrees per second, which a
-/// real head can do.
+/// Distance along the path from a walking head to the point at which the head looks, m. Assumed. The head turns towards
+/// a corner before it reaches the corner. At 1 m/s and a square corner the head turns at up to 76 degrees per second,
+/// which a real head can do.
 const AHEAD_M: f64 = 1.5;
 
-/// Least distance between two successive corners of a path, m. The direction between two nearer corners would be
-/// inaccurate.
+/// Least distance between two successive corners of a path, m. At a smaller distance, rounding errors would falsify the
+/// direction from one corner to the next.
 const LEAST_LEG_M: f64 = 1e-3;
 
 /// A head that walks at constant speed along a closed path. The head is at the first corner at time 0. The head looks
-/// at a point of the path ahead. After [`Self::with_glances`] it also looks around.
+/// at a point of the path ahead. After [`Self::with_glances`] the head also looks around.
 #[derive(Clone, Debug)]
 pub struct Walk {
     corners: Arc<[DVec3]>,
@@ -39,16 +40,16 @@ impl Walk {
     /// Returns [`SettingError`] if the speed is out of range or a coordinate exceeds 1e6 m. Fewer than two corners, or
     /// successive corners less than 1 mm apart, are errors too.
     pub fn new(corners: &[DVec3], m_per_s: f64) -> Result<Self, SettingError> {
-        SettingError::check("speed of the walk", m_per_s, -100.0, 100.0)?;
+        check("speed of the walk", m_per_s, -100.0, 100.0)?;
         for coordinate in corners.iter().flat_map(DVec3::to_array) {
-            SettingError::check("coordinate of the path", coordinate, -1e6, 1e6)?;
+            check("coordinate of the path", coordinate, -1e6, 1e6)?;
         }
-        SettingError::check("corners of the path", corners.len() as f64, 2.0, 1e6)?;
+        check("corners of the path", corners.len() as f64, 2.0, 1e6)?;
         // Sum up the lengths of the straight parts, including the part from the last corner back to the first.
         let mut ways = vec![0.0];
         for (i, corner) in corners.iter().enumerate() {
             let leg = corner.distance(corners[(i + 1) % corners.len()]);
-            SettingError::check("leg of the path", leg, LEAST_LEG_M, 1e7)?;
+            check("leg of the path", leg, LEAST_LEG_M, 1e7)?;
             ways.push(ways[i] + leg);
         }
         Ok(Self { corners: corners.into(), ways, m_per_s, glances: None })

@@ -1,5 +1,5 @@
 use glam::{DQuat, DVec3};
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use serde::{Deserialize, Serialize};
 
 use super::Predictor;
@@ -8,10 +8,11 @@ use super::orientation_kalman::OrientationKalman;
 use super::position_kalman::{NoiseModel, PositionKalman};
 use super::predicting::GatedFilterPair;
 use crate::config as table;
-use crate::error::SettingError;
+use crate::error::check;
 use crate::tracker::TrackerConfig;
 
-/// Least position noise that a Kalman filter may assume, m. A noise of 0 would make the covariance matrix singular.
+/// Least position noise (m) and least orientation noise (degrees) that a Kalman filter may assume. A noise of 0 would
+/// make the covariance matrix singular.
 const LEAST_NOISE_M: f64 = 1e-6;
 const LEAST_NOISE_DEG: f64 = 1e-4;
 
@@ -156,15 +157,15 @@ impl PredictorConfig {
     }
 
     fn check(&self) -> Result<(), SettingError> {
-        SettingError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
-        SettingError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
+        check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
+        check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
         [self.position_baseline, self.orientation_baseline].into_iter().try_for_each(|b| self.filter(b).check())?;
         self.gate.check()?;
         Ok(())
     }
 
-    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports), so the
-    /// caller chooses the position's or the orientation's.
+    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports). The
+    /// caller therefore passes the baseline of either the position or the orientation.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,

@@ -1,12 +1,12 @@
 use super::{Predictor, PredictorConfig};
-use crate::error::SettingError;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tracker::TrackerModel;
+use pxpl5_sim::parameters::SettingError;
 
 /// Differences between predicted poses and the true poses of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PredictionError {
+pub struct PredictionDeviation {
     /// Number of evaluated predictions.
     pub n: u64,
     /// Mean distance between predicted and true position, m.
@@ -19,7 +19,7 @@ pub struct PredictionError {
     pub max_deg: f64,
 }
 
-impl PredictionError {
+impl PredictionDeviation {
     fn add(&mut self, predicted: &Pose, truth: &Pose) {
         let metres = predicted.distance_m(truth);
         let degrees = predicted.angle_deg(truth);
@@ -44,9 +44,9 @@ pub fn prediction_errors<M: Motion + ?Sized>(
     seed: u64,
     horizons_ps: &[u64],
     (from_ps, until_ps): (u64, u64),
-) -> Result<Vec<PredictionError>, SettingError> {
+) -> Result<Vec<PredictionDeviation>, SettingError> {
     let mut predictor: Box<dyn Predictor> = config.build()?;
-    let mut errors = vec![PredictionError::default(); horizons_ps.len()];
+    let mut errors = vec![PredictionDeviation::default(); horizons_ps.len()];
     // Reports before `from_ps` only warm up the filter.
     for report in tracker.reports(motion, seed).take_while(|r| r.measured_ps < until_ps) {
         predictor.observe(&report);

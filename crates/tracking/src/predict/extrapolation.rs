@@ -17,7 +17,8 @@ pub(super) enum Order {
 }
 
 /// An extrapolation by the Newton polynomial through the last value and one or two earlier values, `baseline` reports
-/// apart. The result is exact for polynomial motions up to its order, even for reports at irregular times.
+/// apart. The result is exact for motions that are polynomials up to the extrapolation's order, even for reports at
+/// irregular times.
 #[derive(Clone, Debug)]
 pub(super) struct Extrapolation<T> {
     order: Order,

@@ -17,14 +17,15 @@ pub struct ReportCounts {
     /// Number of reports rejected because of their time stamp. Such a report was not newer than the last accepted
     /// report, or followed this report by less than the `interval` of [`table::Gate`].
     pub untimely: u64,
-    /// Number of reports rejected because they imply a speed that no head reaches.
+    /// Number of reports that were rejected because the head would have to move or turn faster than a head can.
     pub jumps: u64,
     /// Number of accepted reports that restarted the filters. These are the first report, the first report after a gap,
     /// and a report that confirmed a jump.
     pub restarts: u64,
 }
 
-/// The decision to reject a report, to use it, or to restart the filters with it.
+/// The decision about a tracker report: to reject the report, to use the report, or to restart the filters with the
+/// report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Reject,
@@ -32,7 +33,7 @@ pub(super) enum Verdict {
     Restart,
 }
 
-/// A check in front of the filters that rejects impossible reports and counts every decision.
+/// A check that rejects impossible reports before they reach the prediction filters, and that counts every decision.
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     limits: table::Gate,

@@ -106,7 +106,7 @@ impl Covariance {
         self.acceleration += isotropic(q.z_axis.z);
     }
 
-    /// Returns S^-1 times the difference between measured and predicted orientation. S is P + r I: P is the covariance
+    /// Returns S^-1 times the difference between measured and predicted orientation. S is P + r I. P is the covariance
     /// of the rotation error, r is the variance of the measurement, and I is the unit matrix.
     fn weigh(&self, surprise: DVec3, measurement: f64) -> DVec3 {
         (self.angle + isotropic(measurement)).inverse() * surprise

@@ -10,7 +10,7 @@ pub(super) struct NoiseModel {
     pub(super) measurement: f64,
     /// Spectral density of the white jerk of the motion.
     pub(super) jerk: f64,
-    /// Variances of velocity and acceleration before the first measurement.
+    /// Variances of the head's velocity and acceleration that the filter assumes before the first measurement.
     pub(super) start: (f64, f64),
 }
 

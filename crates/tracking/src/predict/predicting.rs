@@ -8,8 +8,8 @@ use crate::pose::Pose;
 use crate::time::span_s;
 use crate::tracker::TrackerReport;
 
-/// A predictor of two filters, one for position and one for orientation, behind a check that rejects impossible
-/// reports.
+/// A predictor with two filters, one for position and one for orientation. A check rejects impossible reports before
+/// they reach the filters.
 #[derive(Clone, Debug)]
 pub(super) struct GatedFilterPair<P, O> {
     gate: Gate,
@@ -25,8 +25,8 @@ impl<P, O> GatedFilterPair<P, O> {
         Self { gate: Gate::new(limits), position, orientation, newest_ps: None, horizon_s }
     }
 
-    /// Returns the time for which a filter extrapolates, in seconds. Beyond the longest prediction the result is 0: the
-    /// last pose is then the best estimate.
+    /// Returns the time for which a filter extrapolates, in seconds. If this time is longer than the longest allowed
+    /// prediction, the result is 0, because the last pose is then the best estimate.
     fn ahead(&self, newest_ps: u64, at_ps: u64) -> f64 {
         let dt_s = span_s(newest_ps, at_ps);
         if dt_s.abs() <= self.horizon_s { dt_s } else { 0.0 }

@@ -1,17 +1,17 @@
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 
 use super::{PredictorConfig, PredictorKind, Start};
 use crate::config::Filter;
-use crate::error::SettingError;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
-/// Length in seconds of the motion on which a filter is tuned, and length in seconds of its first part, which is not
-/// evaluated. Lively periods are rare, so the motion must be long. With 20 seconds, a filter tuned for 200 ms predicted
-/// 200 ms of another motion worse than a filter tuned for 50 ms.
+/// Length in seconds of the motion on which a filter is tuned. The first `SETTLING_S` seconds are not evaluated. Lively
+/// periods are rare, so the motion must be long. With 20 seconds, a filter tuned for 200 ms predicted 200 ms of another
+/// motion worse than a filter tuned for 50 ms.
 const TRAINING_S: u64 = 100;
 const SETTLING_S: u64 = 1;
 
@@ -23,9 +23,9 @@ const MOST_REPORTS: usize = 12_000;
 /// seed.
 const TRAINING_SEED: u64 = 0x7475_6e65;
 
-/// Range of the decimal logarithm in the search for the best white jerk, and number of values per round. A step of the
-/// last round is 0.2 decades or less. This step changes the filter's time constant by 8 %, because the time constant
-/// varies with the sixth root of the jerk.
+/// Range of the decimal logarithm in the search for the best white jerk. The search has `ROUNDS` rounds with
+/// `JERKS_A_ROUND` values each. The distance of two values in the last round is 0.2 decades or less. This distance
+/// changes the filter's time constant by 8 %, because the time constant varies with the sixth root of the jerk.
 const JERK_DECADES: (f64, f64) = (-6.0, 6.0);
 const JERKS_A_ROUND: usize = 13;
 const ROUNDS: usize = 2;
@@ -57,7 +57,7 @@ pub struct Training {
 /// A tuned predictor, with the conditions of the tuning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuned {
-    /// Settings of the predictor with the tuned numbers.
+    /// Settings of the predictor, which include the tuned parameters.
     pub config: PredictorConfig,
     /// Conditions of the tuning, or `None` if the predictor has nothing to tune or no report could be evaluated.
     pub training: Option<Training>,
@@ -73,9 +73,10 @@ pub fn training_seed(evaluated_seed: u64) -> u64 {
 /// instant at which the reported pose was true.
 ///
 /// For a Kalman filter the search covers the white jerk: 10^-6 to 10^6, in two rounds over a grid of its logarithm. For
-/// a prediction by differences, the search covers the baseline: the 1 to 16 reports between the two poses of a
-/// difference. Position and orientation have separate values. The assumed noise of reports is the tracker's own. The
-/// assumed speeds and accelerations before the first report are the root mean squares of the motion.
+/// a prediction by differences, the search covers the baseline, which is the distance (1 to 16 reports) between the two
+/// poses of a difference. Position and orientation have separate values. The predictor assumes the noise that the
+/// tracker model adds. The assumed speeds and accelerations before the first report are the root mean squares of the
+/// motion.
 ///
 /// The tuning uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
 /// tracker has no bias, metal or faults, and the seed of its noise differs from `evaluated_seed`. The same (motion,
@@ -210,8 +211,8 @@ impl TrainingData {
     }
 }
 
-/// Stores a tried value as the best if its error is smaller, separately for position and orientation. Of equal errors
-/// the first value stays.
+/// Stores a tried value as the best value if its error is smaller than the best error, separately for position and
+/// orientation. If the errors are equal, the earlier value stays.
 fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     for (best, found) in best.iter_mut().zip(errors.into_iter().zip(tried)) {
         if found.0 < best.0 {
@@ -220,7 +221,8 @@ fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     }
 }
 
-/// Returns the white jerk with this decimal logarithm, within the limits that both filters share.
+/// Returns the white jerk with this decimal logarithm, limited to the range that the filters of position and
+/// orientation both allow.
 fn jerk(decades: f64) -> f64 {
     within("position_jerk", libm::pow(10.0, decades))
 }

@@ -1,6 +1,7 @@
 use super::{Detection, PendulumRig, ScopeTrace};
 use crate::time::{nearest_ps, span_s};
 use crate::tracker::TrackerModel;
+use pxpl5_sim::Statistics;
 
 /// The report by which the host detects that the pendulum has passed its low point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +15,7 @@ pub struct LowPointReport {
 /// One pass of the pendulum through its low point, measured by the time stamps of the emulated system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsidePass {
-    /// Report by which the host detected the pendulum's low point.
+    /// Tracker report by which the host detected the pendulum's low point.
     pub sighting: LowPointReport,
     /// Instant at which the host started a frame because of the low point, ps.
     pub started_ps: u64,
@@ -27,72 +28,45 @@ pub struct InsidePass {
 pub struct OutsidePass {
     /// Instant at which the photodiode detects the pendulum at its low point, ps.
     pub low_point_ps: u64,
-    /// Instant at which the host switches the D/A line because it has detected the low point, ps.
+    /// Instant at which the host switches its D/A output because the host has detected the low point, ps.
     pub dac_ps: u64,
     /// Instant at which the photodiode on the screen detects the frame that the low point requested, ps.
     pub light_ps: u64,
 }
 
-/// Statistics of a latency over all passes of the pendulum, in seconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Latency {
-    /// Number of passes of the pendulum through its low point.
-    pub n: usize,
-    /// Mean latency over all passes of the pendulum, seconds.
-    pub mean_s: f64,
-    /// Sample standard deviation of the latency (division by n - 1), seconds. The value is NaN for a single pass.
-    pub deviation_s: f64,
-    /// Least latency of all passes, seconds.
-    pub least_s: f64,
-    /// Greatest latency of all passes, seconds.
-    pub greatest_s: f64,
+/// Returns the statistics of a latency over all passes of the pendulum, in seconds.
+fn over<P>(passes: &[P], span: impl Fn(&P) -> (u64, u64)) -> Statistics {
+    Statistics::of(passes.iter().map(span).map(|(from, to)| span_s(from, to)))
 }
 
-impl Latency {
-    fn over<P>(passes: &[P], span: impl Fn(&P) -> (u64, u64)) -> Self {
-        let spans: Vec<f64> = passes.iter().map(span).map(|(from, to)| span_s(from, to)).collect();
-        let n = spans.len();
-        let mean_s = spans.iter().sum::<f64>() / n as f64;
-        // One pass has no deviation: the division gives NaN.
-        let variance = spans.iter().map(|s| (s - mean_s) * (s - mean_s)).sum::<f64>() / (n as f64 - 1.0);
-        Self {
-            n,
-            mean_s,
-            deviation_s: variance.sqrt(),
-            least_s: spans.iter().copied().fold(f64::INFINITY, f64::min),
-            greatest_s: spans.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        }
-    }
-}
-
-/// Tracking, rendering and total latency over all passes, measured with the oscilloscope ("outside") or by time stamps
-/// ("inside").
+/// Tracking, rendering and total latency over all passes in seconds, measured with the oscilloscope ("outside") or by
+/// time stamps ("inside").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
     /// Latency from the pendulum's motion to the start of a frame. The outside latency begins at the low point. The
     /// inside latency begins at the report's time stamp.
-    pub tracking: Latency,
+    pub tracking: Statistics,
     /// Latency from the start of a frame to its display. The outside latency ends when the photodiode detects the
     /// frame. The inside latency ends when the pipeline counts the frame as shown.
-    pub rendering: Latency,
+    pub rendering: Statistics,
     /// Sum of tracking and rendering latency of each pass, from the motion to the display.
-    pub total: Latency,
+    pub total: Statistics,
 }
 
 impl Side {
     fn outside(passes: &[OutsidePass]) -> Self {
         Self {
-            tracking: Latency::over(passes, |p| (p.low_point_ps, p.dac_ps)),
-            rendering: Latency::over(passes, |p| (p.dac_ps, p.light_ps)),
-            total: Latency::over(passes, |p| (p.low_point_ps, p.light_ps)),
+            tracking: over(passes, |p| (p.low_point_ps, p.dac_ps)),
+            rendering: over(passes, |p| (p.dac_ps, p.light_ps)),
+            total: over(passes, |p| (p.low_point_ps, p.light_ps)),
         }
     }
 
     fn inside(passes: &[InsidePass]) -> Self {
         Self {
-            tracking: Latency::over(passes, |p| (p.sighting.measured_ps, p.started_ps)),
-            rendering: Latency::over(passes, |p| (p.started_ps, p.shown_ps)),
-            total: Latency::over(passes, |p| (p.sighting.measured_ps, p.shown_ps)),
+            tracking: over(passes, |p| (p.sighting.measured_ps, p.started_ps)),
+            rendering: over(passes, |p| (p.started_ps, p.shown_ps)),
+            total: over(passes, |p| (p.sighting.measured_ps, p.shown_ps)),
         }
     }
 }
@@ -100,8 +74,8 @@ impl Side {
 /// Greatest rounding error of a mean latency, seconds: one picosecond, the unit of all instants.
 const ROUNDING_S: f64 = 1e-12;
 
-/// Latencies of the same passes measured outside and inside, with limits of their difference. "Outside" means by
-/// oscilloscope, "inside" by time stamps.
+/// Latencies of the same passes of the pendulum, measured outside and inside, with limits of the differences. "Outside"
+/// means by oscilloscope, "inside" by time stamps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// Measurements with the oscilloscope, one for each pass of the pendulum in order.
@@ -164,7 +138,7 @@ impl Measurement {
     /// Returns the mean total latency on the oscilloscope minus the mean total latency by time stamps, seconds.
     #[must_use]
     pub fn outside_less_inside_s(&self) -> f64 {
-        self.outside.total.mean_s - self.inside.total.mean_s
+        self.outside.total.mean - self.inside.total.mean
     }
 
     /// Returns true if both measurements agree on average over all passes. "Outside" is the oscilloscope, and "inside"
@@ -174,8 +148,8 @@ impl Measurement {
     /// smaller only if the pipeline counts frames as shown during the scan.
     #[must_use]
     pub fn agrees(&self) -> bool {
-        let tracking_s = self.outside.tracking.mean_s - self.inside.tracking.mean_s;
-        let rendering_s = self.outside.rendering.mean_s - self.inside.rendering.mean_s;
+        let tracking_s = self.outside.tracking.mean - self.inside.tracking.mean;
+        let rendering_s = self.outside.rendering.mean - self.inside.rendering.mean;
         let most_tracking_s = span_s(0, self.tracking_bound_ps) + ROUNDING_S;
         let most_rendering_s = span_s(0, self.rendering_bound_ps) + ROUNDING_S;
         let least_rendering_s = -span_s(0, self.rendering_early_ps) - ROUNDING_S;
@@ -184,21 +158,21 @@ impl Measurement {
     }
 }
 
-/// The traces of an oscilloscope with three channels: the pendulum's low point, the D/A line and the screen.
+/// The traces of an oscilloscope with three channels: the pendulum's low point, the host's D/A output and the screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
     /// Trace of the photodiode at the low point. The trace has one pulse for each pass of the pendulum, centred on the
     /// instant of the low point.
     pub low_point: ScopeTrace,
-    /// Trace of the D/A line, with one step for each frame that a low point requested.
+    /// Trace of the host's D/A output, with one step for each frame that a low point requested.
     pub dac: ScopeTrace,
     /// Trace of the photodiode on the screen, low for dark frames and high for light frames.
     pub screen: ScopeTrace,
 }
 
 impl Oscilloscope {
-    /// Creates an oscilloscope whose first channel has a pulse for every low point up to the last step of the D/A line.
-    /// A pulse lasts as long as the pendulum takes to cross the light beam.
+    /// Creates an oscilloscope whose first channel has a pulse for every low point up to the last step of the host's
+    /// D/A output. A pulse lasts as long as the pendulum takes to cross the light beam.
     #[must_use]
     pub fn of(rig: &PendulumRig, dac: ScopeTrace, screen: ScopeTrace) -> Self {
         let last_ps = dac.edges().last().map_or(0, |edge| edge.t_ps);
@@ -207,9 +181,9 @@ impl Oscilloscope {
         Self { low_point: ScopeTrace::pulsing("low point", low_points, pulse_ps), dac, screen }
     }
 
-    /// Finds the passes of the pendulum in the traces. Each step of the D/A line gives one pass. The low point lies
-    /// before this step. After this step, the screen steps to the same level. Returns `None` if the screen lacks one of
-    /// these steps.
+    /// Finds the passes of the pendulum in the traces. Each step of the host's D/A output gives one pass. The low point
+    /// lies before this step. After this step, the screen changes to the same level (high for light frames). Returns
+    /// `None` if the screen lacks one of these changes.
     #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {

@@ -1,14 +1,14 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{HostLine, MagneticDistortion, SerialLine, TrackerFault};
+use super::{MagneticDistortion, SerialLine, SerialRead, TrackerFault};
 use crate::config::{self as table, Tables};
 
 /// Settings of a tracker, its cable and the host's serial port. The presets take every number from [`crate::config`].
 ///
-/// The tracker begins measurement n (called a solution) at sync signal n, at the time n x receivers / rate.
-/// `sync_to_output_ps` later the measurement is ready for the cable. At this instant, the measured position has the age
-/// `position_latency_ps`, and the measured orientation has the age `orientation_latency_ps`.
+/// The tracker begins measurement n (called a solution) at sync signal n, at the time n x receivers / rate. The
+/// measurement is ready for the cable `sync_to_output_ps` after this signal. At this instant, the measured position has
+/// the age `position_latency_ps`, and the measured orientation has the age `orientation_latency_ps`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrackerConfig {
@@ -20,21 +20,21 @@ pub struct TrackerConfig {
     pub receivers: u32,
     /// Time from the tracker's sync signal to the first character on the cable, ps.
     pub sync_to_output_ps: u64,
-    /// Time from the instant at which the position was true to its first character on the cable, ps. At most
-    /// `sync_to_output_ps`.
+    /// Time from the instant at which the position was true to the first character of its report on the cable, ps. At
+    /// most `sync_to_output_ps`.
     pub position_latency_ps: u64,
-    /// Time from the instant at which the orientation was true to its first character on the cable, ps. At most
-    /// `sync_to_output_ps`.
+    /// Time from the instant at which the orientation was true to the first character of its report on the cable, ps.
+    /// At most `sync_to_output_ps`.
     pub orientation_latency_ps: u64,
     /// Random position error that changes with each report (white noise), rms along each axis, m.
     pub position_noise_m: f64,
     /// Random orientation error that changes with each report (white noise), rms about each axis, degrees.
     pub orientation_noise_deg: f64,
-    /// Constant position error, drawn once from the seed and then the same in every report. The value is the rms along
-    /// each axis over all seeds, m.
+    /// Constant position error, computed once from the seed and then the same in every report. The value is the root
+    /// mean square of this error along each axis, over all seeds, m.
     pub position_bias_m: f64,
-    /// Constant orientation error, drawn once from the seed and then the same in every report. The value is the rms
-    /// about each axis over all seeds, degrees.
+    /// Constant orientation error, computed once from the seed and then the same in every report. The value is the root
+    /// mean square of this error about each axis, over all seeds, degrees.
     pub orientation_bias_deg: f64,
     /// Gain a of the tracker's low-pass filter, above 0. The filter replaces its output x' by a x + (1 - a) x' at each
     /// measurement x. A gain of 1 turns the filter off.
@@ -42,7 +42,7 @@ pub struct TrackerConfig {
     /// The serial cable from tracker to host, or `None` if the latencies already include the time on the cable.
     pub serial: Option<SerialLine>,
     /// Method by which the host's kernel reads the serial port.
-    pub host: HostLine,
+    pub host: SerialRead,
     /// Time from the first report to the crash of a host with a patched kernel, which interrupts for each character.
     /// `None` if such a host never crashes. TR94 reports the crash for the Flock of Birds.
     pub crashes_patched_host_after_ps: Option<u64>,
@@ -60,7 +60,7 @@ impl TrackerConfig {
         Self::fastrak_by(&Tables::PAPERS)
     }
 
-    /// Returns the Polhemus Fastrak with the numbers of these tables.
+    /// Returns the Polhemus Fastrak with the numbers of `tables`.
     pub fn fastrak_by(tables: &Tables) -> Self {
         let latency_ps = table::ms_to_ps(tables.fastrak.latency);
         Self {
@@ -82,14 +82,14 @@ impl TrackerConfig {
         Self::flock_of_birds_by(&Tables::PAPERS)
     }
 
-    /// Returns the Ascension Flock of Birds with the numbers of these tables.
+    /// Returns the Ascension Flock of Birds with the numbers of `tables`.
     pub fn flock_of_birds_by(tables: &Tables) -> Self {
         let position_latency_ps = table::ms_to_ps(tables.flock.position_latency);
         Self {
             sync_to_output_ps: position_latency_ps,
             position_latency_ps,
             orientation_latency_ps: table::ms_to_ps(tables.flock.orientation_latency),
-            host: HostLine::unix_by(tables),
+            host: SerialRead::unix_by(tables),
             crashes_patched_host_after_ps: Some(table::ms_to_ps(tables.flock.crash)),
             ..Self::ideal_by(tables)
                 .named("Ascension Flock of Birds", tables.flock.rate)
@@ -104,9 +104,9 @@ impl TrackerConfig {
         Self::flock_of_birds_on_patched_host_by(&Tables::PAPERS)
     }
 
-    /// Returns the Flock of Birds on a host with a patched kernel, which crashes. The numbers come from these tables.
+    /// Returns the Flock of Birds on a host with a patched kernel, which crashes. The numbers come from `tables`.
     pub fn flock_of_birds_on_patched_host_by(tables: &Tables) -> Self {
-        Self { host: HostLine::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
+        Self { host: SerialRead::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
     }
 
     /// Returns UNC's optical ceiling tracker, with a total latency of 33 ms.
@@ -114,7 +114,7 @@ impl TrackerConfig {
         Self::optical_ceiling_by(&Tables::PAPERS)
     }
 
-    /// Returns UNC's optical ceiling tracker with the numbers of these tables.
+    /// Returns UNC's optical ceiling tracker with the numbers of `tables`.
     pub fn optical_ceiling_by(tables: &Tables) -> Self {
         Self::ideal_by(tables)
             .named("UNC optical ceiling tracker", tables.optical.rate)
@@ -129,10 +129,10 @@ impl TrackerConfig {
         Self::polhemus_3space_by(&Tables::PAPERS)
     }
 
-    /// Returns the Polhemus 3Space with the numbers of these tables.
+    /// Returns the Polhemus 3Space with the numbers of `tables`.
     pub fn polhemus_3space_by(tables: &Tables) -> Self {
         Self {
-            host: HostLine::unix_by(tables),
+            host: SerialRead::unix_by(tables),
             distortion: Some(MagneticDistortion::floor_below_by(tables, DVec3::ZERO)),
             ..Self::ideal_by(tables)
                 .named("Polhemus 3Space", tables.space.rate)
@@ -147,7 +147,7 @@ impl TrackerConfig {
         Self::ideal_by(&Tables::PAPERS)
     }
 
-    /// Returns the ideal tracker with the numbers of these tables.
+    /// Returns the ideal tracker with the numbers of `tables`.
     pub fn ideal_by(tables: &Tables) -> Self {
         Self {
             name: "ideal".to_owned(),
@@ -162,7 +162,7 @@ impl TrackerConfig {
             orientation_bias_deg: 0.0,
             filter_gain: 1.0,
             serial: None,
-            host: HostLine::InterruptPerCharacter,
+            host: SerialRead::InterruptPerCharacter,
             crashes_patched_host_after_ps: None,
             distortion: None,
             faults: Vec::new(),
@@ -196,15 +196,15 @@ impl TrackerConfig {
         Self { serial: None, ..self.without_polling().with_latency_ps(0) }
     }
 
-    /// Returns the same tracker on a host whose kernel receives every character at once.
+    /// Returns the same tracker on a host whose kernel receives every character immediately, without polling.
     pub fn without_polling(self) -> Self {
-        Self { host: HostLine::InterruptPerCharacter, crashes_patched_host_after_ps: None, ..self }
+        Self { host: SerialRead::InterruptPerCharacter, crashes_patched_host_after_ps: None, ..self }
     }
 
-    /// Returns the same tracker on a host with an unpatched kernel, which polls the serial line. These tables give the
-    /// polling interval as `host.poll`.
+    /// Returns the same tracker on a host with an unpatched kernel, which polls the serial port. The value `host.poll`
+    /// of `tables` is the polling interval.
     pub fn with_polling_by(self, tables: &Tables) -> Self {
-        Self { host: HostLine::unix_by(tables), ..self }
+        Self { host: SerialRead::unix_by(tables), ..self }
     }
 
     fn named(self, name: &str, rate_hz: u64) -> Self {

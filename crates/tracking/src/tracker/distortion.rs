@@ -1,8 +1,9 @@
 use glam::DVec3;
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
 use crate::config::Tables;
-use crate::error::SettingError;
+use crate::error::{check, contradiction};
 use crate::pose::Pose;
 use crate::rotation;
 
@@ -27,13 +28,13 @@ pub struct MagneticDistortion {
 }
 
 impl MagneticDistortion {
-    /// Returns the distortion by metal in the floor below a transmitter at this position. Positions 1 m away are wrong
-    /// by 20 mm (assumed) without the limit by reach.
+    /// Returns the distortion by metal in the floor below a transmitter at this position. Without the limit by
+    /// `reach_m`, positions 1 m from the transmitter would be wrong by 20 mm (assumed).
     pub fn floor_below(transmitter_m: DVec3) -> Self {
         Self::floor_below_by(&Tables::PAPERS, transmitter_m)
     }
 
-    /// Returns the distortion by metal in the floor with the numbers of these tables.
+    /// Returns the distortion by metal in the floor below a transmitter, with the numbers of `tables`.
     pub fn floor_below_by(tables: &Tables, transmitter_m: DVec3) -> Self {
         Self {
             transmitter_m,
@@ -59,10 +60,10 @@ impl MagneticDistortion {
 
     pub(super) fn check(&self) -> Result<(), SettingError> {
         if !(self.transmitter_m.is_finite() && self.towards_metal.try_normalize().is_some()) {
-            return Err(SettingError::Contradiction { what: "magnetic distortion needs a place and a direction" });
+            return Err(contradiction("magnetic distortion needs a place and a direction"));
         }
-        SettingError::check("depth of magnetic distortion", self.depth_per_m2, -1.0, 1.0)?;
-        SettingError::check("reach of magnetic distortion", self.reach_m, 1e-3, 1e3)
+        check("depth of magnetic distortion", self.depth_per_m2, -1.0, 1.0)?;
+        check("reach of magnetic distortion", self.reach_m, 1e-3, 1e3)
     }
 }
 

@@ -1,6 +1,7 @@
+use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
-use crate::error::SettingError;
+use crate::error::{check, contradiction};
 
 /// Greatest allowed probability of a random fault. With a higher probability the tracker would hardly report at all.
 const MOST_LIKELY: f64 = 0.99;
@@ -48,13 +49,13 @@ impl TrackerFault {
         match *self {
             Self::Silence { .. } => Ok(()),
             Self::Dropout { from_ps, to_ps } if from_ps > to_ps => {
-                Err(SettingError::Contradiction { what: "a dropout ends before it begins" })
+                Err(contradiction("a dropout ends before it begins"))
             }
             Self::Dropout { .. } => Ok(()),
             Self::RandomDropout { probability } | Self::NotANumber { probability } => check_probability(probability),
             Self::Jump { probability, distance_m, angle_deg } => {
-                SettingError::check("distance of a jump", distance_m, 0.0, 1e6)?;
-                SettingError::check("angle of a jump", angle_deg, 0.0, 180.0)?;
+                check("distance of a jump", distance_m, 0.0, 1e6)?;
+                check("angle of a jump", angle_deg, 0.0, 180.0)?;
                 check_probability(probability)
             }
         }
@@ -62,5 +63,5 @@ impl TrackerFault {
 }
 
 fn check_probability(probability: f64) -> Result<(), SettingError> {
-    SettingError::check("probability of a fault", probability, 0.0, MOST_LIKELY)
+    check("probability of a fault", probability, 0.0, MOST_LIKELY)
 }

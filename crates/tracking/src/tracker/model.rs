@@ -1,6 +1,7 @@
-use super::{HostLine, TrackerConfig, TrackerFault};
-use crate::error::SettingError;
+use super::{SerialRead, TrackerConfig, TrackerFault};
+use crate::error::{check, contradiction};
 use crate::time::{PS_PER_S, tick_ps};
+use pxpl5_sim::parameters::SettingError;
 
 /// Longest latency or polling interval that settings may have, ps.
 const LONGEST_PS: u64 = 10 * PS_PER_S;
@@ -19,22 +20,22 @@ impl TrackerModel {
     /// Returns [`SettingError`] if a setting is out of range or contradicts another.
     pub fn new(config: TrackerConfig) -> Result<Self, SettingError> {
         check_times(&config)?;
-        SettingError::check("position noise, m", config.position_noise_m, 0.0, 10.0)?;
-        SettingError::check("orientation noise, deg", config.orientation_noise_deg, 0.0, 90.0)?;
-        SettingError::check("position bias, m", config.position_bias_m, 0.0, 10.0)?;
-        SettingError::check("orientation bias, deg", config.orientation_bias_deg, 0.0, 90.0)?;
-        SettingError::check("filter gain", config.filter_gain, 1e-6, 1.0)?;
+        check("position noise, m", config.position_noise_m, 0.0, 10.0)?;
+        check("orientation noise, deg", config.orientation_noise_deg, 0.0, 90.0)?;
+        check("position bias, m", config.position_bias_m, 0.0, 10.0)?;
+        check("orientation bias, deg", config.orientation_bias_deg, 0.0, 90.0)?;
+        check("filter gain", config.filter_gain, 1e-6, 1.0)?;
         if let Some(serial) = config.serial {
-            SettingError::check("record, bytes", f64::from(serial.record_bytes), 1.0, 1000.0)?;
-            SettingError::check("bits of a byte", f64::from(serial.byte_bits), 1.0, 100.0)?;
-            SettingError::check("line rate, baud", f64::from(serial.baud), 300.0, 1e6)?;
+            check("record, bytes", f64::from(serial.record_bytes), 1.0, 1000.0)?;
+            check("bits of a byte", f64::from(serial.byte_bits), 1.0, 100.0)?;
+            check("line rate, baud", f64::from(serial.baud), 300.0, 1e6)?;
         }
         config.distortion.map_or(Ok(()), |d| d.check())?;
         config.faults.iter().try_for_each(TrackerFault::check)?;
         Ok(Self { config })
     }
 
-    /// Returns the settings, which are all within their ranges.
+    /// Returns the settings of the tracker, which are all within their ranges.
     pub fn config(&self) -> &TrackerConfig {
         &self.config
     }
@@ -77,15 +78,15 @@ impl TrackerModel {
 }
 
 fn check_times(config: &TrackerConfig) -> Result<(), SettingError> {
-    SettingError::check("tracker rate, Hz", f64::from(config.rate_hz), 1.0, 10_000.0)?;
-    SettingError::check("receivers", f64::from(config.receivers), 1.0, 16.0)?;
+    check("tracker rate, Hz", f64::from(config.rate_hz), 1.0, 10_000.0)?;
+    check("receivers", f64::from(config.receivers), 1.0, 16.0)?;
     let longest = LONGEST_PS as f64;
-    SettingError::check("sync to output, ps", config.sync_to_output_ps as f64, 0.0, longest)?;
+    check("sync to output, ps", config.sync_to_output_ps as f64, 0.0, longest)?;
     if config.position_latency_ps.max(config.orientation_latency_ps) > config.sync_to_output_ps {
-        return Err(SettingError::Contradiction { what: "a latency is longer than the time from sync to output" });
+        return Err(contradiction("a latency is longer than the time from sync to output"));
     }
-    if let HostLine::Polled { period_ps } = config.host {
-        SettingError::check("poll period, ps", period_ps as f64, 1.0, longest)?;
+    if let SerialRead::Polled { period_ps } = config.host {
+        check("poll period, ps", period_ps as f64, 1.0, longest)?;
     }
     Ok(())
 }
@@ -136,7 +137,7 @@ mod tests {
             TrackerConfig { position_noise_m: -1.0, ..good() },
             TrackerConfig { orientation_bias_deg: f64::NAN, ..good() },
             TrackerConfig { position_latency_ps: u64::MAX, ..good() },
-            TrackerConfig { host: HostLine::Polled { period_ps: 0 }, ..good() },
+            TrackerConfig { host: SerialRead::Polled { period_ps: 0 }, ..good() },
             TrackerConfig { serial: Some(SerialLine { baud: 0, ..SerialLine::fastrak() }), ..good() },
             TrackerConfig { faults: vec![TrackerFault::RandomDropout { probability: 1.0 }], ..good() },
             TrackerConfig { faults: vec![TrackerFault::Dropout { from_ps: 2, to_ps: 1 }], ..good() },

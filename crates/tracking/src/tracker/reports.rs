@@ -1,7 +1,7 @@
 use glam::{DQuat, DVec3};
 
 use super::report::TrackerReport;
-use super::{HostLine, TrackerConfig, TrackerFault, TrackerModel};
+use super::{SerialRead, TrackerConfig, TrackerFault, TrackerModel};
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::random::{below, bits, normal_pair, stream, unit};
@@ -37,8 +37,8 @@ impl<M: Motion> Reports<M> {
         let config = model.config();
         // The seed determines the phase of the host's polling.
         let poll_phase_ps = match config.host {
-            HostLine::Polled { period_ps } => below(bits(stream(seed, 1), 0), period_ps),
-            HostLine::InterruptPerCharacter => 0,
+            SerialRead::Polled { period_ps } => below(bits(stream(seed, 1), 0), period_ps),
+            SerialRead::InterruptPerCharacter => 0,
         };
         let silence = config.faults.iter().filter_map(|fault| match fault {
             TrackerFault::Silence { from_ps } => Some(*from_ps),
@@ -53,7 +53,7 @@ impl<M: Motion> Reports<M> {
             filtered: None,
             line_free_ps: 0,
             silent_from_ps: silence.min().unwrap_or(u64::MAX),
-            crashes: config.host == HostLine::InterruptPerCharacter,
+            crashes: config.host == SerialRead::InterruptPerCharacter,
             model,
             motion,
         }
@@ -137,7 +137,7 @@ impl<M: Motion> Reports<M> {
         unit(bits(stream(self.faults, fault as u64), solution)) < probability
     }
 
-    /// Applies the faults that damage this report.
+    /// Damages the report by the first injected fault (NaN values or a jump of the pose) that applies to this report.
     fn corrupt(&self, report: &mut TrackerReport) {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -183,7 +183,7 @@ impl<M: Motion> Reports<M> {
     }
 }
 
-/// Draws the constant errors of the tracker from the seed: an offset in metres and a rotation vector in radians.
+/// Computes the constant errors of the tracker from the seed: an offset in metres and a rotation vector in radians.
 fn bias(config: &TrackerConfig, seed: u64) -> (DVec3, DVec3) {
     let [(a, b), (c, d), (e, f)] = core::array::from_fn(|i| normal_pair(seed, i as u64));
     let turn = DVec3::new(d, e, f) * config.orientation_bias_deg.to_radians();

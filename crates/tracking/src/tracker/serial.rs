@@ -9,9 +9,9 @@ use crate::time::PS_PER_S;
 pub struct SerialLine {
     /// Length of one receiver's record, 1 to 1000 bytes.
     pub record_bytes: u32,
-    /// Line rate, 300 to 1,000,000 bits per second.
+    /// Rate of the cable, 300 to 1,000,000 bits per second.
     pub baud: u32,
-    /// Bits on the line for each byte, including start and stop bits, 1 to 100.
+    /// Bits on the cable for each byte, including start and stop bits, 1 to 100.
     #[serde(default = "default_byte_bits")]
     pub byte_bits: u32,
 }
@@ -21,12 +21,12 @@ fn default_byte_bits() -> u32 {
 }
 
 impl SerialLine {
-    /// Returns the serial line of the Fastrak. A record of 47 bytes at 115,200 baud takes 4.08 ms.
+    /// Returns the serial cable of the Fastrak. A record of 47 bytes at 115,200 baud takes 4.08 ms.
     pub fn fastrak() -> Self {
         Self::fastrak_by(&Tables::PAPERS)
     }
 
-    /// Returns the serial line of the Fastrak with the numbers of these tables.
+    /// Returns the serial cable of the Fastrak with the numbers of `tables`.
     pub fn fastrak_by(tables: &Tables) -> Self {
         Self {
             record_bytes: tables.fastrak.record as u32,
@@ -35,7 +35,7 @@ impl SerialLine {
         }
     }
 
-    /// Returns the time that `records` records take on the line, ps: bytes x bits per byte / baud.
+    /// Returns the time that `records` records take on the cable, ps: bytes x bits per byte / baud.
     pub fn transfer_ps(&self, records: u32) -> u64 {
         let bits = u128::from(self.record_bytes) * u128::from(self.byte_bits) * u128::from(records);
         let ps = bits.saturating_mul(u128::from(PS_PER_S)) / u128::from(self.baud.max(1));
@@ -46,9 +46,9 @@ impl SerialLine {
 /// The method by which the host's kernel reads the serial port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub enum HostLine {
-    /// The kernel polls the port periodically, and the seed determines the phase. A record waits between zero and one
-    /// period, with uniform probability over seeds.
+pub enum SerialRead {
+    /// The kernel polls the port periodically, and the seed determines the phase. A record waits for at most one
+    /// period. All waiting times are equally probable over all seeds.
     Polled {
         /// Time between two polls, ps, above 0.
         period_ps: u64,
@@ -57,13 +57,13 @@ pub enum HostLine {
     InterruptPerCharacter,
 }
 
-impl HostLine {
+impl SerialRead {
     /// Returns the unpatched kernel, which polls the serial port every 30 ms (TR94).
     pub fn unix() -> Self {
         Self::unix_by(&Tables::PAPERS)
     }
 
-    /// Returns the unpatched kernel with the polling interval of these tables.
+    /// Returns the unpatched kernel with the polling interval `host.poll` of `tables`.
     pub fn unix_by(tables: &Tables) -> Self {
         Self::Polled { period_ps: table::ms_to_ps(tables.host.poll) }
     }
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_record_that_completes_at_the_look_is_seen_and_one_picosecond_later_waits() {
-        let line = HostLine::unix();
+        let line = SerialRead::unix();
         let look = 5 + 30 * PS_PER_MS;
         assert_eq!(line.seen_ps(look, 5), look);
         assert_eq!(line.seen_ps(look + 1, 5), look + 30 * PS_PER_MS);
@@ -107,12 +107,12 @@ mod tests {
     #[test]
     fn unchecked_lines_are_slow_or_late_but_never_a_panic() {
         assert!(SerialLine { record_bytes: u32::MAX, baud: 0, byte_bits: u32::MAX }.transfer_ps(u32::MAX) > 0);
-        assert_eq!(HostLine::Polled { period_ps: 0 }.seen_ps(9, 5), 9);
-        assert_eq!(HostLine::Polled { period_ps: u64::MAX }.seen_ps(9, 5), u64::MAX);
+        assert_eq!(SerialRead::Polled { period_ps: 0 }.seen_ps(9, 5), 9);
+        assert_eq!(SerialRead::Polled { period_ps: u64::MAX }.seen_ps(9, 5), u64::MAX);
     }
 
     #[test]
     fn a_patched_kernel_adds_nothing() {
-        assert_eq!(HostLine::InterruptPerCharacter.seen_ps(123, 5), 123);
+        assert_eq!(SerialRead::InterruptPerCharacter.seen_ps(123, 5), 123);
     }
 }

@@ -1,6 +1,7 @@
 //! The dual display list of just-in-time pixels. Every vertex is transformed for two instants: the start T0 and the end
-//! T1 of a field. In between, P(t) = P1 s + P0 (1 - s) with s = (t - T0) / (T1 - T0). The papers define P in two ways:
-//! as the position on the screen, or as the position in the view before the perspective divide.
+//! T1 of a field. Between these instants, the vertex is at P(t) = P1 s + P0 (1 - s) with s = (t - T0) / (T1 - T0). The
+//! papers define P in two ways: as the position on the screen, or as the position in the view before the perspective
+//! divide.
 
 use glam::{DVec2, DVec3};
 

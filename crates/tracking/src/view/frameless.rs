@@ -1,5 +1,6 @@
-use crate::error::SettingError;
+use crate::error::check;
 use crate::random::{bits, stream};
+use pxpl5_sim::parameters::SettingError;
 
 /// Number of rounds of the Feistel network. Four rounds with a good mixing function give a good permutation (Luby and
 /// Rackoff 1988).
@@ -8,7 +9,7 @@ const ROUNDS: u64 = 4;
 /// The pixel order of frameless rendering (Bishop et al. 1994). Each pass updates every pixel once, in a random order.
 ///
 /// The order is a permutation of 0..n from a seed. Computing any element takes constant memory. A Feistel network
-/// permutes the numbers up to the next power of two. The network is applied again until the result is below n, on
+/// permutes the numbers up to the next power of two. The network is applied repeatedly until the result is below n, on
 /// average at most twice. Every pass uses the same order. The age of a pixel therefore never exceeds one pass, and its
 /// mean is half a pass. A new order for each pass would raise the mean age to 7/12 of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +27,7 @@ impl RandomOrder {
     ///
     /// Returns [`SettingError`] if `n_pixels` is out of range.
     pub fn new(n_pixels: u32, seed: u64) -> Result<Self, SettingError> {
-        SettingError::check("pixels of a frameless order", f64::from(n_pixels), 1.0, f64::from(1u32 << 31))?;
+        check("pixels of a frameless order", f64::from(n_pixels), 1.0, f64::from(1u32 << 31))?;
         let width = n_pixels.next_power_of_two().trailing_zeros().max(2);
         Ok(Self { n_pixels, half_bits: width / 2, odd_bit: width % 2, seed: stream(seed, 5) })
     }
@@ -47,8 +48,8 @@ impl RandomOrder {
         }
     }
 
-    /// Permutes the numbers 0..2^width by a Feistel network. The two parts of the number swap roles each round, so that
-    /// `width` can be odd.
+    /// Permutes the numbers 0..2^width by a Feistel network. The upper and the lower bits of the number exchange their
+    /// roles in each round, so that `width` can be odd.
     fn permuted(&self, place: u32) -> u32 {
         let mut low_bits = self.half_bits;
         let mut high_bits = self.half_bits + self.odd_bit;

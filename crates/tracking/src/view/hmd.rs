@@ -1,8 +1,7 @@
 use glam::{DVec2, DVec3};
-use pxpl5_sim::parameters::ParameterTable;
+use pxpl5_sim::parameters::{ParameterTable, SettingError};
 
 use crate::config as table;
-use crate::error::SettingError;
 use crate::pose::Pose;
 use crate::time::seconds;
 
@@ -70,8 +69,8 @@ impl HmdView {
         DVec2::new(self.width_px, self.height_px) / 2.0
     }
 
-    /// Returns the average number of pixels per degree over the width of the picture, as the papers do. A flat picture
-    /// has fewer pixels per degree in the middle than at the edge.
+    /// Returns the average number of pixels per degree over the width of the picture, which the papers use. A flat
+    /// picture has fewer pixels per degree in the middle than at the edge.
     pub fn mean_px_per_deg(&self) -> f64 {
         self.width_px / self.horizontal_deg
     }

@@ -12,12 +12,12 @@ use address_recalculation::priority::{Falloff, PriorityTiming};
 use pxpl5_machine::NamedTable;
 use std::sync::Arc;
 
-/// Settings of each policy.
+/// Settings (keys) of the pipelines of each policy.
 const KEYS: [&[Key]; 4] =
     [&[SHADING, LENS], &[SHADING, LENS], &[SHADING, LENS, SEGMENT], &[SHADING, LENS, SEGMENT, WARP]];
 
-/// Settings of an ideal source, which supports every policy. The settings for cells have an effect only under a policy
-/// with cells.
+/// Settings of pipelines with an ideal renderer, which supports every policy. The settings for cells have an effect
+/// only under a policy with cells.
 const IDEAL_KEYS: &[Key] = &[SHADING, LENS, POLICY, SEGMENT, WARP];
 
 const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];
@@ -76,11 +76,11 @@ fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     Arc::new(with_settings(FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }, latch, settings))
 }
 
-/// Descriptions of variants that latch orientations more often than the variant above them.
+/// Descriptions of pipelines that latch orientations more often than the preceding pipeline in the list of pipelines.
 const BY_LINE: &str = "the same, with an orientation for each line";
 const BY_PIXEL: &str = "the same, with an orientation for each pixel, as far as the host's connection can carry them";
 
-/// Creates an entry from a policy and a latch mode.
+/// Creates a registry entry from a policy and a latch mode.
 macro_rules! entry {
     ($policy:ident, $latch:ident, $about:expr) => {
         entry((FacePolicy::$policy, Latch::$latch), $about, |settings| {

@@ -1,4 +1,4 @@
-//! History of the cube faces that were drawn around a head, and the latency of head rotation.
+//! History of the cube faces that were drawn around the viewer's head, and the latency of head rotation.
 
 use crate::observers::FinalResults;
 use crate::outcome::Outcome;
@@ -25,8 +25,8 @@ pub struct FaceHistory {
 }
 
 impl FaceHistory {
-    /// Returns the history of a run, from the records in memory. Returns `None` if the run's display does not accept
-    /// cube faces.
+    /// Returns the history of the cube faces of a run, from the records in memory. Returns `None` if the run's display
+    /// does not accept cube faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         Self::held(outcome.record(), outcome.face_notes())
@@ -41,33 +41,33 @@ impl FaceHistory {
         Some(Self { memories: memories.collect() })
     }
 
-    /// Returns the update that each memory shows in a period, from the lowest memory to the highest. Memories that show
-    /// nothing are left out.
+    /// Returns the update that each display memory shows in a period, from the lowest memory to the highest. Memories
+    /// that show nothing are left out.
     pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownUpdate> {
         (0..self.memories.len()).filter_map(move |memory| self.memory_at(memory, period))
     }
 
-    /// Returns the number of memories of the display.
+    /// Returns the number of display memories.
     #[must_use]
     pub const fn n_memories(&self) -> usize {
         self.memories.len()
     }
 
-    /// Returns the update that a memory shows in a period. Returns `None` before the memory's first update.
+    /// Returns the update that a display memory shows in a period. Returns `None` before the memory's first update.
     #[must_use]
     pub fn memory_at(&self, memory: usize, period: PeriodNumber) -> Option<&ShownUpdate> {
         let shown = self.memory(memory);
         shown[..shown.partition_point(|shown| shown.from <= period)].last()
     }
 
-    /// Returns all updates that a memory has shown, in order.
+    /// Returns all updates that a display memory has shown, in order.
     #[must_use]
     pub fn memory(&self, memory: usize) -> &[ShownUpdate] {
         self.memories.get(memory).map_or(&[], Vec::as_slice)
     }
 }
 
-/// Returns the updates of a memory whose swaps are recorded. Each swap shows the next update of the memory.
+/// Returns the updates of a display memory whose swaps are recorded. Each swap shows the next update of the memory.
 fn shown(record: &Record, notes: &RequestedUpdates, memory: usize, port: NodeId) -> Vec<ShownUpdate> {
     let of_memory = notes.of_memory(memory);
     let swaps = record.observation().swaps.iter().filter(|swap| swap.port == port);
@@ -97,8 +97,8 @@ impl OrientationTiming {
 }
 
 impl Outcome {
-    /// Returns the memories of a display with cube faces, in order of decreasing update rate. The slice is empty for
-    /// any other display.
+    /// Returns the display memories of a display with cube faces, in the order of decreasing update rate. The slice is
+    /// empty for any other display.
     #[must_use]
     pub fn display_memories(&self) -> &[DisplayMemory] {
         display(self.record()).map_or(&[], |display| display.memories(Eye::Left))

@@ -3,7 +3,7 @@
 use super::plan::{Due, DuePolicy, Plan, Updates};
 use crate::pipeline::Setup;
 use crate::pipelines::faces::latched_head::lights_of;
-use address_recalculation::{CubeFace, Scan};
+use address_recalculation::{CubeFace, FaceScan};
 use pphigs::oracle::ideal_picture_of;
 use pphigs::{DisplayList, FrameView};
 use pxpl5_machine::HostLine;
@@ -20,7 +20,7 @@ use std::sync::{Arc, OnceLock};
 /// simulation.
 const BEFORE_RETRACE: Span = Span(1);
 
-/// Source of ideal cube faces. At each retrace, it writes the updates that a policy requests into the display's
+/// Source of ideal cube faces. At each retrace, the source writes the updates that a policy requests into the display
 /// memories.
 ///
 /// Views, policies, number widths and the display's protocol are the same as on the machine. Drawing takes no time and
@@ -30,7 +30,7 @@ pub(super) struct IdealFaces {
     pub(super) faces: Arc<Faces>,
     pub(super) list: Arc<DisplayList>,
     pub(super) warped: WarpedLists,
-    pub(super) scan: Scan,
+    pub(super) scan: FaceScan,
     pub(super) next: PictureNumber,
 }
 
@@ -57,12 +57,13 @@ impl HostLine for IdealFaces {
 }
 
 /// Returns the last instant before a field begins.
-fn before(scan: &Scan, field: PeriodNumber) -> Time {
+fn before(scan: &FaceScan, field: PeriodNumber) -> Time {
     Time(scan.retrace(field).0.saturating_sub(BEFORE_RETRACE.0))
 }
 
 impl IdealFaces {
-    /// Draws an update and returns its messages: an announcement, the regions, and the swap.
+    /// Draws the cube faces of an update and returns the messages to the display: an announcement, the regions, and the
+    /// swap.
     fn draw(&self, update: FaceUpdate) -> Vec<(usize, Body)> {
         let port = usize::from(update.memory);
         let regions: Vec<RegionId> = (0..self.faces.regions()).map(RegionId).collect();
@@ -85,7 +86,7 @@ impl IdealFaces {
 
 /// Returns the setup of a host whose updates are shown at the next retrace. The views are predicted for the time at
 /// which the next field is lit.
-pub(super) fn seen_next(setup: &Setup, scan: Scan) -> Setup {
+pub(super) fn seen_next(setup: &Setup, scan: FaceScan) -> Setup {
     let wanted = Arc::clone(&setup.wanted);
     let aim = setup.aim;
     let views = move |number, now| {
@@ -95,7 +96,7 @@ pub(super) fn seen_next(setup: &Setup, scan: Scan) -> Setup {
     Setup { views: Arc::new(views), ..setup.clone() }
 }
 
-/// A policy that draws the whole scene into memory 0 in every cycle.
+/// A policy that draws the whole scene into display memory 0 in every cycle.
 pub(super) struct All {
     pub(super) structures: Arc<[bool]>,
 }
@@ -140,7 +141,7 @@ impl DrawnCube {
     }
 }
 
-/// A region of the faces of an update.
+/// A region of the cube faces that an update draws.
 #[derive(Debug)]
 struct DrawnRegion {
     cube: Arc<DrawnCube>,

@@ -2,13 +2,13 @@
 
 use crate::head_views::HeadViews;
 use crate::pipelines::faces::load_schedule::LoadSchedule;
-use address_recalculation::{AddressRecalculationPipeline, Latch, Scan};
+use address_recalculation::{AddressRecalculationPipeline, FaceScan, Latch};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, Display, LightTimes};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
 /// Returns the time span in which a field of a scan is lit.
-pub(crate) fn lights_of(scan: &Scan, field: PeriodNumber) -> LightTimes {
+pub(crate) fn lights_of(scan: &FaceScan, field: PeriodNumber) -> LightTimes {
     let tick = scan.retrace(field);
     let top = FieldParity::of_field(field).first_line();
     let light = |x: u32, y: u32| scan.lights(x, y, field).unwrap_or(tick);
@@ -26,7 +26,7 @@ pub(crate) const ORIENTATION_WORDS: u32 = 9;
 /// host's connection to the display limits the number of parts.
 #[derive(Clone, Copy, Debug)]
 pub struct OrientationTiming {
-    scan: Scan,
+    scan: FaceScan,
     schedule: Option<LoadSchedule>,
     latch: Latch,
     depth: Span,

@@ -1,6 +1,6 @@
 //! Schedule of the orientations that a host sends to a display that latches orientations by line or by pixel.
 
-use address_recalculation::{Latch, Scan};
+use address_recalculation::{FaceScan, Latch};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{FieldParity, PeriodNumber};
@@ -13,18 +13,19 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 /// orientation takes longer than a line, the orientation serves several lines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
-    scan: Scan,
-    /// Delay of a pixel through all stages of the display.
+    scan: FaceScan,
+    /// Delay of a pixel through all stages of the display's pipeline.
     depth: Span,
-    /// Time from one register load to the next within a line.
+    /// Time from one load of the display's orientation register to the next load within a line.
     link: Span,
-    /// Number of lines of a field that use the same register load.
+    /// Number of lines of a field that use the same load of the display's orientation register.
     lines: u32,
     loads: u32,
     aim: Aim,
 }
 
-/// Identifier of a register load: its field, its first line within the field, and its index within this line.
+/// Identifier of a load of the display's orientation register: the field, the first line within the field, and the
+/// index within this line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Load {
     field: PeriodNumber,
@@ -36,7 +37,7 @@ impl LoadSchedule {
     /// Creates a schedule. Returns `None` for a display that latches one orientation per field.
     ///
     /// The host of such a display sends each orientation as soon as it is known.
-    pub(crate) fn new(scan: Scan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
+    pub(crate) fn new(scan: FaceScan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
         let line = scan.lights(0, 2, PeriodNumber::FIRST)?.since(scan.lights(0, 0, PeriodNumber::FIRST)?);
         let lines = link.0.div_ceil(line.0.max(1)).max(1) as u32;
         let loads = match latch {
@@ -58,16 +59,16 @@ impl LoadSchedule {
         self.scan.lights(x, y, field).unwrap_or_else(|| self.scan.retrace(field))
     }
 
-    /// Returns the register load whose orientation a pixel uses. Returns `None` for a pixel that the field does not
-    /// scan.
+    /// Returns the load of the display's orientation register that a pixel uses. Returns `None` for a pixel that the
+    /// field does not scan.
     pub(crate) fn load_of(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Load> {
         let into_line = self.scan.lights(x, y, field)?.since(self.light(0, y / 2, field));
         let number = (into_line.0 / self.link.0.max(1)).min(u64::from(self.loads) - 1) as u32;
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which an orientation is in the register. This instant is at most one pixel's time before
-    /// the first pixel that uses the orientation is latched.
+    /// Returns the instant at which an orientation is in the display's register. The display latches the orientation
+    /// for its first pixel at most one pixel's time later.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))
@@ -88,13 +89,14 @@ impl LoadSchedule {
         self.aim.instant(&light)
     }
 
-    /// Returns the first pixel of a line that can use the register load with this index.
+    /// Returns the first pixel of a line that can use the load with the index `number` of the display's orientation
+    /// register.
     fn first_pixel(&self, line: u32, number: u32, field: PeriodNumber) -> u32 {
         let from = self.light(0, line, field) + self.link * u64::from(number);
         partition(self.scan.width() - 1, |x| self.light(x, line, field) < from)
     }
 
-    /// Returns the first register load that is complete after an instant.
+    /// Returns the first load of the display's orientation register that is complete after an instant.
     pub(crate) fn next(&self, after: Time) -> Load {
         let mut field = self.scan.field_at(after);
         loop {
@@ -118,7 +120,8 @@ impl LoadSchedule {
         }
     }
 
-    /// Returns the register load that is complete at exactly this instant, or else the first load after this instant.
+    /// Returns the load of the display's orientation register that is complete at exactly this instant, or else the
+    /// first load after this instant.
     pub(crate) fn at(&self, loaded: Time) -> Load {
         self.next(Time(loaded.0.saturating_sub(1)))
     }

@@ -1,7 +1,7 @@
-//! Policy `objects`: each structure is in the slowest memory in which its image stays correct.
+//! Policy `objects`: each structure is in the slowest display memory in which its image stays correct.
 
 use super::plan::{Due, DuePolicy, Updates};
-use address_recalculation::Scan;
+use address_recalculation::FaceScan;
 use address_recalculation::priority::{ObjectView, Objects, PriorityTiming, Threshold};
 use glam::DVec3;
 use pphigs::{DisplayList, DisplayStructure};
@@ -9,9 +9,10 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::collections::VecDeque;
 
-/// Priority rendering by objects: assigns each structure to the slowest memory in which its image stays correct.
+/// Priority rendering by objects: assigns each structure to the slowest display memory in which its image stays
+/// correct.
 pub(super) struct ByObjects {
-    scan: Scan,
+    scan: FaceScan,
     policy: Objects,
     threshold: Threshold,
     spheres: Vec<ObjectSphere>,
@@ -47,7 +48,7 @@ fn sphere_around(list: &DisplayList, structure: &DisplayStructure) -> ObjectSphe
 }
 
 impl ByObjects {
-    pub(super) fn new(list: &DisplayList, scan: Scan, timing: &PriorityTiming) -> Self {
+    pub(super) fn new(list: &DisplayList, scan: FaceScan, timing: &PriorityTiming) -> Self {
         let spheres: Vec<ObjectSphere> =
             list.structures.iter().map(|structure| sphere_around(list, structure)).collect();
         Self {
@@ -60,8 +61,8 @@ impl ByObjects {
         }
     }
 
-    /// Returns the time, in seconds, for which the image of a structure stays correct. The time is 0 for a structure
-    /// that moves by itself.
+    /// Returns the time, in seconds, for which the image of a structure stays correct while the eye moves. The time is
+    /// 0 for a structure that moves by itself.
     fn period_s(&self, moves: bool, structure: usize, eye: DVec3, speed: f64) -> f64 {
         let ObjectSphere { centre, radius_m } = self.spheres[structure];
         let animation_s = if moves { 0.0 } else { f64::INFINITY };

@@ -14,23 +14,24 @@ use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming
 use crate::pipelines::faces::segments::SegmentedScene;
 use crate::pipelines::{region_has_room, shading_value, swapped_in};
 use crate::views::{Poses, ReportTimes};
-use address_recalculation::priority::{Falloff, PriorityError, PriorityTiming};
+use address_recalculation::priority::{Falloff, PriorityTiming};
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Lens, Orientation, orientation_message};
 use glam::{Mat4, Vec4};
 use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{ConfigError, HostLine, Machine, MachineConfig, Record, Shown};
+use pxpl5_machine::{HostLine, Machine, MachineConfig, Record, Shown};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{Body, CopyContent, Lines, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
 use rendering_control::cube::{CubeControlConfig, Faces, WarpedLists, host, master, slave};
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// The renderer that draws the faces.
+/// The renderer that draws the cube faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceSource {
     /// The firmware of Rendering Control on the machine.
@@ -44,7 +45,7 @@ pub enum FaceSource {
 /// A pipeline that draws six cube faces for an address recalculation display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FacePipeline {
-    /// The renderer that draws the faces.
+    /// The renderer that draws the cube faces.
     pub source: FaceSource,
     /// Policy that assigns structures to display memories.
     pub policy: FacePolicy,
@@ -54,10 +55,10 @@ pub struct FacePipeline {
     pub shading: Shading,
     /// For policies with cells (squares of the floor): true if structures are cut at the borders of cells.
     ///
-    /// Otherwise a whole structure is in the fastest memory of any cell that it touches.
+    /// Otherwise a whole structure is in the fastest display memory of any cell that it touches.
     pub segmented: bool,
     /// For warped cells: how the displacement of vertices decreases with the distance from the border to a slower
-    /// memory.
+    /// display memory.
     pub falloff: Falloff,
     /// Lens between display and eye.
     pub lens: FaceLens,
@@ -127,7 +128,7 @@ impl FacePipeline {
         }
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, ConfigError> {
+    fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, SettingError> {
         let ports = machine.ports();
         // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
@@ -144,13 +145,12 @@ impl FacePipeline {
         })
     }
 
-    fn faces(self, machine: &Machine, pixels: bool) -> Result<Faces, ConfigError> {
+    fn faces(self, machine: &Machine, pixels: bool) -> Result<Faces, SettingError> {
         let display = display_of(machine.record())?.config();
         let texels = display.timing.face_texels as u32;
         // A face is a square picture, divided into the usual regions.
         let grid = RegionGrid { width: texels, height: texels, region_width: REGION_SIZE, region_height: REGION_SIZE };
-        let viewport = Viewport::new(grid, Lines::Frame)
-            .map_err(|error| ConfigError::Board(format!("arp.face_texels: {error}")))?;
+        let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| error.at("arp.face_texels"))?;
         let picture =
             Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
         // A display with packed texels takes one word a pixel, otherwise colour and depth are sent.
@@ -162,11 +162,11 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content })
     }
 
-    /// Returns the plan by which the host selects the next update of a display memory.
-    fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, ConfigError> {
+    /// Returns the plan (a function) by which the host selects the next update of a display memory.
+    fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, SettingError> {
         let display = display_of(machine.record())?.config();
         let projection = projection(display);
-        let scan = display.scan().map_err(|error| ConfigError::Board(error.to_string()))?;
+        let scan = display.scan()?;
         // An ideal renderer has no delay, so its views are predicted for the next field.
         let setup = &if self.source == FaceSource::Ideal { seen_next(setup, scan) } else { setup.clone() };
         let updates = Updates::new(setup, projection, display.timing.display_memories as usize);
@@ -200,24 +200,20 @@ impl FacePipeline {
 }
 
 /// Returns the parameters of the policies after a check of their ranges.
-fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, ConfigError> {
+fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, SettingError> {
     let timing = config.firmware_table().copied().unwrap_or(PriorityTiming::PAPERS);
-    timing.check().map_err(refused)?;
+    timing.check()?;
     Ok(timing)
 }
 
-fn refused(error: PriorityError) -> ConfigError {
-    ConfigError::Board(error.to_string())
+fn too_few_gps(found: u64) -> SettingError {
+    SettingError::limits("n_gps of faces (a master and slaves)", (2, 1_000), found)
 }
 
-fn too_few_gps(found: u64) -> ConfigError {
-    ConfigError::Value { what: "n_gps of faces (a master and slaves)".to_owned(), expected: (2, 1_000), found }
-}
-
-fn display_of(record: &Record) -> Result<&AddressRecalculationPipeline, ConfigError> {
-    (record.display() as &dyn Any)
-        .downcast_ref()
-        .ok_or_else(|| ConfigError::Board(format!("faces need the display arp, found {}", record.display().name())))
+fn display_of(record: &Record) -> Result<&AddressRecalculationPipeline, SettingError> {
+    (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
+        SettingError::combination(format_args!("faces need the display arp, found {}", record.display().name()))
+    })
 }
 
 /// Returns the projection of a cube face with its guard texels. The near and far planes come from the head-mounted
@@ -334,7 +330,7 @@ impl Pipeline for FacePipeline {
         config
     }
 
-    fn cut(&self, scene: &Arc<Scene>, config: &MachineConfig) -> Result<Option<SegmentedScene>, ConfigError> {
+    fn cut(&self, scene: &Arc<Scene>, config: &MachineConfig) -> Result<Option<SegmentedScene>, SettingError> {
         if !self.has_cells() {
             return Ok(None);
         }
@@ -344,7 +340,7 @@ impl Pipeline for FacePipeline {
         } else {
             SegmentedScene::whole(scene, side_m)
         };
-        cut.map(Some).map_err(refused)
+        cut.map(Some)
     }
 
     /// Returns a description of work without i860 code: moving vertices of warped cells takes no time at any level.
@@ -355,7 +351,7 @@ impl Pipeline for FacePipeline {
         is_warped.then_some("moving the vertices of warped cells (0 in the table)")
     }
 
-    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         self.plug_orientations(machine, setup);
         if self.source == FaceSource::Ideal {
             return self.plug_ideal_source(machine, setup);
@@ -409,7 +405,7 @@ impl PictureRules for FacePipeline {
         true
     }
 
-    /// Counts the fields since the first swap of any memory, because each field is shown with its own latched
+    /// Counts the fields since the first swap of any display memory, because each field is shown with its own latched
     /// orientation.
     fn turned_periods(&self, record: &Record, end: Time) -> u64 {
         let first = record.observation().first_swap();
@@ -452,9 +448,9 @@ impl FacePipeline {
         }
     }
 
-    fn plug_ideal_source(self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+    fn plug_ideal_source(self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
         let display = display_of(machine.record())?;
-        let scan = display.config().scan().map_err(|error| ConfigError::Board(error.to_string()))?;
+        let scan = display.config().scan()?;
         let ideal = IdealFaces {
             plan: self.plan(machine, setup)?,
             faces: Arc::new(self.faces(machine, setup.pixels)?),

@@ -3,7 +3,7 @@
 
 use crate::pipeline::Setup;
 use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
-use address_recalculation::Scan;
+use address_recalculation::FaceScan;
 use glam::{DMat3, DVec3, Mat3, Mat4};
 use pphigs::{EyeView, FrameView, ModelFrame};
 use pxpl5_sim::Time;
@@ -15,12 +15,12 @@ use std::sync::Arc;
 /// Function that returns the next action of a host, when the host is ready for an update.
 pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction>;
 
-/// State that all plans share: views, starts of frames, and the record of updates.
+/// State that all plans of a host share: views, starts of frames, and the record of updates.
 pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
     pub(super) notes: RequestedUpdates,
-    /// Number of updates that were sent so far, for each memory.
+    /// Number of updates that were sent so far, for each display memory.
     sent: Vec<u64>,
     /// True if any structure is attached to the head. The position of such a structure depends on the head's direction.
     has_head_frame: bool,
@@ -32,12 +32,12 @@ impl Updates {
         Self { setup: setup.clone(), projection, notes: setup.notes.clone(), sent: vec![0; memories], has_head_frame }
     }
 
-    /// Returns the view of an update that is sent now.
+    /// Returns the newest view of the head for an update that the host sends now.
     pub(super) fn view(&self, number: PictureNumber, now: Time) -> FrameView {
         (self.setup.views)(ViewNumber::taken_for(number), now)
     }
 
-    /// Returns the next update of a memory, drawn from the eye position that is known at `now`.
+    /// Returns the next update of a display memory, drawn from the eye position that is known at `now`.
     fn of_memory(&mut self, number: PictureNumber, now: Time, due: &Due) -> FaceUpdate {
         let view = due.view.clone().unwrap_or_else(|| self.view(number, now));
         // The two buffers of a memory take turns.
@@ -76,7 +76,7 @@ impl Updates {
     }
 }
 
-/// A memory that must be redrawn, with the content of its update.
+/// A display memory that must be redrawn, with the content of its update.
 #[derive(Clone, Debug)]
 pub(super) struct Due {
     pub(super) memory: usize,
@@ -94,8 +94,8 @@ pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
 }
 
-/// A plan with a single memory. Each update redraws all structures. The next update begins when the previous update
-/// ends.
+/// A plan with a single display memory. Each update redraws all structures. The next update begins when the previous
+/// update ends.
 pub(super) struct Full {
     updates: Updates,
     structures: Arc<[bool]>,
@@ -127,20 +127,21 @@ impl Full {
     }
 }
 
-/// A policy that selects the memories to redraw at the beginning of a cycle.
+/// A policy that selects the display memories to redraw at the beginning of a cycle.
 pub(super) trait DuePolicy {
-    /// Returns the memories to redraw, in the order of sending. The first memory gets the update number `number`.
+    /// Returns the display memories to redraw, in the order of sending. The first memory gets the update number
+    /// `number`.
     fn begin(&mut self, updates: &Updates, number: PictureNumber, now: Time) -> VecDeque<Due>;
 }
 
-/// A plan for priority rendering: in each cycle, a policy selects the memories to redraw.
+/// A plan for priority rendering: in each cycle, a policy selects the display memories to redraw.
 ///
-/// A cycle begins when all memories of the previous cycle have been sent, but never in the field in which the previous
-/// cycle began. The selected memories are sent in ascending order. On a machine that is fast enough, each cycle takes
-/// one field and begins with the field.
+/// A cycle begins when all display memories of the previous cycle have been sent, but never in the field in which the
+/// previous cycle began. The selected memories are sent in ascending order. On a machine that is fast enough, each
+/// cycle takes one field and begins with the field.
 pub(super) struct Cycles<P> {
     updates: Updates,
-    scan: Scan,
+    scan: FaceScan,
     policy: P,
     pending: VecDeque<Due>,
     /// Field in which the last cycle began.
@@ -148,7 +149,7 @@ pub(super) struct Cycles<P> {
 }
 
 impl<P: DuePolicy> Cycles<P> {
-    pub(super) const fn new(updates: Updates, scan: Scan, policy: P) -> Self {
+    pub(super) const fn new(updates: Updates, scan: FaceScan, policy: P) -> Self {
         Self { updates, scan, policy, pending: VecDeque::new(), began: None }
     }
 

@@ -5,17 +5,18 @@
 pub enum FacePolicy {
     /// One display memory holds all structures and is redrawn as often as possible.
     Full,
-    /// Each structure is drawn into the slowest memory in which its image stays correct (CPR05).
+    /// Each structure is drawn into the slowest display memory in which its image stays correct (CPR05).
     Objects,
-    /// Each structure is drawn into the memory of its cell. The memory depends on the cell's distance from the user's
-    /// cell (CPR05).
+    /// Each structure is drawn into the display memory of its cell. The memory depends on the cell's distance from the
+    /// user's cell (CPR05).
     Cells,
-    /// Like [`FacePolicy::Cells`], but vertices are moved so that images of adjacent memories meet at their borders.
+    /// Like [`FacePolicy::Cells`], but vertices are moved so that images of adjacent display memories meet at their
+    /// borders.
     CellsWarped,
 }
 
 impl FacePolicy {
-    /// All policies with their names in experiment files.
+    /// All policies for display memories, with their names in experiment files.
     pub const ALL: [(&str, Self); 4] =
         [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells), ("cells-warp", Self::CellsWarped)];
 }

@@ -8,15 +8,15 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// A requested update of a display memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequestedUpdate {
-    /// Number of the update, in one count over all memories.
+    /// Number of the update, in one count over all display memories.
     pub picture: PictureNumber,
     /// Number of the view whose eye position was used to draw the update.
     pub view: ViewNumber,
     /// Index of the display memory.
     pub memory: usize,
-    /// Time at which the policy decided that the memory must be redrawn.
+    /// Time at which the policy decided that the display memory must be redrawn.
     pub due_at: Time,
-    /// For each structure of the scene, true if the memory contains the structure.
+    /// For each structure of the scene, true if the display memory contains the structure.
     pub structures: Arc<[bool]>,
 }
 
@@ -27,9 +27,10 @@ pub struct RequestedUpdates(Arc<Mutex<Held>>);
 
 #[derive(Debug, Default)]
 struct Held {
-    /// Number of updates that were requested so far, by memory.
+    /// Number of updates that were requested so far, by display memory.
     asked: BTreeMap<usize, u64>,
-    /// Updates in memory, in order. Each has the number of earlier updates of the same display memory.
+    /// Updates that were not discarded, in order. Each entry begins with the number of earlier updates of the same
+    /// display memory.
     notes: Vec<(u64, RequestedUpdate)>,
 }
 

@@ -1,8 +1,9 @@
 //! Segmentation at load time: cuts a scene into segments that each lie in one cell of the world.
 
-use address_recalculation::priority::{Cell, CutVertex, PriorityError, Segmentation};
+use address_recalculation::priority::{Cell, CutVertex, Segmentation};
 use glam::{DVec3, Vec3};
 use pxpl5_scene::{Frame, Scene, SceneParts, Sphere, Structure, Vertex};
+use pxpl5_sim::parameters::SettingError;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,8 +13,8 @@ use std::sync::Arc;
 pub struct SegmentedScene {
     /// Scene that is loaded instead of the original scene.
     pub scene: Arc<Scene>,
-    /// Cells of each structure. A segment has one cell. A structure that was not cut has all cells that it touches. A
-    /// moving structure has no cell.
+    /// Cells (squares of the floor) of each structure. A segment has one cell. A structure that was not cut has all
+    /// cells that the structure touches. A moving structure has no cell.
     pub cells: Arc<[Vec<Cell>]>,
 }
 
@@ -26,8 +27,8 @@ impl SegmentedScene {
     ///
     /// # Errors
     ///
-    /// Returns [`PriorityError`] if the scene cannot be cut: see [`Segmentation::new`].
-    pub fn segmented(scene: &Scene, side_m: f64) -> Result<Self, PriorityError> {
+    /// Returns a [`SettingError`] if the scene cannot be cut: see [`Segmentation::new`].
+    pub fn segmented(scene: &Scene, side_m: f64) -> Result<Self, SettingError> {
         let mut pieces = Pieces::of(scene);
         for structure in scene.structures() {
             if moves(structure) {
@@ -44,7 +45,7 @@ impl SegmentedScene {
     /// # Errors
     ///
     /// Fails in the same cases as [`SegmentedScene::segmented`].
-    pub fn whole(scene: &Arc<Scene>, side_m: f64) -> Result<Self, PriorityError> {
+    pub fn whole(scene: &Arc<Scene>, side_m: f64) -> Result<Self, SettingError> {
         let cells = scene.structures().iter().map(|structure| cells(scene, structure, side_m));
         Ok(Self { scene: Arc::clone(scene), cells: cells.collect::<Result<Vec<_>, _>>()?.into() })
     }
@@ -55,7 +56,7 @@ pub(crate) const fn moves(structure: &Structure) -> bool {
     structure.hinge.is_some() || matches!(structure.frame, Frame::Head)
 }
 
-fn cells(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Vec<Cell>, PriorityError> {
+fn cells(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Vec<Cell>, SettingError> {
     if moves(structure) {
         return Ok(Vec::new());
     }
@@ -69,8 +70,9 @@ fn cell_of(sphere: &Sphere, side_m: f64) -> Cell {
     Cell::of(f64::from(sphere.centre.x), f64::from(sphere.centre.z), side_m)
 }
 
-/// Cuts the triangles of a structure. Vertex indices are relative to the structure's first vertex.
-fn cut(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Segmentation, PriorityError> {
+/// Cuts the triangles of a structure at the borders of cells. Vertex indices are relative to the structure's first
+/// vertex.
+fn cut(scene: &Scene, structure: &Structure, side_m: f64) -> Result<Segmentation, SettingError> {
     let own = &scene.vertices()[structure.vertices.clone()];
     let places: Vec<DVec3> = own.iter().map(|vertex| vertex.position.as_dvec3()).collect();
     let first = structure.vertices.start as u32;
@@ -107,7 +109,7 @@ impl Pieces {
         self.cells.push(Vec::new());
     }
 
-    fn add_segments(&mut self, scene: &Scene, structure: &Structure, side_m: f64) -> Result<(), PriorityError> {
+    fn add_segments(&mut self, scene: &Scene, structure: &Structure, side_m: f64) -> Result<(), SettingError> {
         let cut = cut(scene, structure, side_m)?;
         // Append the vertices of the cuts. A cut may depend on earlier cuts, so the order matters.
         let mut vertices = scene.vertices()[structure.vertices.clone()].to_vec();
@@ -142,8 +144,8 @@ impl Pieces {
         self.parts.structures.push(structure);
     }
 
-    fn finish(self) -> Result<SegmentedScene, PriorityError> {
-        let scene = Scene::new(self.parts).map_err(|error| PriorityError(format!("segments: {error}")))?;
+    fn finish(self) -> Result<SegmentedScene, SettingError> {
+        let scene = Scene::new(self.parts).map_err(|error| error.at("segments"))?;
         Ok(SegmentedScene { scene: Arc::new(scene), cells: self.cells.into() })
     }
 }

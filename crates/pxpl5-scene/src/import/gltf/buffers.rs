@@ -1,5 +1,6 @@
 //! Buffers of a glTF file: the binary chunk, data inside the JSON, or files beside the model.
 
+use pxpl5_sim::parameters::FileError;
 use std::borrow::Cow;
 use std::path::{Component, Path, PathBuf};
 
@@ -10,12 +11,11 @@ use gltf_json::Root;
 #[cfg(feature = "files")]
 use super::host::read_file;
 use crate::config::MAX_FILE_BYTES;
-use crate::error::LoadError;
 use crate::import::Source;
 
 /// The bytes of all buffers. A buffer that no triangle needs may be missing.
 pub(super) struct Buffers<'a> {
-    buffers: Vec<Result<Cow<'a, [u8]>, LoadErrorText>>,
+    buffers: Vec<Result<Cow<'a, [u8]>, ErrorText>>,
     /// Number of bytes in files beside the model.
     pub(super) file_bytes: usize,
     /// Number of decoded bytes from the JSON.
@@ -23,7 +23,7 @@ pub(super) struct Buffers<'a> {
 }
 
 /// The expected and the found content of a buffer that cannot be read.
-type LoadErrorText = [String; 2];
+type ErrorText = [String; 2];
 
 impl<'a> Buffers<'a> {
     pub(super) fn of(source: &Source<'a>, root: &Root, binary: Option<&'a [u8]>) -> Self {
@@ -48,7 +48,7 @@ impl<'a> Buffers<'a> {
     /// # Errors
     ///
     /// Fails if the buffer does not exist or could not be read.
-    pub(super) fn get(&self, source: &Source<'_>, number: usize) -> Result<&[u8], LoadError> {
+    pub(super) fn get(&self, source: &Source<'_>, number: usize) -> Result<&[u8], FileError> {
         match self.buffers.get(number) {
             Some(Ok(bytes)) => Ok(bytes),
             Some(Err([expected, found])) => Err(source.part(format!("buffers[{number}]"), expected, found)),
@@ -59,7 +59,7 @@ impl<'a> Buffers<'a> {
         }
     }
 
-    fn of_uri(&mut self, source: &Source<'_>, uri: &str) -> Result<Cow<'a, [u8]>, LoadErrorText> {
+    fn of_uri(&mut self, source: &Source<'_>, uri: &str) -> Result<Cow<'a, [u8]>, ErrorText> {
         if let Some(data) = uri.strip_prefix("data:") {
             let expected = || "data in base64 after \";base64,\"".to_owned();
             let (_, encoded) = data.split_once(";base64,").ok_or_else(|| [expected(), excerpt(uri)])?;

@@ -1,8 +1,9 @@
 //! The outer structure of a glTF file: the chunks of a binary file, and the memory that its JSON takes after parsing.
 
 use gltf_json::Root;
+use pxpl5_sim::parameters::FileError;
 
-use crate::error::{FilePlace, LoadError};
+use crate::error::FilePlace;
 use crate::import::Source;
 use crate::import::source::MARK;
 
@@ -21,7 +22,7 @@ pub(super) struct Chunks<'a> {
 }
 
 impl<'a> Chunks<'a> {
-    pub(super) fn of(source: &Source<'a>) -> Result<Self, LoadError> {
+    pub(super) fn of(source: &Source<'a>) -> Result<Self, FileError> {
         let bytes = source.bytes;
         if !bytes.starts_with(MAGIC) {
             let json = bytes.strip_prefix(MARK).unwrap_or(bytes);
@@ -54,7 +55,7 @@ impl<'a> Chunks<'a> {
     /// # Errors
     ///
     /// Fails for JSON that is not glTF, and for JSON that would take more memory than its size allows.
-    pub(super) fn parse(&self, source: &Source<'_>) -> Result<Root, LoadError> {
+    pub(super) fn parse(&self, source: &Source<'_>) -> Result<Root, FileError> {
         Root::from_slice(self.json).map_err(|error| {
             // The library adds the position to its message. The `at` of our error states this position already.
             let message = error.to_string();
@@ -113,7 +114,7 @@ const fn max(a: usize, b: usize) -> usize {
     if a > b { a } else { b }
 }
 
-fn word(source: &Source<'_>, at: usize, what: &str) -> Result<u32, LoadError> {
+fn word(source: &Source<'_>, at: usize, what: &str) -> Result<u32, FileError> {
     match source.bytes.get(at..at + 4) {
         Some(&[a, b, c, d]) => Ok(u32::from_le_bytes([a, b, c, d])),
         _ => Err(source.truncated(FilePlace::Byte(at as u64), what, "the end of the file")),
@@ -121,7 +122,7 @@ fn word(source: &Source<'_>, at: usize, what: &str) -> Result<u32, LoadError> {
 }
 
 /// Returns the type and the content of the chunk at a position, and the position of the next chunk.
-fn chunk<'a>(source: &Source<'a>, at: usize) -> Result<([u8; 4], &'a [u8], usize), LoadError> {
+fn chunk<'a>(source: &Source<'a>, at: usize) -> Result<([u8; 4], &'a [u8], usize), FileError> {
     let length = word(source, at, "the length of a chunk")? as usize;
     let kind = word(source, at + 4, "the type of a chunk")?.to_le_bytes();
     let begin = at + CHUNK;

@@ -2,9 +2,9 @@
 
 use gltf_json::accessor::{Accessor, ComponentType, Type};
 use gltf_json::validation::Checked;
+use pxpl5_sim::parameters::FileError;
 
 use super::document::Document;
-use crate::error::LoadError;
 
 /// Items of one type in a buffer, at equal distances from one item to the next.
 #[derive(Clone, Copy)]
@@ -56,7 +56,7 @@ impl<'a> Numbers<'a> {
         index: usize,
         components: &[usize],
         kinds: &[ComponentType],
-    ) -> Result<Self, LoadError> {
+    ) -> Result<Self, FileError> {
         let part = |name: &str| format!("accessors[{index}]{name}");
         let fail = |name: &str, expected: String, found: String| Err(document.source.part(part(name), expected, found));
         let Some(accessor) = document.root.accessors.get(index) else {
@@ -137,7 +137,7 @@ fn items<'a>(
     offset: u64,
     count: usize,
     (kind, bytes_of_item): (ComponentType, usize),
-) -> Result<Items<'a>, LoadError> {
+) -> Result<Items<'a>, FileError> {
     let fail = |part: String, expected: String, found: String| Err(document.source.part(part, expected, found));
     let Some(described) = document.root.buffer_views.get(view) else {
         let found = self::count(document.root.buffer_views.len(), "buffer views");
@@ -177,7 +177,7 @@ fn sparse<'a>(
     part: &str,
     length: usize,
     item: (ComponentType, usize),
-) -> Result<Option<(Items<'a>, Items<'a>, usize)>, LoadError> {
+) -> Result<Option<(Items<'a>, Items<'a>, usize)>, FileError> {
     let Some(sparse) = &accessor.sparse else { return Ok(None) };
     let count = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
     let Checked::Valid(kind) = sparse.indices.component_type else {

@@ -12,7 +12,8 @@ use crate::pose::Pose;
 pub enum Axes {
     /// The axes of this crate and of OpenGL. Head: x right, y up, looks along -z. World: y up.
     OpenGl,
-    /// The axes of the TUM benchmark and of optical frames. Head: x right, y down, looks along +z. World: z up.
+    /// The axes of the TUM benchmark and of cameras in robotics (optical frames). Head: x right, y down, looks along
+    /// +z. World: z up.
     Optical,
     /// The axes of the EuRoC sensor's inertial unit. Head: x up, y right, looks along +z. World: z up. The calibration
     /// of the EuRoC sensor gives the camera's axes relative to this unit.

@@ -1,7 +1,6 @@
-use std::fmt;
+use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
+use std::fmt::{self, Display};
 use std::str::FromStr;
-
-use super::RecordingError;
 
 /// Description of a complete mapping, for error messages.
 const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
@@ -22,7 +21,7 @@ pub struct Columns {
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Field {
     name: &'static str,
-    /// Index of the quantity in the list time, x, y, z, qw, qx, qy, qz.
+    /// Index of the quantity in this list: time, x, y, z, qw, qx, qy, qz.
     slot: usize,
     /// Number of decimal places of the unit: the unit is 10^-`places` seconds or metres.
     places: i32,
@@ -68,9 +67,9 @@ impl Columns {
     ///
     /// # Errors
     ///
-    /// Returns [`RecordingError::Mapping`] if the quantity is unknown or already has a column.
-    pub fn map(&mut self, field: &str, column: &str) -> Result<(), RecordingError> {
-        let mapping = |found: String| RecordingError::Mapping { expected: EXPECTED, found };
+    /// Returns a [`SettingError`] if the quantity is unknown or already has a column.
+    pub fn map(&mut self, field: &str, column: &str) -> Result<(), SettingError> {
+        let mapping = |found: String| SettingError::value("columns", EXPECTED, found);
         let known = FIELDS.iter().find(|known| known.name == field);
         let known = known.ok_or_else(|| mapping(format!("`{field}`")))?;
         if let Some((other, _)) = self.given.iter().find(|(other, _)| other.slot == known.slot) {
@@ -81,10 +80,10 @@ impl Columns {
     }
 
     /// Parses a mapping of quantities to columns such as `t_ns=stamp,x=px,y=py`.
-    pub fn parse(text: &str) -> Result<Self, RecordingError> {
+    pub fn parse(text: &str) -> Result<Self, SettingError> {
         let mut columns = Self::default();
         for part in text.split(',') {
-            let mapping = || RecordingError::Mapping { expected: EXPECTED, found: format!("`{}`", part.trim()) };
+            let mapping = || SettingError::value("columns", EXPECTED, format_args!("`{}`", part.trim()));
             let (field, column) = part.split_once('=').ok_or_else(mapping)?;
             columns.map(field.trim(), column)?;
         }
@@ -108,23 +107,26 @@ impl Columns {
 
     /// Returns the columns of a file with this header, in the order time, x, y, z, qw, qx, qy, qz. An empty `header`
     /// means that the file has no header.
-    pub(super) fn in_header(&self, line: u64, header: &[&str]) -> Result<[Column; 8], RecordingError> {
+    pub(super) fn in_header(&self, line: u64, header: &[&str]) -> Result<[Column; 8], FileError> {
         // Find each mapped column by its name in the header, or by its number.
         let mut found: [Option<Column>; 8] = Default::default();
         for (field, wanted) in &self.given {
             let named = header.iter().position(|name| name == wanted);
-            let index = named.or_else(|| number(wanted)).ok_or_else(|| RecordingError::Column {
-                line,
-                field: field.name.to_owned(),
-                expected: wanted.clone(),
-                found: header.join(", "),
+            let index = named.or_else(|| number(wanted)).ok_or_else(|| {
+                let expected = format!("a column `{wanted}` for {}", field.name);
+                of_line(line, expected, header.join(", "))
             })?;
             found[field.slot] = Some(Column { index, name: wanted.clone(), places: field.places });
         }
         // Every slot needs a column: a missing one makes the mapping incomplete.
         let all: Vec<Column> = found.into_iter().flatten().collect();
-        all.try_into().map_err(|_| RecordingError::Mapping { expected: EXPECTED, found: self.to_string() })
+        all.try_into().map_err(|_| FileError::new(FileErrorKind::Syntax, EXPECTED, self).at("columns"))
     }
+}
+
+/// Returns the error of a line, counted from 1, whose form is wrong.
+pub(super) fn of_line(line: u64, expected: impl Display, found: impl Display) -> FileError {
+    FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("line {line}"))
 }
 
 /// Parses a column number that counts from 1, and returns the index that counts from 0.
@@ -133,10 +135,10 @@ fn number(column: &str) -> Option<usize> {
 }
 
 impl FromStr for Columns {
-    type Err = RecordingError;
+    type Err = SettingError;
 
     /// Parses a mapping like [`Columns::parse`].
-    fn from_str(text: &str) -> Result<Self, RecordingError> {
+    fn from_str(text: &str) -> Result<Self, SettingError> {
         Self::parse(text)
     }
 }

@@ -1,10 +1,10 @@
 //! Reader of pose logs as OpenXR programs write them: predicted display time, position and orientation, as CSV or as
 //! one JSON object per line.
 
+use pxpl5_sim::parameters::FileError;
 use serde_json::Value;
 
-use super::RecordingError;
-use super::columns::Column;
+use super::columns::{Column, of_line};
 
 /// Column names without units, in the order of a sample: time, x, y, z, qw, qx, qy, qz.
 const NAMES: [&str; 8] = [
@@ -40,8 +40,8 @@ fn normal(name: &str) -> String {
     bare.strip_prefix("pose_").unwrap_or(bare).to_owned()
 }
 
-/// Returns the index of a column name in [`NAMES`] and the decimal places of its unit. Returns `None` for an unknown
-/// name.
+/// Returns the index of a column name in [`NAMES`] and the number of decimal places of the column's unit. Returns
+/// `None` for an unknown name.
 fn slot(name: &str) -> Option<(usize, i32)> {
     let normal = normal(name);
     if let Some(slot) = NAMES.iter().position(|known| *known == normal) {
@@ -60,7 +60,7 @@ pub(super) fn is_header(header: &[&str]) -> bool {
 
 /// Returns the eight columns of a pose log in the order of [`NAMES`]. The header can contain them in any order, among
 /// other columns.
-pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], RecordingError> {
+pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], FileError> {
     let mut found: [Option<Column>; 8] = Default::default();
     for (index, name) in header.iter().enumerate() {
         if let Some((slot, places)) = slot(name)
@@ -72,20 +72,21 @@ pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], Recordi
     let missing: Vec<&str> =
         NAMES.iter().zip(&found).filter(|(_, column)| column.is_none()).map(|(name, _)| *name).collect();
     if !missing.is_empty() {
-        return Err(RecordingError::PoseLog { line, missing: missing.join(", "), found: header.join(", ") });
+        let found = format!("{} without {}", header.join(", "), missing.join(", "));
+        return Err(of_line(line, "all columns of a pose log", found));
     }
     Ok(found.map(|column| column.expect("none is missing")))
 }
 
-/// Returns true if the file has one JSON object per line, evaluated by its first line.
+/// Returns true if a file has one JSON object per line. The first line of the file decides.
 pub(super) fn is_json(first_line: &str) -> bool {
     first_line.starts_with('{')
 }
 
 /// Parses a line of JSON. Returns the texts of the eight quantities in the order of [`NAMES`], and the name and unit of
 /// the time.
-pub(super) fn json_fields(line: u64, text: &str) -> Result<([String; 8], Column), RecordingError> {
-    let unreadable = |found: String| RecordingError::Json { line, found };
+pub(super) fn json_fields(line: u64, text: &str) -> Result<([String; 8], Column), FileError> {
+    let unreadable = |found: String| of_line(line, "an object of JSON", found);
     let value: Value = serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
     let mut all = Vec::new();
     flatten("", &value, &mut all);
@@ -121,10 +122,11 @@ pub(super) fn json_columns(time: &Column) -> [Column; 8] {
 
 #[cfg(test)]
 mod tests {
-    use crate::motion::{Motion, Recording, RecordingError};
+    use crate::motion::{Motion, Recording};
     use glam::{DQuat, DVec3};
+    use pxpl5_sim::parameters::FileError;
 
-    fn read(text: &str) -> Result<Recording, RecordingError> {
+    fn read(text: &str) -> Result<Recording, FileError> {
         Recording::read(text.as_bytes())
     }
 

@@ -1,10 +1,12 @@
 use glam::{DQuat, DVec3};
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
+use std::fmt::Display;
 
 use super::axes::Axes;
-use super::columns::{Column, Columns};
+use super::columns::{Column, Columns, of_line};
 use super::decimal::scaled;
 use super::pose_log;
-use super::{FARTHEST_M, FASTEST, LATEST_S, RecordingError, Sample};
+use super::{FARTHEST_M, FASTEST, LATEST_S, Sample};
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{PS_PER_S, span_s};
@@ -20,7 +22,8 @@ const EUROC: [&str; 8] = ["timestamp", "_x", "_y", "_z", "_w", "_x", "_y", "_z"]
 /// header.
 const TUM: [&str; 8] = ["timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"];
 
-/// Indices of time, position and quaternion in a line of a TUM file. The real part of the quaternion comes first here.
+/// Indices of the fields of a TUM line in the order of a sample: time, position, and the quaternion with its real part
+/// first.
 const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 
 /// Greatest difference between the length of a recorded quaternion and 1. Rounding to four decimals causes a much
@@ -70,7 +73,7 @@ pub(super) struct Samples {
 }
 
 /// Reads the samples of a recorded file and converts them to this crate's axes.
-pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, RecordingError> {
+pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, FileError> {
     // Number the lines from 1, and drop a byte order mark and empty lines.
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
     let lines = lines.map(|(text, number)| Line { number, text: text.trim() }).filter(|line| !line.text.is_empty());
@@ -85,7 +88,7 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
 
 /// Checks samples that a program supplies, as if they were the lines of one of this crate's own files. Lines count from
 /// the first sample.
-pub(super) fn given_samples(given: impl IntoIterator<Item = (f64, Pose)>) -> Result<Samples, RecordingError> {
+pub(super) fn given_samples(given: impl IntoIterator<Item = (f64, Pose)>) -> Result<Samples, FileError> {
     // The shortest decimal form of a number is read back as the same number.
     let text = |(time_s, Pose { position: p, orientation: q }): (f64, Pose)| {
         [time_s, p.x, p.y, p.z, q.w, q.x, q.y, q.z].map(|number| number.to_string()).join(",")
@@ -104,10 +107,10 @@ pub(super) fn given_samples(given: impl IntoIterator<Item = (f64, Pose)>) -> Res
 }
 
 /// Reads the samples of a file with one JSON object per line.
-fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, RecordingError> {
+fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, FileError> {
     let read = lines.iter().map(|line| Ok((line.number, pose_log::json_fields(line.number, line.text)?)));
-    let read: Vec<(u64, ([String; 8], Column))> = read.collect::<Result<_, RecordingError>>()?;
-    let time = &read.first().ok_or(RecordingError::Empty)?.1.1;
+    let read: Vec<(u64, ([String; 8], Column))> = read.collect::<Result<_, FileError>>()?;
+    let time = &read.first().ok_or_else(no_sample)?.1.1;
     let columns = pose_log::json_columns(time);
     let texts: Vec<(u64, String)> = read.iter().map(|(number, (fields, _))| (*number, fields.join("\t"))).collect();
     let lines: Vec<Line<'_>> = texts.iter().map(|(number, text)| Line { number: *number, text }).collect();
@@ -123,7 +126,7 @@ fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, RecordingE
 }
 
 /// Parses lines as samples and converts them to this crate's axes.
-fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Samples, RecordingError> {
+fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Samples, FileError> {
     let axes = axes.unwrap_or(layout.axes);
     let mut first_ps = None;
     let mut samples: Vec<Sample> = Vec::new();
@@ -144,7 +147,7 @@ fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Sa
         }
         samples.push(sample);
     }
-    if samples.is_empty() { Err(RecordingError::Empty) } else { Ok(Samples { samples, repeated: repeated.warning() }) }
+    if samples.is_empty() { Err(no_sample()) } else { Ok(Samples { samples, repeated: repeated.warning() }) }
 }
 
 /// A count of the samples that have the same time stamp as the preceding sample.
@@ -172,17 +175,20 @@ impl Repeated {
     }
 }
 
-fn check_speed(line: &Line<'_>, (before_ps, before): &Sample, (t_ps, pose): &Sample) -> Result<(), RecordingError> {
+fn check_speed(line: &Line<'_>, (before_ps, before): &Sample, (t_ps, pose): &Sample) -> Result<(), FileError> {
     let seconds = span_s(*before_ps, *t_ps);
     let moved = (pose.position - before.position).length() / seconds;
     let turned = rotation::difference(before.orientation, pose.orientation).length() / seconds;
     let too_fast = [(moved, "m/s"), (turned, "rad/s")].into_iter().find(|(found, _)| *found > FASTEST);
-    too_fast.map_or(Ok(()), |(found, unit)| Err(RecordingError::TooFast { line: line.number, found, unit }))
+    too_fast.map_or(Ok(()), |(found, unit)| {
+        let expected = format!("at most {FASTEST:e} m/s and {FASTEST:e} rad/s from the line before");
+        Err(out_of_range(format_args!("line {}", line.number), expected, format_args!("{found:e} {unit}")))
+    })
 }
 
 /// Recognizes the format of a file from its first lines.
-fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
-    let first = lines.first().ok_or(RecordingError::Empty)?;
+fn recognised(lines: &[Line<'_>]) -> Result<Layout, FileError> {
+    let first = lines.first().ok_or_else(no_sample)?;
     let header: Vec<&str> = first.text.trim_start_matches('#').split(',').map(bare).collect();
     // Case 1: this crate's own header.
     if header == OWN {
@@ -214,14 +220,14 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
         return Ok(Layout { separator, columns, n_fields: None, axes, from_first: true, begins_after });
     }
     // Case 4: a TUM trajectory, whose first line without `#` has eight numbers.
-    let numbers = lines.iter().find(|line| !line.text.starts_with('#')).ok_or(RecordingError::Empty)?;
+    let numbers = lines.iter().find(|line| !line.text.starts_with('#')).ok_or_else(no_sample)?;
     let fields = numbers.fields(None);
     if fields.len() == TUM.len() && fields.iter().all(|field| field.parse::<f64>().is_ok()) {
         let columns = in_order(&TUM, TUM_ORDER, 0);
         let axes = Axes::Optical;
         return Ok(Layout { separator: None, columns, n_fields: Some(8), axes, from_first: true, begins_after: 0 });
     }
-    Err(RecordingError::Format { line: first.number, found: first.text.to_owned() })
+    Err(of_line(first.number, FORMATS, first.text))
 }
 
 /// Returns true if a header belongs to a EuRoC ground truth file. Columns after the first eight (velocity, biases) are
@@ -237,8 +243,8 @@ fn in_order(names: &[&str; 8], order: [usize; 8], time_places: i32) -> [Column; 
 }
 
 /// Returns the line format of a file whose columns are given by the user's mapping.
-fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, RecordingError> {
-    let first = lines.first().ok_or(RecordingError::Empty)?;
+fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, FileError> {
+    let first = lines.first().ok_or_else(no_sample)?;
     let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
     // A first line of numbers alone is a sample, not a header.
     let header = Line { number: first.number, text: first.text.trim_start_matches('#').trim() };
@@ -246,7 +252,7 @@ fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, RecordingErro
     let has_header = !fields.iter().all(|field| field.parse::<f64>().is_ok());
     let names = if has_header { fields } else { Vec::new() };
     if !has_header && !columns.are_numbers() {
-        return Err(RecordingError::Format { line: first.number, found: first.text.to_owned() });
+        return Err(of_line(first.number, FORMATS, first.text));
     }
     Ok(Layout {
         separator,
@@ -260,14 +266,14 @@ fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, RecordingErro
 
 impl Layout {
     /// Parses a line into its time stamp in picoseconds and its pose in the recorded axes.
-    fn sample(&self, line: &Line<'_>) -> Result<(i128, Pose), RecordingError> {
+    fn sample(&self, line: &Line<'_>) -> Result<(i128, Pose), FileError> {
         let fields = line.fields(self.separator);
         let needed = self.columns.iter().map(|column| column.index + 1).max().unwrap_or_default();
         // Check the number of fields before any field is read.
         let expected = self.n_fields.unwrap_or(needed);
         let found = fields.len();
         if found < needed || self.n_fields.is_some_and(|exact| exact != found) {
-            return Err(RecordingError::Fields { line: line.number, expected, found });
+            return Err(of_line(line.number, format_args!("{expected} fields"), found));
         }
         // The time is parsed exactly, the other fields as floating point.
         let [time, numbers @ ..] = &self.columns;
@@ -280,45 +286,63 @@ impl Layout {
         if let Some((found_m, column)) =
             values.iter().zip(numbers).take(3).find(|(metres, _)| metres.abs() > FARTHEST_M)
         {
-            let column = column.name.clone();
-            return Err(RecordingError::TooFar { line: line.number, column, found_m: *found_m });
+            let expected = format!("-{FARTHEST_M:e} to {FARTHEST_M:e} m");
+            return Err(out_of_range(place(line, &column.name), expected, format_args!("{found_m:e} m")));
         }
         let [x, y, z, qw, qx, qy, qz] = values;
         let orientation = self.unit_quaternion(line, DQuat::from_xyzw(qx, qy, qz, qw))?;
         Ok((stamp_ps, Pose { position: DVec3::new(x, y, z), orientation }))
     }
 
-    fn unit_quaternion(&self, line: &Line<'_>, q: DQuat) -> Result<DQuat, RecordingError> {
+    fn unit_quaternion(&self, line: &Line<'_>, q: DQuat) -> Result<DQuat, FileError> {
         let found = q.length();
         if (found - 1.0).abs() <= LENGTH_TOLERANCE {
             return Ok(q.normalize());
         }
         let names: Vec<&str> = self.columns[4..].iter().map(|column| column.name.as_str()).collect();
-        Err(RecordingError::NotUnit { line: line.number, columns: names.join(","), found })
+        Err(out_of_range(place(line, &names.join(",")), "a quaternion of length 1", found))
     }
 
     /// Returns the time stamp of a sample. Checks that the time is not earlier than the previous time and stays below
     /// the limit.
-    fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, RecordingError> {
-        let column = self.columns[0].name.clone();
-        let line = line.number;
+    fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, FileError> {
+        let place = || place(line, &self.columns[0].name);
         let found_s = t_ps as f64 / PS_PER_S as f64;
         if let Some((previous_ps, _)) = previous.filter(|(previous_ps, _)| t_ps < i128::from(*previous_ps)) {
             let previous_s = *previous_ps as f64 / PS_PER_S as f64;
-            return Err(RecordingError::NotRising { line, column, previous_s, found_s });
+            let expected = format!("{previous_s} s or more, the time of the line before");
+            return Err(out_of_range(place(), expected, format_args!("{found_s} s")));
         }
         let latest_ps = LATEST_S as i128 * i128::from(PS_PER_S);
         let in_range = u64::try_from(t_ps).ok().filter(|_| t_ps <= latest_ps);
-        in_range.ok_or(RecordingError::TimeOutOfRange { line, column, found_s })
+        in_range.ok_or_else(|| out_of_range(place(), format_args!("0 to {LATEST_S} s"), format_args!("{found_s} s")))
     }
 }
 
-fn number(line: &Line<'_>, column: &Column, text: &str) -> Result<f64, RecordingError> {
+fn number(line: &Line<'_>, column: &Column, text: &str) -> Result<f64, FileError> {
     let parsed = text.parse().ok().filter(|x: &f64| x.is_finite());
     let number = parsed.ok_or_else(|| not_a_number(line, column, text))?;
     Ok(if column.places == 3 { number / 1e3 } else { number })
 }
 
-fn not_a_number(line: &Line<'_>, column: &Column, found: &str) -> RecordingError {
-    RecordingError::NotANumber { line: line.number, column: column.name.clone(), found: found.to_owned() }
+fn not_a_number(line: &Line<'_>, column: &Column, found: &str) -> FileError {
+    let error = FileError::new(FileErrorKind::Syntax, "a finite number", format_args!("{found:?}"));
+    error.at(place(line, &column.name))
+}
+
+/// The formats that are recognised without a mapping of columns.
+const FORMATS: &str = "the columns time_s,x,y,z,qw,qx,qy,qz, a EuRoC file (#timestamp [ns],p_RS_R_x [m],...), a TUM file (eight numbers \
+                       separated by spaces), a pose log (predicted_display_time,position_x,...,orientation_w as CSV or JSON lines) or a \
+                       mapping of columns";
+
+fn place(line: &Line<'_>, column: &str) -> String {
+    format!("line {}, {column}", line.number)
+}
+
+fn no_sample() -> FileError {
+    FileError::new(FileErrorKind::Empty, "at least one sample", "none")
+}
+
+fn out_of_range(place: impl Display, expected: impl Display, found: impl Display) -> FileError {
+    FileError::new(FileErrorKind::Number, expected, found).at(place)
 }

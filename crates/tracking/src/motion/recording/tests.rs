@@ -1,9 +1,10 @@
 use super::*;
 use crate::time::{PS_PER_MS, PS_PER_S};
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 
 const HEADER: &str = "time_s,x,y,z,qw,qx,qy,qz\n";
 
-fn load(rows: &str) -> Result<Recording, RecordingError> {
+fn load(rows: &str) -> Result<Recording, FileError> {
     Recording::read(format!("{HEADER}{rows}").as_bytes())
 }
 
@@ -90,9 +91,12 @@ fn places_and_speeds_that_no_head_has_are_refused() {
 
 #[test]
 fn an_empty_recording_is_an_error() {
-    assert_eq!(Recording::read(&b""[..]), Err(RecordingError::Empty));
-    assert_eq!(Recording::read(&b"# nothing but a comment\n"[..]), Err(RecordingError::Empty));
-    assert_eq!(load(""), Err(RecordingError::Empty));
+    assert_eq!(Recording::read(&b""[..]).map_err(|error| error.kind), Err(FileErrorKind::Empty));
+    assert_eq!(
+        Recording::read(&b"# nothing but a comment\n"[..]).map_err(|error| error.kind),
+        Err(FileErrorKind::Empty)
+    );
+    assert_eq!(load("").map_err(|error| error.kind), Err(FileErrorKind::Empty));
 }
 
 #[test]
@@ -105,7 +109,7 @@ fn unknown_columns_are_an_error_that_lists_the_known_columns() {
 
 #[test]
 fn bytes_that_are_not_text_are_an_error() {
-    assert!(matches!(Recording::read(&b"\xff\xfe"[..]), Err(RecordingError::Unreadable { .. })));
+    assert_eq!(Recording::read(&b"\xff\xfe"[..]).expect_err("no UTF-8").kind, FileErrorKind::Unreadable);
 }
 
 // One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z. Half a second later it has
@@ -187,7 +191,7 @@ fn a_mapping_that_is_not_whole_is_an_error() {
         ("t", "found `t`"),
     ] {
         let said = Columns::parse(mapping).and_then(|columns| {
-            Recording::read_as(&b"1,2,3\n"[..], &RecordingFormat { columns, axes: None }).map(|_| ())
+            Ok(Recording::read_as(&b"1,2,3\n"[..], &RecordingFormat { columns, axes: None }).map(|_| ())?)
         });
         let said = said.unwrap_err().to_string();
         assert!(said.starts_with("columns: expected t (or t_ms") && said.ends_with(found), "{mapping}: {said}");

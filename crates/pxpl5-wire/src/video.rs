@@ -1,8 +1,28 @@
-//! Exact times of the video signal, and the position of the beam.
+//! Exact times of an interlaced video signal, and the position of its beam.
 
-use crate::{FrameBufferConfigError, VideoTiming};
+use crate::{CopyTarget, FieldParity, Lines, PeriodNumber};
 use pxpl5_sim::{Clock, Time};
-use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber};
+
+/// Numbers of an interlaced video signal with two fields a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VideoNumbers {
+    /// Period of the pixel clock, multiplied by `pixel_divisor`, in picoseconds.
+    pub pixel_ps: u64,
+    /// Divisor of `pixel_ps`.
+    pub pixel_divisor: u64,
+    /// Number of pixel periods in a line, including blanking.
+    pub line_pixels: u64,
+    /// Number of lines in a frame of two fields, including blanking.
+    pub frame_lines: u64,
+    /// Number of visible pixels in a line.
+    pub visible_pixels: u64,
+    /// Number of visible lines in a field.
+    pub visible_lines: u64,
+    /// Number of blanked pixel periods before the visible pixels of a line.
+    pub left_blanking: u64,
+    /// Number of blanked lines between a retrace and the first visible line.
+    pub top_blanking: u64,
+}
 
 /// The times of retraces, lines and pixels. All times are computed from time zero, so no rounding errors accumulate.
 ///
@@ -10,26 +30,24 @@ use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber};
 /// Lines follow an uninterrupted line clock. A field has 262.5 lines, so an odd field begins in the middle of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Video {
-    timing: VideoTiming,
+    numbers: VideoNumbers,
     pixel: Clock,
     line: Clock,
     field: Clock,
 }
 
 impl Video {
-    /// Makes the video signal described by a timing table.
-    ///
-    /// # Errors
-    ///
-    /// Returns the errors of [`VideoTiming::check`], and [`FrameBufferConfigError::Clock`].
-    pub fn new(timing: VideoTiming) -> Result<Self, FrameBufferConfigError> {
-        timing.check()?;
-        Ok(Self {
-            timing,
-            pixel: timing.pixel_clock().ok_or(FrameBufferConfigError::Clock)?,
-            line: timing.line_clock().ok_or(FrameBufferConfigError::Clock)?,
-            field: timing.field_clock().ok_or(FrameBufferConfigError::Clock)?,
-        })
+    /// Makes the video signal described by these numbers. Returns `None` if a number is too large for a clock.
+    #[must_use]
+    pub const fn new(numbers: VideoNumbers) -> Option<Self> {
+        let VideoNumbers { pixel_ps, pixel_divisor, line_pixels, frame_lines, .. } = numbers;
+        let Some(line_ps) = pixel_ps.checked_mul(line_pixels) else { return None };
+        let Some(frame_ps) = line_ps.checked_mul(frame_lines) else { return None };
+        let Some(half) = pixel_divisor.checked_mul(2) else { return None };
+        match (Clock::new(pixel_ps, pixel_divisor), Clock::new(line_ps, pixel_divisor), Clock::new(frame_ps, half)) {
+            (Some(pixel), Some(line), Some(field)) => Some(Self { numbers, pixel, line, field }),
+            _ => None,
+        }
     }
 
     /// Returns the time of the retrace with which a field begins.
@@ -61,7 +79,7 @@ impl Video {
         }
         let line = self.line_number(y, field)?;
         // Count pixel periods from time zero, so that no error accumulates.
-        let blanked = line.saturating_mul(self.timing.line_pixels).saturating_add(self.timing.left_blanking);
+        let blanked = line.saturating_mul(self.numbers.line_pixels).saturating_add(self.numbers.left_blanking);
         Some(self.pixel.edge(blanked.saturating_add(u64::from(x))))
     }
 
@@ -70,55 +88,52 @@ impl Video {
     /// region without a line in this field.
     #[must_use]
     pub fn reaches(&self, target: &CopyTarget, field: PeriodNumber) -> Option<Time> {
-        let [left, top, _, height] = rectangle(self, target)?;
+        let [left, top, _, height] = self.rectangle(target)?;
         (top..top + height).find_map(|row| self.when(left, frame_line(target.lines, row), field))
+    }
+
+    /// Returns left, top, width and height of a region, in the pixels and rows of its picture. Returns `None` if the
+    /// region does not lie in the frame or is larger than a renderer's pixel array.
+    #[must_use]
+    pub fn rectangle(&self, target: &CopyTarget) -> Option<[u32; 4]> {
+        let rows = match target.lines {
+            Lines::Frame => self.height(),
+            Lines::Field(_) => self.height() / 2,
+        };
+        target.grid.rectangle_within(target.region, self.width(), rows)
     }
 
     /// Returns the number of visible pixels in a line.
     #[must_use]
     pub const fn width(&self) -> u32 {
-        self.timing.visible_pixels as u32
+        self.numbers.visible_pixels as u32
     }
 
     /// Returns the number of visible lines in a frame.
     #[must_use]
     pub const fn height(&self) -> u32 {
-        self.timing.visible_lines as u32 * 2
+        self.numbers.visible_lines as u32 * 2
     }
 
-    /// Returns the timing table of the signal.
-    #[must_use]
-    pub const fn timing(&self) -> &VideoTiming {
-        &self.timing
-    }
-
-    /// Returns the number of scan lines between time zero and line `y` of a field. The half line at the start of an odd
-    /// field is blanked.
+    /// Returns the number of whole scan lines between time zero and the start of line `y` of the frame in a field.
+    /// Returns `None` if the field does not scan the line. An odd field begins with a blanked half line, so its first
+    /// whole line begins half a line later.
     fn line_number(&self, y: u32, field: PeriodNumber) -> Option<u64> {
         let parity = FieldParity::of_field(field);
         if y >= self.height() || y % 2 != parity.first_line() {
             return None;
         }
         // An odd field begins in the middle of a line. Lines of the field are counted from its first whole line.
-        let start = field.0.saturating_mul(self.timing.frame_lines).div_ceil(2);
-        Some(start + self.timing.top_blanking + u64::from(y / 2))
+        let start = field.0.saturating_mul(self.numbers.frame_lines).div_ceil(2);
+        Some(start + self.numbers.top_blanking + u64::from(y / 2))
     }
 }
 
 /// Returns the line of the frame to which row `row` of a picture belongs.
-pub(crate) const fn frame_line(lines: Lines, row: u32) -> u32 {
+#[must_use]
+pub const fn frame_line(lines: Lines, row: u32) -> u32 {
     match lines {
         Lines::Frame => row,
         Lines::Field(parity) => parity.first_line() + 2 * row,
     }
-}
-
-/// Returns left, top, width and height of a region, in the pixels and rows of its picture. Returns `None` if the region
-/// does not lie in the frame or is larger than a renderer's pixel array.
-pub(crate) fn rectangle(video: &Video, target: &CopyTarget) -> Option<[u32; 4]> {
-    let rows = match target.lines {
-        Lines::Frame => video.height(),
-        Lines::Field(_) => video.height() / 2,
-    };
-    target.grid.rectangle_within(target.region, video.width(), rows)
 }

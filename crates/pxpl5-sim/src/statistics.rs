@@ -9,18 +9,18 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// null.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Statistics {
-    /// Count of the numbers.
+    /// Count of numbers in the list.
     pub n: u64,
-    /// Sum of the numbers divided by their count.
+    /// Mean of the list: the sum of the numbers divided by their count. NaN for an empty list.
     #[serde(deserialize_with = "number_or_nan")]
     pub mean: f64,
     /// Sample standard deviation, with n - 1 as divisor. NaN for fewer than two numbers.
     #[serde(deserialize_with = "number_or_nan")]
     pub sd: f64,
-    /// Smallest of the numbers.
+    /// Smallest number of the list. NaN for an empty list.
     #[serde(deserialize_with = "number_or_nan")]
     pub min: f64,
-    /// Largest of the numbers.
+    /// Largest number of the list. NaN for an empty list.
     #[serde(deserialize_with = "number_or_nan")]
     pub max: f64,
 }

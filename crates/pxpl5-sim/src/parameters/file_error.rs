@@ -1,0 +1,149 @@
+//! The error of a file or text that cannot be used, and the conversion of users' files to text.
+
+use std::fmt::{self, Display};
+use std::io;
+use std::path::Path;
+
+/// Error of a file or a text that cannot be used. The message states the file, the position of the error, and the
+/// expected and found content.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FileError {
+    /// Reason why the file cannot be used.
+    pub kind: FileErrorKind,
+    /// Path or name of the file, as the caller gave it. Empty if only the text was given.
+    pub file: Box<str>,
+    /// Position of the error in the file, such as `line 3, byte 4`. Empty if the whole file is wrong.
+    pub place: Box<str>,
+    /// The expected content, in words. Empty if `found` is a whole sentence.
+    pub expected: Box<str>,
+    /// The content found.
+    pub found: Box<str>,
+}
+
+/// Reason why a file or a text cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum FileErrorKind {
+    /// The operating system reports an error: the file is missing, cannot be read or written, or the disk failed.
+    Unreadable,
+    /// The path leads to a directory, a device or a pipe instead of a file.
+    NotAFile,
+    /// No reader knows the format, or this program was built without the reader.
+    UnknownFormat,
+    /// The file is too large, or its contents need too much memory.
+    TooLarge,
+    /// The file has no content, or nothing that its reader looks for.
+    Empty,
+    /// A byte is not UTF-8.
+    NotText,
+    /// The content breaks the rules of its format.
+    Syntax,
+    /// The file ends before all content that its header announces.
+    Truncated,
+    /// An index refers to an item that the file lacks.
+    Index,
+    /// A number is out of range.
+    Number,
+    /// The file was written by another version, or for something else.
+    Foreign,
+    /// The contents contradict each other, or were changed after they were written.
+    Damaged,
+    /// The place of the file is taken by something else.
+    Occupied,
+    /// Another process is writing the file.
+    Locked,
+}
+
+impl FileError {
+    /// Creates the error of a text. [`FileError::at`] and [`FileError::in_file`] add the position and the file.
+    #[must_use]
+    pub fn new(kind: FileErrorKind, expected: impl Display, found: impl Display) -> Self {
+        let [expected, found] = [expected.to_string().into(), found.to_string().into()];
+        Self { kind, file: "".into(), place: "".into(), expected, found }
+    }
+
+    /// Creates the error of a file that the operating system cannot read.
+    #[must_use]
+    pub fn unreadable(file: impl Display, expected: &str, error: impl Display) -> Self {
+        Self::new(FileErrorKind::Unreadable, expected, error).in_file(file)
+    }
+
+    /// Creates the error whose message is a sentence without an expected content.
+    #[must_use]
+    pub fn because(kind: FileErrorKind, reason: impl Display) -> Self {
+        Self::new(kind, "", reason)
+    }
+
+    /// Returns a function that creates the error of a failed operation, such as `cannot be written`.
+    pub fn io(file: &Path, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
+        move |error| Self::because(FileErrorKind::Unreadable, format_args!("{doing}: {error}")).in_file(file.display())
+    }
+
+    /// Adds the position of the error in the file.
+    #[must_use]
+    pub fn at(self, place: impl Display) -> Self {
+        Self { place: place.to_string().into(), ..self }
+    }
+
+    /// Adds the path or name of the file.
+    #[must_use]
+    pub fn in_file(self, file: impl Display) -> Self {
+        Self { file: file.to_string().into(), ..self }
+    }
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, file, place, expected, found } = self;
+        for part in [file, place] {
+            if !part.is_empty() {
+                write!(f, "{part}: ")?;
+            }
+        }
+        match kind {
+            _ if expected.is_empty() => f.write_str(found),
+            FileErrorKind::Unreadable => write!(f, "expected {expected}, found: {found}"),
+            _ => write!(f, "expected {expected}, found {found}"),
+        }
+    }
+}
+
+impl std::error::Error for FileError {}
+
+/// Converts the bytes of a file to text.
+///
+/// # Errors
+///
+/// Returns a [`FileError`] if a byte is not UTF-8. The error gives the line of the byte and the position of the byte
+/// within the line, both counted from 1.
+pub fn text_of(bytes: &[u8]) -> Result<&str, FileError> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        // Only the valid text before the error gives its line and place.
+        let before = &bytes[..error.valid_up_to()];
+        let lines = before.iter().filter(|byte| **byte == b'\n').count();
+        let begin = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        let found = bytes.get(before.len()).copied().unwrap_or_default();
+        let place = format!("line {}, byte {}", lines + 1, before.len() - begin + 1);
+        FileError::new(FileErrorKind::NotText, "UTF-8 text", format_args!("byte {found:#04x}")).at(place)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::text_of;
+
+    #[test]
+    fn a_byte_that_is_no_text_is_told_by_line_and_byte() {
+        assert_eq!(text_of("a\né".as_bytes()), Ok("a\né"));
+        // The e with an acute of Latin-1, and a character of UTF-8 that ends early.
+        for (bytes, place, byte) in [
+            (&b"\xe9"[..], "line 1, byte 1", "0xe9"),
+            (b"a\nb\ncaf\xe9\n", "line 3, byte 4", "0xe9"),
+            (b"ab\xc3", "line 1, byte 3", "0xc3"),
+        ] {
+            let error = text_of(bytes).expect_err(place).to_string();
+            assert_eq!(error, format!("{place}: expected UTF-8 text, found byte {byte}"));
+        }
+    }
+}

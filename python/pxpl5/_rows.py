@@ -1,0 +1,263 @@
+"""Types of the rows and columns of tables. A missing value is None."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Literal, TypedDict
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+    from typing_extensions import TypeVar
+
+    #: A value of a table.
+    Cell = int | float | str | bool | None
+
+    #: A column of numbers.
+    Numbers = NDArray[np.int64] | NDArray[np.float64]
+
+    #: A column of a table: numbers, texts or truth values.
+    Column = Numbers | list[str | None] | list[bool | None]
+
+    #: Type of the rows of a table.
+    Row = TypeVar("Row", bound=Mapping[str, object], covariant=True, default=dict[str, Cell])
+
+
+class PictureRow(TypedDict):
+    """A picture that was begun. Times are picoseconds."""
+
+    picture: int
+    #: 1 if the picture is behind the warm-up.
+    steady: int
+    #: 1 if the picture was complete in time.
+    complete: int
+    sampled_at_ps: int | None
+    transform_at_ps: int | None
+    copied_at_ps: int | None
+    shown_at_ps: int | None
+    latency_ps: int | None
+    send_ps: int | None
+    wait_for_edit_ps: int | None
+    edit_ps: int | None
+    transform_ps: int | None
+    wait_for_last_transform_ps: int | None
+    last_transform_ps: int | None
+    wait_for_render_ps: int | None
+    render_ps: int | None
+    wait_for_copy_ps: int | None
+    copy_ps: int | None
+    wait_for_retrace_ps: int | None
+    scan_ps: int | None
+
+
+class StageRow(TypedDict):
+    """A stage of a picture. Times are picoseconds."""
+
+    picture: int
+    #: Name of the stage in lower case, such as transform.
+    stage: str
+    #: Label of the eye; None for a stage of all surfaces.
+    surface: str | None
+    begin_ps: int
+    #: End of the stage; None if the run ended before.
+    end_ps: int | None
+
+
+class EventRow(TypedDict):
+    """An observed event."""
+
+    time_ps: int
+    board: str
+    picture: int | None
+    #: The event in words.
+    event: str
+
+
+#: Columns of numbers in the tables of an outcome.
+NumberColumn = Literal[
+    "picture",
+    "steady",
+    "complete",
+    "sampled_at_ps",
+    "transform_at_ps",
+    "copied_at_ps",
+    "shown_at_ps",
+    "latency_ps",
+    "send_ps",
+    "wait_for_edit_ps",
+    "edit_ps",
+    "transform_ps",
+    "wait_for_last_transform_ps",
+    "last_transform_ps",
+    "wait_for_render_ps",
+    "render_ps",
+    "wait_for_copy_ps",
+    "copy_ps",
+    "wait_for_retrace_ps",
+    "scan_ps",
+    "begin_ps",
+    "end_ps",
+    "time_ps",
+]
+
+#: Columns of texts in the tables of an outcome.
+TextColumn = Literal["stage", "surface", "board", "event"]
+
+
+class BoardRow(TypedDict):
+    """Shares of time, 0 to 1, of the boards of one kind with one activity."""
+
+    board: str
+    activity: str
+    mean: float
+    max: float | None
+    busiest: int | None
+    idle: int | None
+
+
+class ChannelRow(TypedDict):
+    """A message that occupies a channel of the ring."""
+
+    channel: int
+    source: int
+    destination: int
+    words: int
+    granted_ps: int
+    ends_at_ps: int | None
+
+
+class ParameterRow(TypedDict):
+    """A number of a machine or a tracker, as :class:`Parameter`."""
+
+    path: str
+    value: float
+    unit: str
+    provenance: str
+    low: float
+    high: float
+    source: str
+    read_only: bool
+
+
+class PipelineRow(TypedDict):
+    """A pipeline."""
+
+    name: str
+    family: str
+    about: str
+    preset: str
+    #: The pipeline's own settings as JSON.
+    keys: str
+    has_closed_form: bool
+
+
+class FigureRow(TypedDict):
+    """A published figure beside the value of the model."""
+
+    id: str
+    published: float
+    simulated: float | None
+    unit: str
+    error_percent: float | None
+    analytic: float | None
+    #: Ends of the interval as JSON.
+    interval: str | None
+    provenance: str
+    spread: float | None
+    fitted: str
+    source: str
+    statement: str
+    experiment: str
+    cause: str
+    #: Further numbers as JSON.
+    details: str
+    unprinted: str | None
+    misses: bool
+    low: float | None
+    high: float | None
+
+
+class ReadingRow(TypedDict):
+    """An interpretation of the papers' open questions."""
+
+    evaluated_at: str
+    words: str
+    mean_error_percent: float | None
+    greatest_error_percent: float | None
+    log_likelihood: float | None
+    #: Identifiers of the figures as JSON.
+    unexplained: str
+
+
+class VolumeFigureRow(TypedDict):
+    """A figure of the SpatialGL paper beside the value of the model."""
+
+    id: str
+    statement: str
+    unit: str
+    published: float
+    #: Ends of the interval that the paper's number stands for, as JSON.
+    interval: str
+    computed: float
+    provenance: str
+    source: str
+    scene: str | None
+    error_percent: float | None
+    is_met: bool
+
+
+class SettingRow(TypedDict):
+    """A setting that differs between two outcomes, with its values as text."""
+
+    key: str
+    a: str | None
+    b: str | None
+
+
+class ResultRow(SettingRow):
+    """A result that differs between two outcomes."""
+
+    #: Difference in percent of a.
+    percent: float | None
+
+
+class PictureDifferenceRow(TypedDict):
+    """Differences between the last pictures of a surface."""
+
+    surface: str
+    pixels: int
+    differing: int | None
+    #: Largest difference of a colour, 0 to 255.
+    largest: int | None
+
+
+#: What more of one resource brings.
+WhatIfRow = TypedDict(
+    "WhatIfRow",
+    {
+        "resource": str,
+        "key": str,
+        "from": int,
+        "to": int,
+        "latency_ms.before": float | None,
+        "latency_ms.after": float | None,
+        "updates_hz.before": float | None,
+        "updates_hz.after": float | None,
+        "level": str,
+    },
+)
+
+#: A level of modelling.
+LevelRow = TypedDict(
+    "LevelRow",
+    {
+        "level": str,
+        "times_of_code": bool,
+        "published_error_percent": float | None,
+        "from_cycle_percent": float | None,
+        "from_cycle_percent.median": float | None,
+        "from_cycle_percent.low_5": float | None,
+        "from_cycle_percent.high_95": float | None,
+        "speeds": str,
+    },
+)
