@@ -433,9 +433,9 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
 fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## The timing table from the code\n");
     println!(
-        "The table gives the mean time of the code over the three application scenes, and the smallest and largest time of a scene \
-         (pxpl5_lab::code_times). The provenance of these times is \"derived from code\". With `machine.times = \"code\"`, the timing \
-         table has these times. Otherwise, the timing table has the published or fitted times.\n"
+        "The table gives the mean time of the code over the three application scenes, and the smallest and largest time of a \
+         scene (pxpl5_lab::code_times). The provenance of these times is \"derived from code\". With `machine.times = \"code\"`, the \
+         timing table has these times. Without this setting, the timing table has the published or fitted times.\n"
     );
     head(&[
         "code",
@@ -567,7 +567,8 @@ triangle touches. Each kernel has these steps:
 - The kernel computes 1 / w from a first estimate with Newton steps, rounds the corners to 1/16 pixel, and computes
   their depth.
 
-- The kernel computes the light at the corners. For Phong shading, the kernel keeps the normals instead.
+- The kernel computes the light at the corners. For Phong shading, the kernel keeps the normals of the corners instead
+  of the light.
 
 - The kernel tests the orientation of the triangle and computes three edge expressions, the plane of depth, and the
   planes of three components of colour or normal.

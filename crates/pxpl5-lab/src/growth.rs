@@ -196,10 +196,11 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
          Triangles have 18 pixels, and no pixels are computed. The GPs have 1 GB of memory instead of 8 MB. The host time is the\n\
          computing time of the simulation, the fastest of three runs on one computer.\n\n\
          ## Triangles, on 50 GPs and 5 renderers\n\n\
-         For 1,000 triangles and more, the host time grows with the power {:.2} of the number of triangles. From 100,000\n\
-         triangles, the power is {:.2}. With fewer than 100,000 triangles, the tokens of 40 regions cost more host time than the\n\
-         triangles, because every GP receives and sends each token. From 100,000 triangles, the simulated latency grows with the\n\
-         power {:.2} of the number of triangles. Below 100,000 triangles, COPY is the bottleneck.\n\n",
+         For 1,000 triangles and more, the host time grows with the power {:.2} of the number of triangles. For 100,000\n\
+         triangles and more, the host time grows with the power {:.2}. With fewer than 100,000 triangles, the tokens of 40\n\
+         regions cost more host time than the triangles, because every GP receives and sends each token. For 100,000 triangles\n\
+         and more, the simulated latency grows with the power {:.2} of the number of triangles. Below 100,000 triangles, COPY is\n\
+         the bottleneck.\n\n",
         power(triangles, 1_000, |p| p.host_ms),
         power(triangles, 100_000, |p| p.host_ms),
         power(triangles, 100_000, |p| p.latency_fields),

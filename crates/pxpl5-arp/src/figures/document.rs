@@ -412,8 +412,9 @@ fn size_limits(text: &mut String, limits: &[SizeLimit]) {
         let _ = writeln!(text, "| {angle} | {of_middle:.2} | {of_nearest:.2} |");
     }
     text.push_str(
-        "\nThe project uses the distance of the nearest point and the angle of the radius. The patent US5841439 names a second\n\
-         angle for the size, without its value. A second angle of 1.5 times theta would give the printed factor of ten. For\n\
-         discs, the size never decides.\n",
+        "\nFor the size of an object, the project uses the distance to the nearest point and the angle under which the radius\n\
+         appears. The patent US5841439 names a second angle for the size, without its value. If this second angle is 1.5 times\n\
+         the threshold theta, the model gives the printed factor of ten. The size of a disc never shortens the time for which\n\
+         its picture stays correct.\n",
     );
 }
