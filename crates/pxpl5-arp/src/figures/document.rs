@@ -57,7 +57,7 @@ fn pictures(text: &mut String) {
          memory 1 is yellow, memory 2 is green, and the slowest memory 3 is blue. Black pixels are tears.\n\n\
          ![Tears](pictures/arp-tears.png)\n\nThe scene is cut into segments, and vertices are not warped. The background is white, so white gaps appear between\n\
          segments that were drawn from different positions.\n\n\
-         ![Warped](pictures/arp-warped.png)\n\nThis picture shows the same frame with warped vertices.\n\n\
+         ![Warped](pictures/arp-warped.png)\n\nThe picture shows the frame of the previous picture, drawn with warped vertices.\n\n\
          ![Errors](pictures/arp-error.png)\n\nThe picture shows the error of each pixel, which arises because the memory was drawn from another position of the eye.\n\
          The scale of the colours ends at an error of two pixels.\n",
     );
@@ -234,7 +234,7 @@ fn best_of_all(all: &Interpretations) -> String {
 fn chosen(all: &Interpretations) -> String {
     let place = all.usual().map_or_else(String::new, |(place, ranked)| {
         format!(
-            "It has rank {place} of the rules without cascade, and its mean error is {:.1} %.",
+            "These rules have rank {place} of the rules without cascade, and their mean error is {:.1} %.",
             ranked.mean_error_percent
         )
     });

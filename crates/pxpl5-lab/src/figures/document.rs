@@ -237,7 +237,8 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          - *free*: No parameter and no rule was chosen to reproduce the figure.\n\n\
          - *fitted*: One parameter was chosen so that the model reproduces the figure.\n\n\
          - *rule*: One rule of the model was chosen so that the model reproduces the figure.\n\n\
-         A result outside of the printed range is a *miss*. If the paper prints no range, an error of more than {MISS_PERCENT} % is a miss.\n\n\
+         A simulated value is a *miss* if it lies outside of the range that the paper prints. If the paper prints no range, an\n\
+         error of more than {MISS_PERCENT} % is a miss.\n\n\
          Some papers do not print a condition of an experiment, for example the position of a sensor. The brackets after the\n\
          simulated value then give the minimum and the maximum over all possible conditions. The column *error* uses the value\n\
          for one assumed condition. Such a figure is a miss only if the model misses the published figure under every condition.\n\n\
