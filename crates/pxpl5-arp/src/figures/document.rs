@@ -204,8 +204,8 @@ fn best_of_all(all: &Interpretations) -> String {
         let Trial { cell_m, rates_hz } = best.best;
         let _ = writeln!(
             text,
-            "\nThe best single fit has the rules \"{}\" and the path \"{}\". Its cells have a side of {cell_m:.2} m, its rates are {} Hz,\n\
-             and its error is {:.1} %.",
+            "\nThe best single fit has the rules \"{}\" and the path \"{}\". The cells of this fit have a side of {cell_m:.2} m, its rates\n\
+             are {} Hz, and its error is {:.1} %.",
             best.rules.text(),
             best.situation.text(),
             rates(&rates_hz),

@@ -129,8 +129,8 @@ fn of_readings(text: &mut String, readings: &Readings) {
            rule of the software limited the number.\n\n\
          - *wait*: With room for all regions, the latency of figure 4 is 6 % too long with the rule `store`, and 1 to 2 % too\n  \
            long with the rule `wait`. The text of the paper allows both rules.\n\n\
-         - *large, culled*: The scene `head` takes twice the printed time on the small machine. It also takes twice the printed\n  \
-           time if back faces are drawn.\n\n\
+         - *large, culled*: The scene `head` takes twice the printed time on the small machine. The scene `head` also takes\n  \
+           twice the printed time if back faces are drawn.\n\n\
          - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed\n  \
            293 ms. No paper states this rule. The rule of bins for one eye was chosen for figures 16b and 16c, and it affects no\n  \
            other figure.\n\n\
