@@ -277,8 +277,8 @@ fn thresholds(text: &mut String, all: &Experiments) {
     text.push_str(
         "\nThe project uses a threshold of 2 texels, which is one texel of the machine's faces of 256 texels. The project compared\n\
          whole texels of faces with 128, 256, 384 and 512 texels. The chosen threshold is the widest of these whose tears are 2\n\
-         to 5 pixels wide. With this threshold, the hall has a side of 20 m, and eight cells lie along a side. The objects in\n\
-         these cells then have about as many sections as table 2 prints.\n",
+         to 5 pixels wide. With this threshold, the hall has a side of 20 m, and eight cells lie along a side. With eight cells\n\
+         along a side, the objects of the hall have about as many sections as table 2 prints.\n",
     );
 }
 

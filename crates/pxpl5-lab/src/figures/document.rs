@@ -244,9 +244,9 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          for one assumed condition. Such a figure is a miss only if the model misses the published figure under every condition.\n\n\
          The column *interval* gives the smallest and the largest value of the figure when unpublished parameters and the\n\
          interpretation of the papers vary. The parameters vary within their allowed ranges. The section \"Interpretations\" lists\n\
-         the interpretations. The analytic level (formulas instead of events) computes the interval. The column *analytic* gives\n\
-         the result of the analytic level with the normal parameters of the machines. The difference between *analytic* and\n\
-         *simulated* is the error of the analytic level.\n\n\
+         the interpretations of the papers. The analytic level (formulas instead of events) computes the interval. The column\n\
+         *analytic* gives the result of the analytic level with the normal parameters of the machines. The difference between\n\
+         *analytic* and *simulated* is the error of the analytic level.\n\n\
          A published figure is *out of reach* if it lies outside of the interval by more than the error of the analytic level.\n\
          Such a figure shows an error in the rules of the model, because no allowed parameter reproduces the figure. If the\n\
          interval is *not varied*, the figure depends only on the scenes or on a motion. The parameters of the machine do not\n\
