@@ -137,9 +137,10 @@ fn comparison() {
     let [straight, compiled, dual] = kernels;
     let in_cache = both(|k| clocks(k, without(&[Freeze::InstructionMiss])));
     println!(
-        "\nCode that fits the instruction cache was published to raise the triangle rate by a factor of about 3. The loops of the dual \
-         kernel fit the instruction cache. The dual kernel is {:.2} times as fast as the compiled kernel and {:.2} times as fast as the \
-         straight kernel. Without instruction misses, the compiled kernel takes {:.0} clocks and the straight kernel takes {:.0} clocks.",
+        "\nA paper states that code that fits the instruction cache draws about 3 times as many triangles a second. The loops of the \
+         dual kernel fit the instruction cache. The dual kernel is {:.2} times as fast as the compiled kernel and {:.2} times as fast \
+         as the straight kernel. Without misses of the instruction cache, the compiled kernel takes {:.0} clocks and the straight \
+         kernel takes {:.0} clocks.",
         compiled / dual,
         straight / dual,
         in_cache[1],
@@ -174,7 +175,8 @@ fn causes() {
 fn freeze_sensitivity() {
     println!("\n## Sensitivity to each freeze row\n");
     println!(
-        "The table gives the change of clocks per triangle if the row is disabled. The table has no rows without effect.\n"
+        "The freeze table lists the causes for which the processor waits (freezes). Each line gives the change of clocks per triangle\n\
+         if one row of the freeze table is disabled. Rows without effect are left out.\n"
     );
     head(&["row", "condition", "straight", "compiled", "dual"]);
     let base = both(|k| clocks(k, Config::cycle()));
@@ -221,7 +223,8 @@ fn dram_sensitivity() {
         row(&[vec![name.to_owned(), entry.value.to_string(), format!("{low} to {high}")], cells].concat());
     }
     println!(
-        "\nThe columns \"most\" have 8 clocks for `dma_interval`, which is half of one ring channel. The value 0 means no other bus master."
+        "\nFor `dma_interval`, the columns \"most\" use the value 8 clocks, at which DMA moves half of the data rate of one ring channel.\n\
+         The value 0 means that no other device uses the bus."
     );
 }
 
@@ -253,10 +256,10 @@ fn strip_clocks(kernel: Kernel, config: Config, length: usize) -> f64 {
 fn sharing() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## Strips, steady state\n");
     println!(
-        "The display list has strips of triangles, like T-meshes. Each vertex of a strip forms a triangle with the two \
-         vertices before it, except for the first two vertices. Pictures are frames, and all tests and bins are included. Triangles have \
-         about 30 pixels. The kernel transforms each corner once. A batch has 76 triangles of 78 corners. At the beginning of a strip, two \
-         corners form no triangle, and the loop over commands skips them.\n"
+        "The display list has strips of triangles (T-meshes) instead of separate triangles. Each vertex of a strip forms a triangle \
+         with the two vertices before it, except for the first two vertices. The measured work makes frames with bins and includes all \
+         tests. Triangles have about 30 pixels. The kernel transforms each corner once. A batch has 76 triangles of 78 corners. The \
+         first two corners of a strip complete no triangle, so the loop that makes commands skips these corners.\n"
     );
     let kernel = |surface| Kernel { surface, ..scheduled_phong(KernelList::Strips) };
     head(&[
@@ -342,10 +345,10 @@ fn strip_causes() {
 fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n### Lower bound of the resources (Phong, dual)\n");
     println!(
-        "An instruction pair has a floating-point slot and a core slot. The table counts the slots that the operations of a stretch of code \
-         need. A product of doubles needs two slots. No schedule of these operations has fewer pairs than the greater of both numbers. A \
-         stretch over corners covers three corners. With separate corners, three corners form one triangle. In a strip, three corners \
-         form three triangles.\n"
+        "An instruction pair has a floating-point slot and a core slot. The table counts the slots that the operations of a part of \
+         the code (*stretch*) need. A product of doubles needs two slots. No schedule of these operations has fewer pairs than the \
+         larger of the two numbers of slots. A stretch that transforms corners covers three corners. With separate corners, three \
+         corners form one triangle. In a strip, three corners form three triangles.\n"
     );
     head(&["stretch", "floating-point slots", "core slots", "least pairs", "pairs of the schedule"]);
     for (list, name) in [(KernelList::Strips, "strip"), (KernelList::Triangles, "own corners")] {
@@ -356,9 +359,10 @@ fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     println!(
-        "\nThree effects explain the remaining time. First, values wait in the 30 registers until the pipes drain. Second, the two loops \
-         evict each other from the instruction cache, and a larger batch would not fit the data cache. Third, an edge of a strip is computed for both of \
-         its triangles."
+        "\nThree effects explain why the kernel takes longer than this bound. First, values occupy the 30 registers until the \
+         floating-point pipelines have finished. Second, each of the two loops removes the other loop from the instruction cache, and \
+         a larger batch would not fit the data cache. Third, an edge that two triangles of a strip share is computed for each of the \
+         two triangles."
     );
     Ok(())
 }
@@ -382,10 +386,11 @@ fn on_board_us(preset: &str, level: Level) -> Result<f64, Box<dyn std::error::Er
 fn board() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## On the board: the cycle level\n");
     println!(
-        "The first table compares the timing table with the cycle level for Slats. At the cycle level, the kernels run on the boards of the \
-         machine. The pictures are fields without bins, and the caches keep their contents during the run. The triangles are small and \
-         touch 1.3 regions each. The presets of 1994 and 1995 run the *compiled* kernel, because their code did not fit the instruction \
-         cache. The preset `slats-optimised` runs the *dual* kernel. No number is fitted at the cycle level.\n"
+        "The first table compares two levels of detail for Slats: the transaction level with its timing table, and the cycle level. At \
+         the cycle level, the kernels run on the boards of the machine. Slats draws fields without bins, and the caches keep their \
+         contents during the run. The triangles are small and touch 1.3 regions each on average. The presets of 1994 and 1995 run the \
+         *compiled* kernel, because their code did not fit the instruction cache. The preset `slats-optimised` runs the *dual* kernel. \
+         No number is fitted at the cycle level.\n"
     );
     head(&["preset", "kernel", "us per triangle and eye: table", "cycle level", "published"]);
     for (preset, kernel, published) in [
@@ -417,9 +422,9 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
         row(&[name.into(), kernel.into(), table, small?, full?, published.into()]);
     }
     println!(
-        "\nThe rules of the compiled kernel (kernels/compiled_rules.md) were written before the first comparison with its figures. The table \
-         reports the first results. No triangle of either scene is clipped, and Slats sends each triangle to all regions. The limit \
-         therefore does not depend on the size of the triangles."
+        "\nThe rules of the compiled kernel (kernels/compiled_rules.md) were written before the kernel was compared with the figures of \
+         this table. The table has the results of the first comparison. The limit does not depend on the size of the triangles, \
+         because no triangle is clipped and Slats sends each triangle to all regions."
     );
     Ok(())
 }
@@ -428,9 +433,9 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
 fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## The timing table from the code\n");
     println!(
-        "The table gives mean times over the three application scenes, and the range over these scenes (pxpl5_lab::code_times). The \
-         provenance of these times is \"derived from code\". With `machine.times = \"code\"`, the timing table has these times. Otherwise, the \
-         timing table has the published or fitted times.\n"
+        "The table gives the mean time of the code over the three application scenes, and the smallest and largest time of a \
+         scene (pxpl5_lab::code_times). The provenance of these times is \"derived from code\". With `machine.times = \"code\"`, the \
+         timing table has these times. Without this setting, the timing table has the published or fitted times.\n"
     );
     head(&[
         "code",
@@ -493,10 +498,11 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
 fn strips_and_blocks() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## Strips and blocks\n");
     println!(
-        "The table gives the clocks of the work of just-in-time pixels for a strip of one line, with the triangles of the aircraft \
-         (pxpl5_lab::code_times). The rules are in windows_rules.md, between_rules.md and order_rules.md in crates/pphigs/kernels. Frameless \
-         rendering searches its blocks with the same code. A strip between two views begins a pass of its own. In the timing table, \
-         `jitp.interpolate_ns` is the time of an interpolated triangle, which is assumed as 280 clocks.\n"
+        "The table gives the clocks of the work of just-in-time pixels for a strip of one line, with the triangles of the scene \
+         `aircraft` (pxpl5_lab::code_times). The rules for this code are in windows_rules.md, between_rules.md and order_rules.md in \
+         crates/pphigs/kernels. Frameless rendering finds the triangles of its blocks with the same code. If a strip is interpolated \
+         between two views, its work begins with the start of a new pass over the triangles. In the timing table, \
+         `jitp.interpolate_ns` is the time of an interpolated triangle, for which 280 clocks are assumed.\n"
     );
     head(&[
         "code",
@@ -552,35 +558,40 @@ The command `cargo run --profile test --example gp_timing > docs/gp-timing.md` m
 
 ## The kernels
 
-Three kernels in i860 assembly process a triangle (crates/pxpl5-geometry/kernels). Their input is a triangle of the
-display list. Their output is the words of a renderer command and an entry in the bin of each touched region. Each
-kernel has these steps:
+Three i860 programs (*kernels*, in crates/pxpl5-geometry/kernels) process triangles. The input of a kernel is a triangle
+of the display list. The output is the words of a renderer command, and an entry in the bin of each region that the
+triangle touches. Each kernel has these steps:
 
-- It transforms three corners and tests them against the guard band.
+- The kernel transforms three corners and tests whether they are inside the guard band.
 
-- It computes 1 / w from a seed with Newton steps, snaps the corners to 1/16 pixel, and computes their depth.
+- The kernel computes 1 / w from a first estimate with Newton steps, rounds the corners to 1/16 pixel, and computes
+  their depth.
 
-- It computes the light at the corners. For Phong shading, it keeps the normals instead.
+- The kernel computes the light at the corners. For Phong shading, the kernel keeps the normals of the corners instead
+  of the light.
 
-- It tests the orientation and computes three edge expressions, the plane of depth, and the planes of three components.
+- The kernel tests the orientation of the triangle and computes three edge expressions, the plane of depth, and the
+  planes of three components of colour or normal.
 
-- It converts the expressions for a field and sorts the triangle into bins.
+- The kernel converts the expressions to the lines of a field and sorts the triangle into bins.
 
 The three kernels differ in their code:
 
-- *straight* is code without optimisation. Each statement uses the stack frame, and all functions are inlined.
+- *straight* is code without optimisation. Each statement reads and writes its variables in memory (stack frame), and
+  all functions are inlined.
 
-- *compiled* is like the output of a good compiler of about 1990 for a plain C program. It has functions, loops, locals in
-  registers, and scalar floating point. Its rules were written down before the first measurement (compiled_rules.md).
+- *compiled* is like the output of a good compiler of about 1990 for a plain C program. The code has functions, loops,
+  local variables in registers, and scalar floating-point operations. The rules for this code were written before the
+  first measurement (compiled_rules.md).
 
-- *dual* is linear code that `i860::linear` schedules for dual-instruction mode. It processes a batch of 26 triangles in
-  two loops. Each loop fits the instruction cache of 4 KB.
+- *dual* is code whose instructions the module `i860::linear` arranged in pairs for dual-instruction mode. The kernel
+  processes a batch of 26 triangles in two loops. Each loop fits the instruction cache of 4 KB.
 
-All three kernels give exactly the words of the native code (crates/pphigs/tests/kernels.rs and code.rs). Triangles that
-are not completely inside the guard band go to the clipper. The clipper is the same code for all three kernels. It has
-functions, loops and scalar floating point by the rules of the compiled kernel.
+All three kernels give exactly the same words as the native code in Rust (crates/pphigs/tests/kernels.rs and code.rs).
+All three kernels call the same clipper for triangles that are not completely inside the guard band. The code of the
+clipper follows the rules of the compiled kernel.
 
-Other code follows the same rules:
+Other i860 code also follows the rules of the compiled kernel:
 
 | work | code |
 | --- | --- |
@@ -594,18 +605,18 @@ Other code follows the same rules:
 | window search for a strip of lines or a block | windows.s, windows_rules.md |
 | triangles between the views of a field's begin and end | compiled.s, between_rules.md |
 
-The operating software of the original machine is not published. The file ring_rules.md describes what the code in
-ring.s stands for. The kernels of the tables below have the size of an NTSC frame or field as constants. The kernels for
-other frames read the size from their parameter block.
+The operating software of the original machine is not published. The file ring_rules.md describes which parts of this
+software ring.s replaces. In the kernels of the tables below, the size of an NTSC frame or field is a constant. The
+kernels for other frames read the size from their parameter block.
 
-Two kinds of work are not in code: the decisions of a master, and the warping of vertices at the borders of cells. The
-ring interface has no code at any level, because its DMA and its FIFOs are simulated word by word. The time of a whole
-program is therefore longer than the times in the tables below.
+Two kinds of work have no i860 code: the decisions of a master, and the warping of vertices at the borders of cells. The
+hardware of the ring interface (DMA and FIFOs) is simulated word by word and needs no code. The time of a whole program
+therefore is longer than the times in the tables below.
 
 The tables before the section \"Strips, steady state\" use 1,000 triangles of about 30 pixels. Each corner has its own
-position, normal and colour, which the kernel reads from memory. The processor runs at 40 MHz
-with the freeze rules and the memory of crates/i860/src/timing.rs. The freeze rules and the memory are assumed, so two
-tables show the sensitivity to them.
+position, normal and colour, which the kernel reads from memory. The processor runs at 40 MHz with the freeze rules and
+the memory of crates/i860/src/timing.rs. The rules for waits of the processor (freezes) and the times of the memory are
+assumed. So two tables show how the clocks depend on these assumptions.
 ";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -192,14 +192,15 @@ pub fn exponent(points: &[(f64, f64)]) -> f64 {
 #[must_use]
 pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
     let mut text = format!(
-        "# Growth\n\nThe command `pxpl5 levels --scaling docs/scaling.md` generates this file. All runs use Rendering Control in stereo. Triangles\n\
-         have 18 pixels, and no pixels are computed. The GPs have 1 GB of memory instead of 8 MB. Each host time is the fastest of three\n\
-         runs on one computer.\n\n\
+        "# Growth\n\nThe command `pxpl5 levels --scaling docs/scaling.md` generates this file. All runs use Rendering Control in stereo.\n\
+         Triangles have 18 pixels, and no pixels are computed. The GPs have 1 GB of memory instead of 8 MB. The host time is the\n\
+         computing time of the simulation, the fastest of three runs on one computer.\n\n\
          ## Triangles, on 50 GPs and 5 renderers\n\n\
-         From 1,000 triangles, the host time grows with the power {:.2} of the number of triangles. From 100,000 triangles, the power is {:.2}.\n\
-         Below 100,000 triangles, the tokens of 40 regions cost more host time than the triangles, because every GP receives and sends each\n\
-         token. From 100,000 triangles, the simulated latency grows with the power {:.2} of the number of triangles. Below 100,000 triangles,\n\
-         COPY is the bottleneck.\n\n",
+         For 1,000 triangles and more, the host time grows with the power {:.2} of the number of triangles. For 100,000\n\
+         triangles and more, the host time grows with the power {:.2}. With fewer than 100,000 triangles, the tokens of 40\n\
+         regions cost more host time than the triangles, because every GP receives and sends each token. For 100,000 triangles\n\
+         and more, the simulated latency grows with the power {:.2} of the number of triangles. Below 100,000 triangles, COPY is\n\
+         the bottleneck.\n\n",
         power(triangles, 1_000, |p| p.host_ms),
         power(triangles, 100_000, |p| p.host_ms),
         power(triangles, 100_000, |p| p.latency_fields),
@@ -220,10 +221,10 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
     }
     table(&mut text, machines);
     text.push_str(
-        "\n## Application scenes\n\nThe papers do not name the machine that drew their application scenes. The table has results for three machines. Each\n\
-         result is the mean over the runs of 30 seeds of head motion. A run has 616 fields: a short warm-up, and then about 300 frames\n\
-         at 30 Hz. The column *frames* counts the frames of all runs after the warm-up. The published latency of the Mig is 4.61 fields\n\
-         with a standard deviation of 0.589 fields.\n\n\
+        "\n## Application scenes\n\nThe papers do not state which machine drew their application scenes, so the table has results for three machines. Each\n\
+         result is the mean over runs with 30 seeds of the head motion. A run has 616 fields: a short warm-up, and then about\n\
+         300 frames at 30 Hz. The column *frames* gives the number of frames in all runs together, after the warm-up. The\n\
+         published latency of the Mig is 4.61 fields with a standard deviation of 0.589 fields.\n\n\
          | scene | machine | latency, fields | sd | frames/s | frames |\n|---|---|---|---|---|---|\n",
     );
     // The papers' scenes on three possible machines.

@@ -30,9 +30,9 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
     size_limits(&mut text, &all.size_limits);
     let _ = writeln!(
         text,
-        "\n## E9: a straight edge through the lens\n\nThe edge is upright and lies 20 degrees to the right. Its picture is looked up for a radial lens with k1 = 0.32.\n\
-         The edge bends by {:.1} pixels on the screen. Seen through the lens, the edge bends by {:.2} pixels. An edge that bends by less than\n\
-         a pixel counts as straight.",
+        "\n## E9: a straight edge through the lens\n\nThe experiment shows a vertical edge, 20 degrees to the right, through a radial lens with k1 = 0.32. The display\n\
+         chooses the texels for this lens. The edge bends by {:.1} pixels on the screen. Seen through the lens, the edge bends\n\
+         by {:.2} pixels. The edge counts as straight if it bends by less than a pixel.",
         all.lens_px[0], all.lens_px[1]
     );
     pictures(&mut text);
@@ -42,9 +42,9 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
 fn pictures(text: &mut String) {
     text.push_str(
         "\n## E10: Pictures\n\n\
-         The command `pxpl5 arp figures --out DIR` makes the pictures. The command also writes pictures of a lens, of errors and of\n\
-         updates. The papers' pictures cannot be reproduced, because their scene is not known. The project's pictures show the\n\
-         same effects in the scene `gallery`.\n\n\
+         The command `pxpl5 arp figures --out DIR` makes the pictures. The command also writes pictures of the effect of a lens,\n\
+         of the errors, and of the updates of the memories. The papers' pictures cannot be reproduced, because their scene is\n\
+         not known. The project's pictures show the same effects in the scene `gallery`.\n\n\
          | experiment | figures of the papers | pictures |\n|---|---|---|\n",
     );
     for (experiment, figures, names) in OF_FIGURES {
@@ -53,13 +53,13 @@ fn pictures(text: &mut String) {
     text.push_str(
         "\n![Six faces](pictures/arp-faces.png)\n\nThe picture shows the six faces around the eye, all drawn at the same time. The face PosY is above NegZ. The faces\n\
          NegX, NegZ, PosX and PosZ form the middle row. The face NegY is below NegZ.\n\n\
-         ![Memories](pictures/arp-memories.png)\n\nThe colour of each pixel shows the memory that it comes from. Memory 0 (60 Hz) is red, memory 1 is yellow, memory 2 is\n\
-         green, and the slowest memory 3 is blue. Black pixels are tears.\n\n\
-         ![Tears](pictures/arp-tears.png)\n\nThe scene is cut and not warped, and the memories are cleared to white. Gaps appear between pieces that were drawn\n\
-         from different positions.\n\n\
-         ![Warped](pictures/arp-warped.png)\n\nThis picture shows the same frame with warping.\n\n\
-         ![Errors](pictures/arp-error.png)\n\nThe picture shows the error of each pixel. The error arises because the memory was drawn from another position.\n\
-         The scale ends at two pixels.\n",
+         ![Memories](pictures/arp-memories.png)\n\nThe colour of each pixel shows from which display memory the content of the pixel comes. Memory 0 (60 Hz) is red,\n\
+         memory 1 is yellow, memory 2 is green, and the slowest memory 3 is blue. Black pixels are tears.\n\n\
+         ![Tears](pictures/arp-tears.png)\n\nThe scene is cut into segments, and vertices are not warped. The background is white, so white gaps appear between\n\
+         segments that were drawn from different positions.\n\n\
+         ![Warped](pictures/arp-warped.png)\n\nThe picture shows the frame of the previous picture, drawn with warped vertices.\n\n\
+         ![Errors](pictures/arp-error.png)\n\nThe picture shows the error of each pixel, which arises because the memory was drawn from another position of the eye.\n\
+         The scale of the colours ends at an error of two pixels.\n",
     );
 }
 
@@ -72,15 +72,17 @@ fn head(text: &mut String, rows: &[FigureRow]) {
         text,
         "# Address recalculation and priority rendering: the papers' figures\n\n\
          The command `pxpl5 arp figures --write docs/address-recalculation.md` generates this file. A test fails if the file is out of date.\n\n\
-         The experiments use the scene `gallery` with a plan of 20 m x 20 m (`walk.hall_scale=0.5`). The eye follows the path of the\n\
-         scene at 1 m/s for {EXPERIMENT_FRAMES} frames of 1/60 s. The renderer is ideal. The column *provenance* has these values:\n\n\
+         The experiments use the scene `gallery`, a hall with a floor of 20 m x 20 m (`walk.hall_scale=0.5`). The eye follows\n\
+         the path of the scene at 1 m/s for {EXPERIMENT_FRAMES} frames of 1/60 s. The renderer is ideal: it draws without delay.\n\
+         The column *provenance* has these values:\n\n\
          - *checked*: The row is simulated, and no number was fitted.\n\n\
-         - *fitted*: One number was chosen to reproduce this row, and this row only.\n\n\
-         - *depends on the interpretation*: The row is met if the interval of all interpretations contains the printed number.\n\n\
+         - *fitted*: One number of the model was chosen so that the model reproduces this row.\n\n\
+         - *depends on the interpretation*: The row is met if the printed number lies between the smallest and the largest\n  \
+           result of all interpretations of the papers.\n\n\
          - *cannot be reproduced, shape checked*: The row depends on conditions that the papers do not print.\n\n\
-         The papers do not print their scene, path, cells, threshold and resolution. For rows that depend on these conditions, only the\n\
-         shape is checked. The rates must fall from memory to memory. Cutting must move segments to slower memories and save draws,\n\
-         and cuts must cause tears.\n\n\
+         The papers do not print their scene, path, cells, threshold and resolution. For rows that depend on these conditions,\n\
+         only these properties (the *shape*) are checked: The update rates fall from memory to memory. Cutting the scene moves\n\
+         segments to slower memories and saves drawing, and the cuts cause tears.\n\n\
          The table has only rows for which the code under test could have given another value. Other numbers are listed under\n\
          [Definitions](#definitions).\n\n\
          The model meets {met} of {} rows that can be reproduced. Of the other {} rows, {shown} have the printed shape.\n\n",
@@ -131,7 +133,8 @@ fn defined(text: &mut String) {
     ];
     let _ = write!(
         text,
-        "\n## Definitions\n\nThese numbers follow from printed or assumed numbers alone. No simulation could change them, so they have no verdict.\n\n{}",
+        "\n## Definitions\n\nThe numbers of this table follow from printed or assumed numbers alone. No simulation could change these numbers, so\n\
+         they are not called met or missed.\n\n{}",
         figures::table(&columns, &definitions())
     );
 }
@@ -149,8 +152,8 @@ fn rates(rates_hz: &[f64]) -> String {
 fn fits(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E5: table 1\n\nThe side of a cell is fitted in the gallery, so that the rate of memory 1 is as near as possible to 39.25 Hz. The rates\n\
-         of the other memories follow from this side.\n\n\
+        "\n## E5: table 1\n\nThe scene is `gallery`. The side of a cell (its length in metres) was fitted so that the update rate of memory 1 is as\n\
+         near as possible to 39.25 Hz. The side of a cell then also determines the rates of the other memories.\n\n\
          | rules | side | rates of memories 0 to 3, Hz | errors of 1 (fitted), 2 and 3 |\n|---|---|---|---|\n\
          | published | | {} | |\n",
         rates(&RATES_HZ)
@@ -164,10 +167,11 @@ fn fits(text: &mut String, all: &Experiments) {
 #[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
-         The paper does not print the rings, the distances, the path or the hall. The table therefore combines each set of rules with\n\
-         each of four halls and paths. Each combination uses the side of a cell that fits the rates of memories 1 to 3 best. The error is the\n\
-         root mean square over these three memories. For the column *left out*, each rate is predicted with the side that fits the other two\n\
-         rates best. The rules are ranked by their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
+         The paper does not print the widths of the rings of cells, how distances are measured, the path or the hall. The table\n\
+         therefore combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
+         fitted to the rates of memories 1 to 3. The error is the root mean square over these three memories. For the column\n\
+         *left out*, each rate is predicted with the side of a cell that fits the other two rates best. The rules are ranked by\n\
+         their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
         .to_owned();
     // The table has one column for each hall and path.
     let situations = Situation::ALL.map(Situation::text).join(" | ");
@@ -200,8 +204,8 @@ fn best_of_all(all: &Interpretations) -> String {
         let Trial { cell_m, rates_hz } = best.best;
         let _ = writeln!(
             text,
-            "\nThe best single fit has the rules \"{}\" and the path \"{}\". Its cells have a side of {cell_m:.2} m, its rates are\n\
-             {} Hz, and its error is {:.1} %.",
+            "\nThe best single fit has the rules \"{}\" and the path \"{}\". The cells of this fit have a side of {cell_m:.2} m, its rates\n\
+             are {} Hz, and its error is {:.1} %.",
             best.rules.text(),
             best.situation.text(),
             rates(&rates_hz),
@@ -209,7 +213,8 @@ fn best_of_all(all: &Interpretations) -> String {
         );
     }
     text.push_str(
-        "\nThe next table leaves out one rate at a time. The other two rates alone choose the rules, the path, the hall and the side of a cell.\n\n\
+        "\nEach row of the next table leaves out one rate. The rules, the path, the hall and the side of a cell are chosen to fit\n\
+         the other two rates alone.\n\n\
          | memory | predicted | error | the others' choice |\n|---|---|---|---|\n",
     );
     for LeftOutRate { memory, rules, situation, trial, error_percent } in &all.left_out {
@@ -229,20 +234,21 @@ fn best_of_all(all: &Interpretations) -> String {
 fn chosen(all: &Interpretations) -> String {
     let place = all.usual().map_or_else(String::new, |(place, ranked)| {
         format!(
-            "It has rank {place} of the rules without cascade, and its mean error is {:.1} %.",
+            "These rules have rank {place} of the rules without cascade, and their mean error is {:.1} %.",
             ranked.mean_error_percent
         )
     });
     format!(
         "\nThe project uses the rules **{}**. {place} These are the reasons:\n\n\
-         - *Rings that double*: The paper prints the rates 60, 30 and 15 Hz, and so on (A5). An image at twice the distance stays valid for\n  \
-           twice the time. Each memory therefore begins at twice as many rings as the memory before.\n\n\
+         - *Rings that double*: The paper prints update rates of 60, 30 and 15 Hz, and so on (statement A5). If an object is\n  \
+           twice as far away, its picture stays correct for twice the time. The cells of each memory therefore begin at twice\n  \
+           the distance of the cells of the memory before.\n\n\
          - *No cascade*: The cascade is a derived rule for warping, and the paper gives table 1 before it introduces warping.\n\n\
-         - *To the block's border*: Distances to occupied cells fit better with equal rings, and worse with rings that double. The\n  \
-           parameter `priority.to_held_cells` selects one of the two rules.\n\n\
-         - *Reliability*: Three rates are little data. Over a range of sides, a rate stays constant, because it is 60 Hz divided by a whole\n  \
-           number. Two rates may therefore predict the third rate badly, as the table shows. If the other two rates also choose the rules,\n  \
-           the prediction for memory 1 is as fast as memory 0.\n",
+         - *To the block's border*: If distances are measured to occupied cells instead, the rates fit better for rings of equal\n  \
+           width, and worse for rings whose widths double. The parameter `priority.to_held_cells` selects one of the two rules.\n\n\
+         - *Reliability*: Three rates are little data. A rate is often 60 Hz divided by a whole number, so it stays constant\n  \
+           over a range of sides of a cell. Two rates may therefore predict the third rate badly, as the table shows. If the\n  \
+           rules are chosen by the rates of memories 2 and 3, the predicted rate of memory 1 equals the rate of memory 0.\n",
         Rules::USUAL.text()
     )
 }
@@ -251,11 +257,13 @@ fn thresholds(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
         "\n## The threshold in pixels\n\n\
-         Table 1 determines only the product of threshold and side of a cell, which is {:.2} degrees x metres. Two statements of the papers\n\
-         limit the threshold. By A7, the threshold is the spacing of pixels in the display memory or of the display. By A15, tears are a few\n\
-         pixels wide, which the project takes as 2 to 5 pixels.\n\n\
-         If a picture is shown as soon as it is due, a tear is as wide as the threshold. If the slower memory is one frame late, a tear is\n\
-         wider by the distance of one frame. A pixel is 60 degrees / 640, and a texel is 90 degrees / 512.\n\n\
+         Table 1 determines only the product of threshold and side of a cell, which is {:.2} degrees x metres. Two statements of\n\
+         the papers limit the threshold. By statement A7, the threshold is the distance between neighbouring pixels of the\n\
+         display memory or of the display. By statement A15, tears are a few pixels wide, which the project interprets as 2 to 5\n\
+         pixels.\n\n\
+         If each memory is shown as soon as it is due, a tear is as wide as the threshold. If the slower memory is shown one\n\
+         frame late, the tear is wider by the movement of the content in one frame. A pixel is 60 degrees / 640, and a texel is\n\
+         90 degrees / 512.\n\n\
          | threshold | degrees | side | hall of 8 cells | tear, shown at once | tear, a frame late |\n|---|---|---|---|---|---|\n",
         all.fits[0].cell_m * address_recalculation::priority::PriorityTiming::PAPERS.theta_deg
     );
@@ -267,9 +275,10 @@ fn thresholds(text: &mut String, all: &Experiments) {
         );
     }
     text.push_str(
-        "\nThe project uses a threshold of 2 texels, which is one texel of the machine's faces of 256 texels. The project compared whole\n\
-         texels of faces with 128, 256, 384 and 512 texels. The chosen threshold is the widest one whose tears are 2 to 5 pixels wide. The\n\
-         hall then has a side of 20 m. Eight cells along a side then hold about as many sections as table 2 prints.\n",
+        "\nThe project uses a threshold of 2 texels, which is one texel of the machine's faces of 256 texels. The project compared\n\
+         whole texels of faces with 128, 256, 384 and 512 texels. The chosen threshold is the widest of these whose tears are 2\n\
+         to 5 pixels wide. With this threshold, the hall has a side of 20 m, and eight cells lie along a side. With eight cells\n\
+         along a side, the objects of the hall have about as many sections as table 2 prints.\n",
     );
 }
 
@@ -289,12 +298,13 @@ fn conservation(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
         "\n## Table 2: what the conservation of sections demands\n\n\
-         Cutting keeps the number of sections. Without segmentation, each section is in the same memory or in a faster memory. Two\n\
+         A *section* is the part of an object in one cell. Segmentation cuts the objects into sections but does not change their\n\
+         number. Without segmentation, each section is in the same memory as with segmentation, or in a faster memory. Two\n\
          constraints follow:\n\n\
-         1. Both columns have the same sum. The paper prints the sums {} and {}, so there are {:.0} more sections without segmentation. The\n   \
-            model has the sums {:.0} and {:.0}.\n\n\
-         2. For each k, memories 0 to k together hold at least as many sections without segmentation as with it. The printed numbers and\n   \
-            the numbers of the model both satisfy this constraint:\n\n\
+         1. The columns with and without segmentation have the same sum. The paper prints the sums {} and {}, so there are {:.0}\n   \
+            more sections without segmentation. The model has the sums {:.0} and {:.0}.\n\n\
+         2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. The\n   \
+            printed numbers and the numbers of the model both satisfy this constraint:\n\n\
          | memories | printed, cut | printed, uncut | ours, cut | ours, uncut |\n|---|---|---|---|---|\n",
         cut.iter().sum::<f64>(),
         uncut.iter().sum::<f64>(),
@@ -310,10 +320,11 @@ fn conservation(text: &mut String, all: &Experiments) {
     }
     let _ = write!(
         text,
-        "\nThe printed numbers violate the first constraint, so the two columns do not describe the same set of sections. The printed saving\n\
-         is 31.3 %. One part of this saving comes from {:.0} missing sections. The other part is the saving for each section. With segmentation,\n\
-         a section needs {with:.1} draws per second. Without segmentation, a section needs {without:.1}, so the saving is {:.1} %. Three of the four\n\
-         numbers of a column are independent, and the fourth number follows from the sum.\n",
+        "\nThe printed numbers violate the first constraint, so the two columns do not describe the same set of sections. The\n\
+         printed saving of draws is 31.3 %. One part of this saving comes from {:.0} missing sections. The other part is the\n\
+         saving for each section. With segmentation, a section needs {with:.1} draws per second. Without segmentation, a section\n\
+         needs {without:.1}, so the saving is {:.1} %. Three of the four numbers of a column are independent, because the sum of\n\
+         the column determines the fourth number.\n",
         uncut.iter().sum::<f64>() - cut.iter().sum::<f64>(),
         100.0 * (1.0 - with / without)
     );
@@ -322,8 +333,8 @@ fn conservation(text: &mut String, all: &Experiments) {
 fn walks(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E6, E7: the path walked four times\n\nWith the fitted cells, the gallery has {} segments. A vertex on a border has a direction in each of two memories. A tear\n\
-         is the angle between these two directions, in texels of 90 degrees / 512.\n\n\
+        "\n## E6, E7: the path walked four times\n\nWith the fitted cells, the gallery has {} segments. A vertex on the border of two cells can be in two memories, with a\n\
+         different direction in each memory. A tear is the angle between these two directions, in texels of 90 degrees / 512.\n\n\
          | walk | rates, Hz | segments | draws/s | saved | redeals | tears: half, 95 %, widest | stretch: widest |\n|---|---|---|---|---|---|---|---|\n",
         all.segments
     );
@@ -359,8 +370,9 @@ fn texels(width: f64) -> String {
 fn slowed(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E8: a renderer that is too slow\n\nThe experiment uses the walk \"cut, torn\" for 1,800 frames. The memories are served in rising order. The display looks\n\
-         up each pixel in the memories at scan-out, so the speed of the renderer does not affect the error of a rotation.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
+        "\n## E8: a renderer that is too slow\n\nThe experiment uses the walk \"cut, torn\" for 1,800 frames. The renderer draws due memories in the order of their\n\
+         numbers. The display chooses the texel of each pixel at scan-out, so the speed of the renderer does not affect the\n\
+         error for a rotation of the head.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
     );
     for SlowRendererResult { triangles_per_s: rate, rates_hz, missed } in &all.slowed {
         let rates: Vec<String> = rates_hz.iter().map(|rate| format!("{rate:.1}")).collect();
@@ -373,7 +385,7 @@ fn sizes(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
         "\n## E3: size against translation\n\nThe centre of an object is 10 m away, and the eye approaches the object at 1 m/s. The table gives the time in ms for\n\
-         which an image stays valid, for a threshold of 90/512 degrees.\n\n\
+         which the picture of the object stays correct, for a threshold of 90/512 degrees.\n\n\
          | size/distance | translation | size, disc | size, sphere | decides (disc, sphere) |\n|---|---|---|---|---|\n"
     );
     for row in &all.sizes {
@@ -389,16 +401,20 @@ fn sizes(text: &mut String, all: &Experiments) {
 /// valid (statement A8).
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
-        "\nStatement A8, \"about ten times the distance\", leaves two questions open. Which angle of the size may change, and by how much? Is\n\
-         the distance that of the object's centre or that of its nearest point? The table gives the size above which the size of a sphere\n\
-         decides, for a translation of its centre.\n\n\
+        "\nStatement A8, \"about ten times the distance\", leaves two questions open. One question is which angle describes the size\n\
+         of an object, and by how much this angle may change. The other question is whether the distance is measured to the\n\
+         centre of the object or to its nearest point. The table is for a sphere whose centre moves. A larger sphere stays\n\
+         correct for a shorter time because of its size than because of its movement. The table gives the size at which the two\n\
+         times are equal.\n\n\
          | angle of the size | diameter over the distance of the middle | over that of the nearest point |\n|---|---|---|\n",
     );
     for SizeLimit { angle, of_middle, of_nearest, .. } in limits {
         let _ = writeln!(text, "| {angle} | {of_middle:.2} | {of_nearest:.2} |");
     }
     text.push_str(
-        "\nThe project uses the distance of the nearest point and the angle of the radius. The patent US5841439 names a second angle for the\n\
-         size, without its value. A second angle of 1.5 times theta would give the printed factor of ten. For discs, the size never decides.\n",
+        "\nFor the size of an object, the project uses the distance to the nearest point and the angle under which the radius\n\
+         appears. The patent US5841439 names a second angle for the size, without its value. If this second angle is 1.5 times\n\
+         the threshold theta, the model gives the printed factor of ten. The size of a disc never shortens the time for which\n\
+         its picture stays correct.\n",
     );
 }

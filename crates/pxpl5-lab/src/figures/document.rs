@@ -40,11 +40,11 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,
         "\n## Times of primitives from the code instead\n\n\
-         The timing table takes 21.7 us for a triangle of optimised PPHIGS, which is the published rate. For a triangle of Slats, the\n\
-         table takes 30.0 us in 1994 and 55.8 us in 1995. These two times were fitted to figures 12 and 14.\n\n\
-         With `machine.times = \"code\"`, the simulator takes the times that the project's own i860 code needs. Each time is a mean\n\
-         over the application scenes, and no time is fitted. The page docs/gp-timing.md describes the measurement. The table below\n\
-         lists the figures that differ, at the transaction level.\n\n\
+         The timing table takes 21.7 us for a triangle of optimised PPHIGS, which is the published rate. For a triangle of\n\
+         Slats, the table takes 30.0 us in 1994 and 55.8 us in 1995. The two times of Slats were fitted to figures 12 and 14.\n\n\
+         With `machine.times = \"code\"`, the simulator uses the times that the project's own i860 code needs. Each time is a mean\n\
+         over the application scenes, and no time is fitted. The page docs/gp-timing.md describes the measurement of these\n\
+         times. The table below lists the figures that differ from the figures with the timing table, at the transaction level.\n\n\
          | # | figure | published | table | error | code | error |\n|---|---|---|---|---|---|---|\n"
     );
     // Figures that do not depend on the times are left out.
@@ -66,13 +66,13 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     }
     let _ = write!(
         text,
-        "\nThe mean error of the free checks is {:.1} % with the table and {:.1} % with the code. A figure without a value counts 100 %.\n\
-         The limits of Slats change most, because the project's code needs other times than the fitted ones. No triangle of these\n\
-         figures is clipped.\n\n\
-         The published and fitted table stays the default. Two of its three times follow from the limits of triangles in the papers.\n\
-         These limits describe the code of the papers, and its source code is not available. The project's code is different code\n\
-         for the same processor, and some of its rules of freezing and memory are assumed. The comparison shows how well the project's\n\
-         code explains the figures without a fit.\n",
+        "\nThe mean error of the free checks is {:.1} % with the table and {:.1} % with the code. A figure that the run with the\n\
+         code cannot compute counts with an error of 100 %. The limits of Slats change most, because the times of the project's\n\
+         code differ from the fitted times. No triangle of these figures is clipped.\n\n\
+         The timing table with published and fitted times stays the default. Two of its three times follow from the limits of\n\
+         triangles in the papers. The published limits depend on the code of the papers, which is not available. The project's\n\
+         code is different code for the same processor, and some rules for waits of the i860 (freezes) and for memory are\n\
+         assumed. The comparison shows how well the project's code reproduces the figures without any fitted number.\n",
         mean_error_percent(rows),
         mean_error_percent(of_code),
     );
@@ -100,13 +100,14 @@ fn of_readings(text: &mut String, readings: &Readings) {
          - Which machine drew the application scenes?\n\n\
          - Were back faces culled?\n\n\
          - Were the bins full with the triangles of one eye, or with the triangles of both eyes?\n\n\
-         The answers give {} combinations, which this section calls interpretations. Each interpretation has one machine for all\n\
-         figures. The table has results of the analytic level. The command `pxpl5 readings` also measures the best interpretations\n\
-         with events.\n\n\
-         The columns *mean* and *worst* are errors in percent. The column *log L* is the logarithm of a likelihood. It is the likelihood\n\
-         of the printed means and deviations. Its error model allows 2 % for the conditions that the papers do not give.\n\n\
-         Figures 3 and 5 are theory, because the paper derives them from the rules. The table therefore compares figures 3 and 5 with\n\
-         the rules alone. Figures 3, 4b, 5 and 17 do not distinguish one interpretation from another.\n\n\
+         The possible answers give {} combinations, which this section calls interpretations. In each interpretation, all\n\
+         figures use the same machine parameters. The table has results of the analytic level. The command `pxpl5 readings` also\n\
+         measures the best interpretations with events.\n\n\
+         The columns *mean* and *worst* give the mean and the largest error of the figures in percent. The column *log L* is the\n\
+         logarithm of the likelihood of the printed means and standard deviations. The likelihood allows an error of 2 % for the\n\
+         conditions that the papers do not give.\n\n\
+         The paper derives figures 3 and 5 from its rules and did not measure these figures. The table therefore compares\n\
+         figures 3 and 5 with the rules alone. Figures 3, 4b, 5 and 17 do not distinguish one interpretation from another.\n\n\
          | mean | worst | log L | {} | reading |\n|---|---|---|{}---|\n",
         fits.len(),
         readings::FIGURES.join(" | "),
@@ -116,20 +117,25 @@ fn of_readings(text: &mut String, readings: &Readings) {
     fits.iter().take(BEST).for_each(|fit| text.push_str(&fitted(fit)));
     let _ = write!(
         text,
-        "\nThe project uses the interpretation **{}**, which has rank {} in the list. The most likely interpretation is {:.2} times as likely.\n\
+        "\nThe project uses the interpretation **{}**, which has rank {} in the list. The most likely interpretation is {:.2} times as likely as\n\
+         this interpretation.\n\
          The number of interpretations that equal the first one within the printed digits ({:.2} % of a mean error) is {}.\n\n\
          These reasons decide the choice:\n\n\
-         - *each eye, whole fields*: The application figures are printed in fields. Samples of 4 and 5 fields in equal numbers give\n  \
-           a mean of 4.5 and a deviation of 0.5. The paper prints a mean of 4.47 and a deviation of 0.502. The printed pair 4.61 and 0.589 also\n  \
-           needs a few samples of 6 fields. The first eyes alone have a deviation of 0.1.\n\n\
-         - *room for all*: The 4,096 bits of a pixel hold 128 regions of 32 bits. A smaller number of regions would need a rule of\n  \
-           the software.\n\n\
-         - *wait*: With room for all regions, the latency of figure 4 is 6 % too long with `store`, and 1 to 2 % too long with `wait`. The text\n  \
-           of the paper allows both rules.\n\n\
-         - *large, culled*: The head takes twice the printed time on the small machine, or if all faces are drawn.\n\n\
-         - *bins of one eye*: With bins of both eyes, 7,700 triangles take 454 ms instead of the printed 293 ms. No paper states this rule.\n  \
-           The rule was chosen for figures 16b and 16c, and it affects no other figure.\n\n\
-         The next table leaves out one figure at a time. The other figures choose the interpretation, which then predicts the figure.\n\n\
+         - *each eye, whole fields*: The papers print the latencies of application scenes in fields. Equal numbers of latencies\n  \
+           of 4 and 5 fields give a mean of 4.5 and a standard deviation of 0.5. The paper prints a mean of 4.47 and a deviation\n  \
+           of 0.502. The other printed mean and deviation, 4.61 and 0.589, also need a few latencies of 6 fields. The latencies\n  \
+           of the first eyes alone have a deviation of 0.1.\n\n\
+         - *room for all*: The 4,096 bits of a pixel hold 128 regions of 32 bits. A renderer could keep fewer regions only if a\n  \
+           rule of the software limited the number.\n\n\
+         - *wait*: With room for all regions, the latency of figure 4 is 6 % too long with the rule `store`, and 1 to 2 % too\n  \
+           long with the rule `wait`. The text of the paper allows both rules.\n\n\
+         - *large, culled*: The scene `head` takes twice the printed time on the small machine. The scene `head` also takes\n  \
+           twice the printed time if back faces are drawn.\n\n\
+         - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed\n  \
+           293 ms. No paper states this rule. The rule of bins for one eye was chosen for figures 16b and 16c, and it affects no\n  \
+           other figure.\n\n\
+         Each row of the next table leaves out one figure. The interpretation is chosen by the other figures and then predicts\n\
+         the figure that was left out.\n\n\
          | # | error | the others' choice |\n|---|---|---|\n",
         Reading::USUAL,
         place(&Reading::USUAL),
@@ -165,13 +171,14 @@ fn fitted(fit: &Fit) -> String {
 fn of_application(text: &mut String, times: &[ApplicationTime]) {
     text.push_str(
         "\n## The application's time a frame\n\n\
-         The host of a viewer ran an application. For each frame, the application took some time before it asked for the next frame.\n\
-         No paper prints this time, and the presets set it to zero. The parameters `host.application_ns` and\n\
-         `host.application_jitter_ns` set the time and its spread.\n\n\
-         The table varies the mean time from 0 to 40 ms and the spread from 0 to 30 ms. A Unix host polls its serial lines every 30 ms\n\
-         (TR94). Both maxima are assumed. The table gives the mean latency in fields at the analytic level, with the deviation in\n\
-         brackets. No number is fitted. An application that always fits between two frames of 33.4 ms\n\
-         hardly changes the latency, because the host is a frame ahead.\n\n\
+         The host ran the viewer's application. For each frame, the application took some time before it requested the next\n\
+         frame. No paper prints this time of the application, and the presets set the time to zero. The parameters\n\
+         `host.application_ns` and `host.application_jitter_ns` set the time and its spread.\n\n\
+         In the table, the mean time of the application is 0 to 40 ms, and its spread is 0 to 30 ms. A Unix host polls its\n\
+         serial lines every 30 ms (TR94). The largest mean (40 ms) and the largest spread (30 ms) are assumed. The table gives\n\
+         the mean latency in fields at the analytic level, with the deviation in brackets. No number is fitted. If the\n\
+         application always needs less than the 33.4 ms between two frames, it hardly changes the latency. The reason is that\n\
+         the host works on the next frame while the machine draws the current frame.\n\n\
          | mean of the application | evenly spread by | 7 | 7b | 7c |\n|---|---|---|---|---|\n",
     );
     let cells = |figures: &[FlyThroughLatency]| {
@@ -192,10 +199,12 @@ fn sensitivity(text: &mut String, intervals: &[Interval]) {
     let _ = write!(
         text,
         "\n## Which parameter moves which figure\n\n\
-         The column *one at a time* sets each derived or assumed parameter to both ends of its range. The column *joint* draws all\n\
-         parameters of {SAMPLES} machines from their ranges. The column *rules* changes one answer to an open question of the papers at a\n\
-         time. All results come from the analytic level. The brackets give the figure at the low end and at the high end of the range,\n\
-         and then the elasticity. The elasticity is the relative change of the figure divided by the relative change of the parameter.\n\n\
+         For the column *one at a time*, each derived or assumed parameter is set to both ends of its range, and the others keep\n\
+         their values. For the column *joint*, random values within the ranges are chosen for all parameters of {SAMPLES}\n\
+         machines. For the column *rules*, one answer to an open question of the papers changes at a time. All results come from\n\
+         the analytic level. In the column *moved by*, the brackets give the figure at the low end and at the high end of the\n\
+         parameter's range, and then the elasticity. The elasticity is the relative change of the figure divided by the relative\n\
+         change of the parameter.\n\n\
          | # | one at a time | joint | 5 % to 95 % | moved by | rules |\n|---|---|---|---|---|---|\n"
     );
     // Only the strongest parameters of each figure are listed.
@@ -220,27 +229,31 @@ fn head(text: &mut String, rows: &[FigureRow]) {
     let _ = write!(
         text,
         "# Accuracy\n\n\
-         The command `pxpl5 figures --write ACCURACY.md` generates this file. The command `pxpl5 figures --check ACCURACY.md` fails\n\
-         if the file is out of date.\n\n\
-         This file compares each published figure with the result of the model. All results come from the same machine parameters.\n\
-         The column *provenance* states if a parameter or a rule was chosen to reproduce the row:\n\n\
+         The command `pxpl5 figures --write ACCURACY.md` generates this file. The command `pxpl5 figures --check ACCURACY.md`\n\
+         fails if the file is out of date.\n\n\
+         This file compares each published figure with the result of the model. All results come from the same machine\n\
+         parameters. The column *provenance* states whether a parameter or a rule of the model was chosen to reproduce the\n\
+         published figure of a row:\n\n\
          - *free*: No parameter and no rule was chosen to reproduce the figure.\n\n\
          - *fitted*: One parameter was chosen so that the model reproduces the figure.\n\n\
          - *rule*: One rule of the model was chosen so that the model reproduces the figure.\n\n\
-         A result outside of the printed range is a *miss*. If the paper prints no range, an error of more than {MISS_PERCENT} % is a miss.\n\n\
-         Some papers do not print a condition of an experiment. The brackets after the simulated value then give the minimum and the\n\
-         maximum over this condition. The error belongs to the assumed value of the condition. Such a figure is a miss only if every\n\
-         value of the condition misses the published figure.\n\n\
-         The column *interval* shows how the figure changes with the unpublished parameters and with the interpretation of the papers.\n\
-         The parameters vary within their allowed ranges. The section \"Interpretations\" lists the interpretations. The interval is\n\
-         computed at the analytic level. The column *analytic* gives the result of the analytic level with the numbers of the presets.\n\
-         The difference between *analytic* and *simulated* is the error of the analytic level.\n\n\
-         The interval can be widened on both sides by the error of the analytic level. A figure outside of the widened interval is\n\
-         *out of reach*. A figure out of reach shows an error in the rules of the model, because no allowed number reproduces the figure.\n\
-         A figure that is *not varied* depends only on the scenes or on a motion. The parameters of the machine do not change this figure.\n\n\
-         The intervals of figures 17, 19 and 19b come from simulations with events. These simulations vary the depth of a renderer's\n\
-         FIFO and the number of channels of a sender. The interval of figure 17 also covers the positions of the photodiode on the screen\n\
-         and the interpretations.\n\n\
+         A simulated value is a *miss* if it lies outside of the range that the paper prints. If the paper prints no range, an\n\
+         error of more than {MISS_PERCENT} % is a miss.\n\n\
+         Some papers do not print a condition of an experiment, for example the position of a sensor. The brackets after the\n\
+         simulated value then give the minimum and the maximum over all possible conditions. The column *error* uses the value\n\
+         for one assumed condition. Such a figure is a miss only if the model misses the published figure under every condition.\n\n\
+         The column *interval* gives the smallest and the largest value of the figure when unpublished parameters and the\n\
+         interpretation of the papers vary. The parameters vary within their allowed ranges. The section \"Interpretations\" lists\n\
+         the interpretations of the papers. The analytic level (formulas instead of events) computes the interval. The column\n\
+         *analytic* gives the result of the analytic level with the normal parameters of the machines. The difference between\n\
+         *analytic* and *simulated* is the error of the analytic level.\n\n\
+         A published figure is *out of reach* if it lies outside of the interval by more than the error of the analytic level.\n\
+         Such a figure shows an error in the rules of the model, because no allowed parameter reproduces the figure. If the\n\
+         interval is *not varied*, the figure depends only on the scenes or on a motion. The parameters of the machine do not\n\
+         change this figure.\n\n\
+         The intervals of figures 17, 19 and 19b come from simulations with events. These simulations vary the depth of a\n\
+         renderer's FIFO and the number of channels that a sender can use. The interval of figure 17 also covers the positions\n\
+         of the photodiode on the screen and the interpretations.\n\n\
          The table has {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n",
         rows.len(),
         mean_error_percent(rows),

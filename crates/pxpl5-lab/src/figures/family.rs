@@ -68,11 +68,11 @@ impl FigureFamily {
         let _ = write!(
             text,
             "\n## {}\n\n\
-             This section compares experiments E1 to E9 with the papers by Regan, Pose and Chow. The page [{}]({}) has the details.\n\
-             That page also has the numbers that follow from the tables alone, and the pictures of experiment E10. Experiment E1 runs on\n\
-             Pixel-Planes 5 with the display of address recalculation. The other experiments use an ideal renderer. A row is *met* if its\n\
-             error is at most 1 %. The papers do not print the conditions of {shapes} rows. These rows *cannot be reproduced*, so only the\n\
-             shape of the papers' drawings and tables is checked. The model misses {} of the {} other rows.\n\n{}\n{}\n",
+             This section compares experiments E1 to E9 with the papers by Regan, Pose and Chow. The page [{}]({}) has the details. That\n\
+             page also has the pictures of experiment E10, and the numbers that follow from the papers' tables without a simulation.\n\
+             Experiment E1 runs on Pixel-Planes 5 with the display of address recalculation. The other experiments use an ideal renderer.\n\
+             A row is *met* if its error is at most 1 %. The papers do not print the conditions of {shapes} rows. For these rows (*cannot\n\
+             be reproduced*), only the shape of the papers' drawings and tables is checked. The model misses {} of the {} other rows.\n\n{}\n{}\n",
             self.title,
             self.document,
             self.document,

@@ -18,10 +18,12 @@ use tracking::tracker::TrackerConfig;
 
 pub(super) const TITLE: &str = "Just-in-time pixels";
 
-pub(super) const ABOUT: &str = "The head turns by 200 degrees a second before a view of 60 degrees (JITP). The tracker has no error and no delay, so \
-only the instants of drawing and of light differ. The error of a pixel is the angle on the screen between two directions. One direction is \
-what the pixel shows, and the other is what the pixel should show when it lights. Pixels are those of the paper, with 600 pixels \
-over 60 degrees. Like the paper, the model scales each angle from the lit pixels to the whole field or line, including the retrace.";
+pub(super) const ABOUT: &str = "The head turns by 200 degrees a second, and the view is 60 degrees wide (JITP). The tracker has no error and no delay. \
+So the only cause of errors is the time between the instant for which a pixel is drawn and the instant at which it \
+lights. The error of a pixel is the angle between two directions: the direction that the pixel shows, and the direction \
+that it should show when it lights. The unit of the error is a pixel of the paper, with 600 pixels over 60 degrees. A \
+field or line lasts longer than its lit pixels, because a field and a line also include a retrace. Like the paper, the \
+model scales each angle to the whole time of the field or line.";
 
 /// Rate of a fast turn of the head in degrees per second (JITP).
 const PAN: f64 = 200.0;

@@ -37,10 +37,12 @@ fn head(text: &mut String, figures: &VolumeFigures) {
          The column *provenance* has these values:\n\n\
          - *published*: The paper prints the number.\n\n\
          - *derived*: The number follows from printed numbers by a formula.\n\n\
-         - *measured*: The number was counted in the volume of a scene, with the hyperbolic clip and a projection along the normal.\n\n\
-         The paper prints no times, rates or speed-ups. The times of `pxpl5 volume run` come from a model with a preset of 2005.\n\n\
-         The table has only rows for which the code could have produced another value. The section \"Definitions\" lists the inputs of\n\
-         the model and the numbers that follow from them by arithmetic. The model meets {met} of {} rows.\n\n",
+         - *measured*: The number was counted in the computed volume of a scene, with the hyperbolic clip and a projection along\n  \
+           the normal of each slice.\n\n\
+         The paper prints no times, rates or speed-ups. The times that `pxpl5 volume run` prints come from a model of a computer\n\
+         of 2005.\n\n\
+         The table has only rows for which the code could have produced another value. The section \"Definitions\" lists the\n\
+         inputs of the model and the numbers that follow from these inputs by arithmetic. The model meets {met} of {} rows.\n\n",
         figures.figures.len()
     );
 }
@@ -98,8 +100,8 @@ fn definitions(text: &mut String, all: &[Definition]) {
     let _ = write!(
         text,
         "\n## Definitions\n\n\
-         The table lists the inputs that the paper prints, and the numbers that follow from inputs by arithmetic. No simulation could\n\
-         change these numbers.\n\n{}",
+         The table lists the inputs that the paper prints, and the numbers that follow from these inputs by arithmetic. No\n\
+         simulation could change these numbers.\n\n{}",
         table(&columns, all)
     );
 }
@@ -115,9 +117,10 @@ fn scenes(text: &mut String, all: &[MeasuredScene]) {
     let _ = write!(
         text,
         "\n## Scenes\n\n\
-         A volume has 396 slices of 768 x 768 pixels. The clip is the hyperbolic clip with 0.25 px^2, and the projection is along the\n\
-         normal. Triangles are binned by all planes. Tiles have 32 px and are queried in batches of 4 slices. The times are those of the\n\
-         model with the preset `geforce-6800`.\n\n\
+         A volume has 396 slices of 768 x 768 pixels. The scene is cut with the hyperbolic clip (0.25 px^2) and projected along\n\
+         the normal of each slice. Triangles are sorted into bins by all planes between slices. The renderer tests for 4 slices\n\
+         together which tiles of 32 px contain lit pixels. The times come from the model of a computer with the preset\n\
+         `geforce-6800`.\n\n\
          | scene | triangles | draws left | tiles occupied | MB unpacked | packed | sent | CPU ms | GPU ms | bus ms | volumes/s serial | overlapped | hash |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
     );
@@ -142,15 +145,15 @@ fn pictures(text: &mut String) {
     text.push_str(
         "\n## Pictures\n\n\
          ![Figures 4 to 12](pictures/volumetric-figures.png)\n\n\
-         The picture shows figures 4 to 12 of the paper, row by row. The paper has no figures 1 to 3. The command\n\
-         `pxpl5 volume figures --out DIR` draws the figures and asks the model for every pixel. The first row shows a slice volume, its\n\
-         orientation and a taper. The second row shows a biased evaluation, a hyperbola and a sliver. The third row shows bin planes,\n\
-         outcodes and a tile query.\n\n\
+         The picture shows figures 4 to 12 of the paper, row by row. The paper has no figures 1 to 3. The command `pxpl5 volume\n\
+         figures --out DIR` draws the figures from values that the model computes for every pixel. The first row of the picture\n\
+         shows a slice volume, its orientation and a tapered clip. The second row shows a biased evaluation, a hyperbola and a\n\
+         sliver. The third row shows bin planes, outcodes and a tile query.\n\n\
          ![Clips and projections](pictures/volumetric-variants.png)\n\n\
-         The picture shows the Mig from 40 degrees to the right and 25 degrees up. All views have the same exposure. The command\n\
-         `pxpl5 volume compare --scene mig --out DIR` makes the picture. From top to bottom, the rows are prism, user planes, exact,\n\
-         tapered, parallel and hyperbola. The columns are a projection along the normal, one eye for all slices, and a jittered\n\
-         projection.\n",
+         The picture shows the Mig for a viewer 40 degrees to the right and 25 degrees above. All views have the same exposure.\n\
+         The command `pxpl5 volume compare --scene mig --out DIR` makes the picture. From top to bottom, the rows are prism,\n\
+         user planes, exact, tapered, parallel and hyperbola. The columns are a projection along the normal of each slice, a\n\
+         projection for one eye position in all slices, and a jittered projection.\n",
     );
 }
 
@@ -158,8 +161,8 @@ fn pictures(text: &mut String) {
 fn numbers(text: &mut String) {
     let _ = write!(
         text,
-        "\n## Numbers\n\nThe table lists the settings of the model. An assumed number has a range of values, because the paper does not give it.\n\
-         The option `--set PATH=VALUE` changes a setting.\n\n\
+        "\n## Numbers\n\nThe table lists the settings of the model. An assumed number has a range of values, because the paper does not print the\n\
+         number. The option `--set PATH=VALUE` changes a setting.\n\n\
          | path | value | unit | provenance | range | source |\n|---|---|---|---|---|---|\n"
     );
     for (path, Entry { info, value }) in VolumeSettings::paper().numbers() {

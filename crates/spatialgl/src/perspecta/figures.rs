@@ -55,7 +55,8 @@ fn cause(id: &str) -> &'static str {
              object such as the Mig leaves most of the volume empty."
         }
         "section 6" => {
-            "The law holds for small triangles. The triangles of the Mig are large. They lie on several bin planes and go into several bins."
+            "The expected value holds for small triangles. The triangles of the Mig are large, so they \
+             lie on several bin planes and go into several bins."
         }
         _ => "The cause is not known.",
     }
