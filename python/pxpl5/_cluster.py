@@ -189,7 +189,7 @@ class Future(Protocol):
 
     def exception(self) -> BaseException: ...
 
-    def add_done_callback(self, told: Callable[[Future], None], /) -> None: ...
+    def add_done_callback(self, reporter: Callable[[Future], None], /) -> None: ...
 
 
 class Submitting(Protocol):
@@ -212,12 +212,12 @@ class Cluster:
     """A running sweep on a cluster."""
 
     def __init__(
-        self, space: SweepSpace, store: _native.Store, client: Client, told: Callable[[int, int], object] | None
+        self, space: SweepSpace, store: _native.Store, client: Client, reporter: Callable[[int, int], object] | None
     ) -> None:
         self._space = space
         self._store = store
         self._client: Submitting = client
-        self._told = told
+        self._told = reporter
         missing = store.missing()
         self._missing = set(missing)
         self._chunks = Chunks(space, missing)
