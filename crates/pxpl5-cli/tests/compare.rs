@@ -1,6 +1,7 @@
 //! Tests of `pxpl5 compare` as a user runs it.
 
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
@@ -68,16 +69,21 @@ fn causes_and_predictors_are_added_on_demand_and_change_nothing_else() {
         let rows = all["pipelines"].as_array_mut().expect("a list");
         let lists = rows.iter_mut().map(|row| {
             row["host_seconds"] = Value::Null;
-            ["causes", "predictors"].map(|key| row[key].take().as_array().map_or(0, Vec::len))
+            let lists = ["causes", "predictors"].map(|key| row[key].take().as_array().map_or(0, Vec::len));
+            (row["pipeline"].as_str().expect("a name").to_owned(), lists)
         });
-        let lists: Vec<[usize; 2]> = lists.collect();
+        let lists: BTreeMap<String, [usize; 2]> = lists.collect();
         (lists, all)
     };
+    let of_all = |pipelines: [usize; 2], ideal: [usize; 2]| -> BTreeMap<String, [usize; 2]> {
+        let each = [("slats", pipelines), ("vdrt", pipelines), ("jitp-field", pipelines), ("ideal", ideal)];
+        each.map(|(name, lists)| (name.to_owned(), lists)).into()
+    };
     let (none, plain) = given(&[]);
-    assert_eq!(none, [[0, 0]; 4]);
+    assert_eq!(none, of_all([0, 0], [0, 0]));
     // Five causes and their interaction; four predictors, except for the reference.
     for (more, expected) in
-        [(&["--causes"][..], [[6, 0]; 4]), (&["--causes", "--predictors"], [[6, 4], [6, 4], [6, 4], [6, 0]])]
+        [(&["--causes"][..], of_all([6, 0], [6, 0])), (&["--causes", "--predictors"], of_all([6, 4], [6, 0]))]
     {
         let (lists, other) = given(more);
         assert_eq!(lists, expected, "{more:?}");

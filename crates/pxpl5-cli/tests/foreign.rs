@@ -180,6 +180,7 @@ fn assembler_listings_have_source_lines_and_warnings_can_be_turned_off() {
 fn columns_of_comparisons_have_the_same_names_in_tables_plots_and_json() {
     let folder = Folder::new("foreign-columns");
     let settings = ["--fields", "24", "--seeds", "1", "--scene", "full-screen:2", "--no-limits", "--only", "slats"];
+    let settings = [&settings[..], &["--causes", "--predictors"]].concat();
     let compared = folder.run(&[&["compare", "--out", "c"][..], &settings].concat());
     assert!(compared.status.success(), "{}", err(&compared));
     let table = std::fs::read_to_string(folder.0.join("c/rows.csv")).expect("written");
