@@ -99,7 +99,7 @@ impl SweepSpace {
     ///
     /// # Errors
     ///
-    /// Returns [`FileError`] if the table is missing or invalid, and the error of `key_of`.
+    /// Returns [`SettingError`] if the table is missing or invalid, and the error of `key_of`.
     pub fn read(
         sweep: Option<&Value>,
         (place, places): (&str, &BTreeMap<String, String>),
