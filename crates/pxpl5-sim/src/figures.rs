@@ -1,7 +1,7 @@
 //! Published figures next to the values of a model: rows with provenance, definitions, and their tables.
 //!
 //! Every comparison of a paper with a model uses the same [`FigureRow`]. Each document chooses the columns of its table
-//! from [`column`] or writes its own.
+//! from [`mod@column`] or writes its own.
 
 pub mod column;
 mod row;
