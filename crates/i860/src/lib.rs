@@ -97,7 +97,7 @@
 //! - Results of instructions with undefined choices of registers.
 //! - Contents of the caches. The caches are always coherent and affect only the time. A store of the processor into its
 //!   own code takes effect immediately.
-//! - XP additions: `pfld.q`, `pfmul3`, registers bear, ccr, p0 to p3.
+//! - XP additions: `pfld.q`, registers bear, ccr, p0 to p3.
 //!
 //! # Sources
 //!
