@@ -151,27 +151,43 @@ class PipelineRow(TypedDict):
     has_closed_form: bool
 
 
-class FigureRow(TypedDict):
+class FittedRow(TypedDict, total=False):
+    """A column that exists if a figure of the table was fitted."""
+
+    #: The parameter or rule that was chosen to reproduce the figure.
+    fitted: str | None
+
+
+class VolumeFigureRow(FittedRow):
     """A published figure beside the value of the model."""
 
     id: str
-    published: float
+    statement: str
+    source: str
+    experiment: str
+    scene: str | None
+    published: float | None
+    origin: str
+    spread: float | None
+    #: Ends of the interval of values that agree with the paper, as JSON.
+    accepted: str | None
     simulated: float | None
     unit: str
+    unprinted: str | None
     error_percent: float | None
-    analytic: float | None
-    #: Ends of the interval as JSON.
-    interval: str | None
+    is_met: bool
     provenance: str
-    spread: float | None
-    fitted: str
-    source: str
-    statement: str
-    experiment: str
+    analytic: float | None
+    #: Ends of the interval over the open parameters, as JSON.
+    interval: str | None
     cause: str
     #: Further numbers as JSON.
     details: str
-    unprinted: str | None
+
+
+class FigureRow(VolumeFigureRow):
+    """A figure of the machine, with its interval over the open parameters."""
+
     misses: bool
     low: float | None
     high: float | None
@@ -187,23 +203,6 @@ class ReadingRow(TypedDict):
     log_likelihood: float | None
     #: Identifiers of the figures as JSON.
     unexplained: str
-
-
-class VolumeFigureRow(TypedDict):
-    """A figure of the SpatialGL paper beside the value of the model."""
-
-    id: str
-    statement: str
-    unit: str
-    published: float
-    #: Ends of the interval that the paper's number stands for, as JSON.
-    interval: str
-    computed: float
-    provenance: str
-    source: str
-    scene: str | None
-    error_percent: float | None
-    is_met: bool
 
 
 class SettingRow(TypedDict):

@@ -56,25 +56,39 @@ class DetailData(TypedDict):
     unit: str
 
 
-class FigureData(TypedDict):
+class FittedData(TypedDict, total=False):
+    """The parameter or rule that was chosen to reproduce a figure, if there is one."""
+
+    fitted: str
+
+
+class VolumeFigureData(FittedData):
     """A published figure beside the value of the model."""
 
     id: str
-    published: float
+    statement: str
+    source: str
+    experiment: str
+    scene: str | None
+    published: float | None
+    origin: str
+    spread: float | None
+    accepted: list[float] | None
     simulated: float | None
     unit: str
+    unprinted: list[float] | None
     error_percent: float | None
+    is_met: bool
+    provenance: str
     analytic: float | None
     interval: list[float] | None
-    provenance: str
-    spread: float | None
-    fitted: str
-    source: str
-    statement: str
-    experiment: str
     cause: str
     details: list[DetailData]
-    unprinted: list[float] | None
+
+
+class FigureData(VolumeFigureData):
+    """A figure of the machine, with its interval over the open parameters."""
+
     misses: bool
     low: float | None
     high: float | None
@@ -404,22 +418,6 @@ class VolumeData(TypedDict):
     overrides: list[OverrideData]
     beyond_paper: list[str]
     host_seconds: float
-
-
-class VolumeFigureData(TypedDict):
-    """A figure of the SpatialGL paper beside the value of the model."""
-
-    id: str
-    statement: str
-    unit: str
-    published: float
-    interval: list[float]
-    computed: float
-    provenance: str
-    source: str
-    scene: str | None
-    error_percent: float | None
-    is_met: bool
 
 
 class VolumeDefinitionData(TypedDict):

@@ -132,9 +132,9 @@ pub(crate) fn compare<'py>(
 
 /// Returns the exception for an error of a comparison.
 fn wrong_study(error: StudyError) -> PyErr {
-    use StudyError::{File, OtherSettings, Unfinished};
+    use StudyError::{Damaged, File, OtherSettings, Unfinished};
     match error {
-        File(_) | OtherSettings { .. } | Unfinished { .. } => failed_sweep(error),
+        Damaged { .. } | File(_) | OtherSettings { .. } | Unfinished { .. } => failed_sweep(error),
         error => wrong_setting(error),
     }
 }

@@ -118,7 +118,12 @@ pub fn missed(rows: &[FigureRow]) -> String {
         let _ = writeln!(
             text,
             "- Row **{}** (\"{}\") is missed. The papers print {} {}, and the model gives {}. {}\n",
-            row.id, row.statement, both[0], row.unit, both[1], row.cause
+            row.id,
+            row.statement,
+            both[0],
+            row.unit,
+            both[1],
+            row.cause_or_unknown()
         );
     }
     text

@@ -11,7 +11,7 @@ pub fn row(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2]
         "A12" => {
             "The paper does not print its scene, path, rings of cells and threshold. Only the rate of memory 1 was fitted."
         }
-        _ => "The cause is not known.",
+        _ => "",
     };
     FigureRow { basis, cause, ..FigureRow::new(id, statement.to_owned(), unit, both, accepted) }
 }

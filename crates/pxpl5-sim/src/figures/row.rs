@@ -105,6 +105,12 @@ pub const fn around(middle: f64, half: f64) -> [f64; 2] {
 const ROUNDING: f64 = 0.01;
 
 impl FigureRow {
+    /// Returns the known cause of a difference between model and paper, or a sentence that the cause is not known.
+    #[must_use]
+    pub const fn cause_or_unknown(&self) -> &'static str {
+        if self.cause.is_empty() { "The cause is not known." } else { self.cause }
+    }
+
     /// Creates a row from the published and the simulated number. The row is met if the simulated number is among the
     /// accepted ones. Nothing else is known about the figure.
     #[must_use]

@@ -84,7 +84,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
             expected(row),
             row.unit,
             number(row.simulated),
-            row.cause
+            row.cause_or_unknown()
         );
     }
 }
