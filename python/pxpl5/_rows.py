@@ -151,14 +151,7 @@ class PipelineRow(TypedDict):
     has_closed_form: bool
 
 
-class FittedRow(TypedDict, total=False):
-    """A column that exists if a figure of the table was fitted."""
-
-    #: The parameter or rule that was chosen to reproduce the figure.
-    fitted: str | None
-
-
-class VolumeFigureRow(FittedRow):
+class VolumeFigureRow(TypedDict):
     """A published figure beside the value of the model."""
 
     id: str
@@ -188,6 +181,8 @@ class VolumeFigureRow(FittedRow):
 class FigureRow(VolumeFigureRow):
     """A figure of the machine, with its interval over the open parameters."""
 
+    #: The parameter or rule that was chosen to reproduce the figure.
+    fitted: str | None
     misses: bool
     low: float | None
     high: float | None
