@@ -1,4 +1,4 @@
-//! The error of studies of many experiments.
+//! The error type of studies, which consist of many experiments.
 
 use pxpl5_run::ExperimentError;
 use pxpl5_sim::parameters::{FileError, SettingError};
@@ -84,7 +84,7 @@ pub enum StudyError {
         /// Number of rows of the interrupted comparison.
         of: usize,
     },
-    /// The caller stopped the comparison.
+    /// Another thread stopped the comparison.
     #[error("the comparison was stopped")]
     Stopped,
     /// A line in the file of rows is not a row.
@@ -106,7 +106,7 @@ pub enum StudyError {
         "expected the time of complete display for {expected} frames that low points requested, found it for {found}"
     )]
     NotShown {
-        /// Number of frames that were requested at low points.
+        /// Number of frames that the rig requested at low points of the pendulum.
         expected: usize,
         /// Number of requested frames that were shown completely, according to the pipeline's records.
         found: usize,

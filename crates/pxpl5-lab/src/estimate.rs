@@ -242,7 +242,7 @@ pub enum Study {
         seeds: u64,
         /// Number of frames for each seed.
         frames: u64,
-        /// Number of interpretations that are measured with events too.
+        /// Number of best interpretations that are also simulated with events.
         best: u64,
     },
     /// The comparison of all levels of modelling ([`crate::levels`]).

@@ -70,7 +70,8 @@ pub struct Figures {
     pub families: Vec<FigureFamily>,
     /// Further figures of Pixel-Planes 5 by topic: peak rates, just-in-time pixels, trackers.
     pub groups: Vec<FigureGroup>,
-    /// Fit of the Rendering Control figures under all interpretations of the papers, at the analytic level.
+    /// Agreement of the model with the published figures of Rendering Control, for each interpretation of the papers at
+    /// the analytic level.
     pub readings: Readings,
     /// Latencies of the fly-throughs for several times of the host's application, at the analytic level.
     pub application_times: Vec<ApplicationTime>,

@@ -138,8 +138,8 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
 }
 
-/// Computes the intervals of all figures at the analytic level, around the figures' values for the given bench (common
-/// settings of all measurements).
+/// Computes the intervals of all figures at the analytic level, around the figures' values for `bench`, the common
+/// settings of all measurements.
 #[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
@@ -228,8 +228,8 @@ pub(crate) fn photodiode_line() -> Option<Variation> {
     Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
 }
 
-/// Combines two designs into the interval of one figure. `ends` has the figure's values at both ends of each parameter
-/// range, one parameter after the other. `joint` has the figure's values on the random machines.
+/// Combines two designs of experiments into the interval of one figure. `ends` has the figure's values at both ends of
+/// each parameter's range, one parameter after the other. `joint` has the figure's values on the random machines.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {

@@ -53,7 +53,7 @@ pub struct Model {
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
-    /// Decimation of `whole`. All sizes of a search share the first collapses.
+    /// Decimation of `whole`. All sizes of a search share its first steps (collapses of edges).
     decimation: Arc<Decimation>,
 }
 
@@ -149,8 +149,8 @@ impl LimitQuery {
         Ok(limit)
     }
 
-    /// Searches for the largest number of triangles alone. It equals [`Limit::triangles`] of [`search`](Self::search),
-    /// but no sizes above the first miss are tried.
+    /// Searches for the largest number of triangles. The result equals [`Limit::triangles`] of
+    /// [`search`](Self::search), but the search is shorter, because no sizes above the first miss are tried.
     ///
     /// # Errors
     ///

@@ -16,7 +16,7 @@ const ORDER: u32 = 3;
 /// Number of words of a token message (rendering-control's protocol).
 const TOKEN: u32 = 6;
 
-/// Node number of a board other than the measured one.
+/// Node number of the board that sends messages to the measured board and receives messages from it.
 const OTHER: NodeId = NodeId(2);
 
 /// Total time and number of a board's messages. A received message counts once, and a sent chain of messages counts

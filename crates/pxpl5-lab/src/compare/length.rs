@@ -1,4 +1,4 @@
-//! The number of fields of a comparison in which the head replays a recording.
+//! The number of display fields that each run of a comparison simulates if the head replays a recorded motion.
 
 use super::query::CompareQuery;
 use crate::error::StudyError;

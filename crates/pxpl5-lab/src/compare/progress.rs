@@ -41,7 +41,7 @@ impl<'a> Progress<'a> {
     }
 }
 
-/// The computer of a comparison, on which another thread can stop runs.
+/// A computer on which another thread can stop the runs of a comparison.
 #[derive(Debug)]
 struct StoppableWorkstation {
     workstation: Workstation,

@@ -99,7 +99,8 @@ struct Common<'a> {
 }
 
 impl Common<'_> {
-    /// Returns the experiment of a plan. Its head shares the tuning with the other rows, and its host can stop the run.
+    /// Returns the experiment of a plan (checked settings). The predictor's tuning is shared with all other rows, and
+    /// another thread can stop the run.
     fn experiment(&self, plan: &Plan) -> Experiment {
         let experiment = plan.experiment(Arc::clone(&self.scene)).host(self.progress.host());
         let head = experiment.tracked_head().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
@@ -138,8 +139,8 @@ impl CompareQuery {
         self.run_into(None, finished, ended)
     }
 
-    /// Runs every row that the store does not hold yet. A row is stored as soon as all of its runs have ended. `ended`
-    /// is called with each new row after the row is stored.
+    /// Runs every row that is not yet in `store`, the folder of finished rows. A row is stored as soon as all of its
+    /// runs have ended. `ended` is called with each new row after the row is stored.
     ///
     /// # Errors
     ///
@@ -416,7 +417,7 @@ impl Comparison {
     ///
     /// - rows with pictures that were due and not shown
     /// - the row `ideal`, which shows ideal pictures as a reference
-    /// - rows that were evaluated over other display periods
+    /// - rows that were evaluated over later display periods than most rows
     /// - the row of delayed video, whose error leaves out the delay of the world
     #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {

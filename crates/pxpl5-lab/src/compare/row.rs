@@ -66,7 +66,7 @@ pub struct ComparisonRow {
     pub is_precise: Option<bool>,
     /// Definition of the pipeline's latency, in words.
     pub latency_definition: String,
-    /// Latency of the machine alone in milliseconds, over the complete pictures of all seeds.
+    /// Latency of the machine without the tracker in milliseconds, over the complete pictures of all seeds.
     pub latency_ms: Statistics,
     /// Latency from the measured pose of the head until the display lights the picture's middle, in milliseconds. All
     /// complete pictures of all seeds count. For pipelines that draw cube faces, only the position of the head counts.
@@ -75,8 +75,8 @@ pub struct ComparisonRow {
     /// milliseconds. Cube faces are turned at scan-out with the newest orientation. Other pictures show the orientation
     /// and the position of the same pose.
     pub turn_to_light_ms: Statistics,
-    /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the
-    /// time from the measurement of a pose to the arrival of the tracker's report. The second is the time from the
+    /// Sum of two mean times in milliseconds, averaged over the seeds. The papers print the same sum. The first time
+    /// lasts from the measurement of a pose to the arrival of the tracker's report. The second time lasts from the
     /// start of an eye's TRANSFORM to the swap.
     ///
     /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND,
@@ -213,7 +213,7 @@ pub(super) struct Sampling {
     pub(super) confidence: f64,
 }
 
-/// Returns the sum of the values that are not `None`, or `None` if there is no such value.
+/// Returns the sum of the values that are not `None`. Returns `None` if all values are `None`.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
     let mut known = values.flatten().peekable();
     known.peek().is_some().then(|| known.sum())

@@ -75,7 +75,7 @@ pub struct CompareStore {
     /// Rows that an earlier process has finished.
     found: Vec<ComparisonRow>,
     rows: Mutex<Rows>,
-    /// Lock of the folder, held as long as the store exists.
+    /// Lock of the folder, which no other process can open while this object exists.
     _lock: File,
 }
 

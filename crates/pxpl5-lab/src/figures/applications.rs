@@ -29,7 +29,7 @@ pub(super) type RigKey = (FinishedRegions, Vec<(String, u64)>);
 /// [`Record::met_full_store`]: pxpl5_machine::Record::met_full_store
 #[derive(Debug)]
 struct ByCapacity<K, T> {
-    /// Results for single capacities. The boolean is true if the run has met a full store.
+    /// Results for single capacities. The boolean is true if a backing store was full at some time of the run.
     exact: Places<(K, u64), (Arc<T>, bool)>,
     /// Smallest capacity whose run has met no full store, with its result.
     roomy: Mutex<BTreeMap<K, (u64, Arc<T>)>>,
@@ -112,8 +112,9 @@ impl Applications {
         find_or_compute(&self.loads, key, || make().map(Arc::new))
     }
 
-    /// Returns the measurements with the pendulum rig for the given rules and number of kept regions. `make` performs
-    /// the measurements at the first request. Its boolean is true if the run has met a full backing store.
+    /// Returns the measurements with the pendulum rig. `key` holds the rule for finished regions and the changed
+    /// parameters. `kept` is the number of regions that a backing store holds. `make` performs the measurements at the
+    /// first request. The boolean of `make` is true if a backing store was full at some time of the run.
     pub(super) fn rig(
         &self,
         key: RigKey,

@@ -16,14 +16,16 @@ use tracking::tracker::TrackerConfig;
 /// photodiode. The common settings of measurements ([`Bench::changes`](super::Bench)) may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
-/// The rig's measurements of one run, under the first, the assumed and the last line of the screen.
+/// The measurements of the pendulum rig in one run, with the photodiode under the first, the assumed and the last line
+/// of the screen.
 #[derive(Clone, Debug)]
 pub(super) struct RigLines {
     measured: [(u32, Arc<RigMeasurement>); 3],
 }
 
 impl RigLines {
-    /// Measures the latency seen from outside. Also returns true if a full backing store has changed the run.
+    /// Measures the latency with a pendulum and a photodiode. Also returns true if a full backing store has changed the
+    /// run.
     pub(super) fn measure(machine: &MachineConfig, pipeline: RenderingControl) -> Result<(Self, bool)> {
         let lines = photodiode_lines();
         let (measured, met_full_store) = under_lines(machine, pipeline, lines)?;
@@ -43,12 +45,12 @@ impl RigLines {
         FigureValue { value: assumed.value, details, unprinted }
     }
 
-    /// Returns the measurement under the assumed line.
+    /// Returns the measurement with the photodiode under the assumed line.
     pub(super) fn assumed(&self) -> Arc<RigMeasurement> {
         Arc::clone(&self.measured[1].1)
     }
 
-    /// Returns the measurement under a line, or `None` if this line was not measured.
+    /// Returns the measurement with the photodiode under a line, or `None` if this line was not measured.
     pub(super) fn under(&self, line: u64) -> Option<Arc<RigMeasurement>> {
         let found = self.measured.iter().find(|(measured, _)| u64::from(*measured) == line);
         found.map(|(_, measured)| Arc::clone(measured))
@@ -69,7 +71,8 @@ pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, li
     Ok(measured)
 }
 
-/// Measures the latency under some lines in one run. Also returns true if a full backing store has changed the run.
+/// Measures the latency with the photodiode under each of several lines in one run. Also returns true if a full backing
+/// store has changed the run.
 fn under_lines<const N: usize>(
     machine: &MachineConfig,
     pipeline: RenderingControl,
@@ -81,7 +84,7 @@ fn under_lines<const N: usize>(
     Ok((measured, outcome.record().met_full_store()))
 }
 
-/// Returns the latency of rendering, as figure 17 counts it.
+/// Returns the latency of rendering, as defined by figure 17 of the published figures.
 pub(super) fn rendering(measured: &RigMeasurement) -> FigureValue {
     let Statistics { mean, min, max, .. } = measured.outside.rendering;
     let details = vec![
@@ -111,8 +114,8 @@ pub(super) fn ratio_of_errors() -> FigureValue {
 /// Number of display fields in the runs for figure 19: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Measures figures 19 and 19b: the sum of those stages of the latency that the paper adds. The details state the other
-/// stages of the latency.
+/// Measures figures 19 and 19b: the sum of the stages of the latency that the paper adds. The details of the figure
+/// state all other stages.
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,

@@ -160,8 +160,8 @@ impl Bench {
         Ok(machine)
     }
 
-    /// Returns true if every preset gives the same machine under both settings, and the photodiode is under the same
-    /// line. If nothing but the changed parameters differs, both settings then give the same figures.
+    /// Returns true if `other` gives the same machine for every preset, and the same line of the photodiode. If the
+    /// other settings are equal too, the figures are equal.
     pub(crate) fn has_machines_of(&self, other: &Self) -> bool {
         let is_same =
             |preset: &Preset| self.machine(preset.name).is_ok_and(|one| other.machine(preset.name) == Ok(one));
@@ -184,7 +184,8 @@ impl Bench {
         self.applications.summary(key_of(&experiment, scene), make)
     }
 
-    /// Runs an experiment. Returns true with the summary if the run has met a full backing store, or if that is unknown.
+    /// Runs an experiment and returns its summary. The boolean is true if a backing store was full at some time of the
+    /// run, or if that is unknown.
     fn summarise(&self, experiment: &Experiment) -> Result<(Summary, bool)> {
         let experiment = experiment.clone().pixels(Pixels::Off).level(self.level);
         if self.level == Level::Analytic {
@@ -203,7 +204,7 @@ impl Bench {
         self.stereo(self.machine("small-hmd")?)
     }
 
-    /// Runs the experiment of figures 16b and 16c: the number of screen-filling triangles that fit into the bins
+    /// Runs the experiment of figures 16b and 16c. The scene has as many screen-filling triangles as fit into the bins
     /// according to the papers.
     fn full_bins(&self) -> Result<Arc<Summary>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
@@ -234,7 +235,7 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures figure 17 for all lines of the photodiode, unless the settings choose one line.
+    /// Measures figure 17 for three lines of the photodiode, unless the settings choose one line.
     fn rig(&self) -> Result<FigureValue> {
         match self.photodiode_line() {
             Some(_) => self.rig_measurement().map(|measured| heads::rendering(&measured)),
@@ -257,8 +258,8 @@ impl Bench {
         self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line)
     }
 
-    /// Returns the rig's measurements of one run. They do not depend on the level of modelling or on the definition of
-    /// latency samples.
+    /// Returns the measurements of the pendulum rig in one run. The level of modelling and the definition of latency
+    /// samples do not change these measurements.
     fn rig_lines(&self) -> Result<Arc<RigLines>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         // The line does not change the run, so it is no part of the key.
@@ -413,7 +414,7 @@ fn regions_touched() -> Result<FigureValue> {
     Ok(FigureValue::with(value, details))
 }
 
-/// Returns the number of bin entries per visible triangle, over both eyes and a number of head poses.
+/// Returns the number of bin entries per visible triangle, over both eyes and `n_views` head poses.
 fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     let list = Arc::new(display_list(scene)?);
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
