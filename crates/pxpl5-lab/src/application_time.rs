@@ -29,7 +29,7 @@ const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 /// (TR94).
 const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
-/// Numbers of the figures in TR94 that show fly-throughs.
+/// Numbers, as in [`FIGURES`], of the published latencies of fly-throughs.
 const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 
 /// Mean and standard deviation of the latency in one figure.
@@ -37,9 +37,9 @@ const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 pub struct FlyThroughLatency {
     /// Number of the figure, as in [`FIGURES`].
     pub id: &'static str,
-    /// Mean over all samples, in the figure's unit.
+    /// Mean of all latency samples, in the figure's unit.
     pub mean: f64,
-    /// Standard deviation of the samples, in the same unit.
+    /// Standard deviation of all latency samples, in the figure's unit.
     pub sd: f64,
 }
 

@@ -32,10 +32,10 @@
 //! Each of `structure`, `sphere view` and `pass` is the mean of the scenes' means.
 //!
 //! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
-//! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under Slats,
-//! the measured messages are those that a board receives and sends in one display field. The time of a message is the
-//! mean over the three scenes. `token entry` is the additional time to send a bin for each entry in the bin. This time
-//! is the slope of a least-squares fit over all bins.
+//! PPHIGS (the graphics library that runs Rendering Control) the board is a slave, and each message includes the cost
+//! of the token whose bin the slave sends. Under Slats, the measured messages are those that a board receives and sends
+//! in one display field. The time of a message is the mean over the three scenes. `token entry` is the additional time
+//! to send a bin for each entry in the bin. This time is the slope of a least-squares fit over all bins.
 
 mod messages;
 mod strips;
@@ -60,8 +60,8 @@ use std::sync::Arc;
 /// The application scenes of TR94.
 const SCENES: [&str; 3] = ["mig", "molecules", "head"];
 
-/// Number of slaves among which a scene's triangles are divided: those of the preset `small`. Only the first slave's
-/// share is measured.
+/// Number of slaves among which a scene's triangles are divided: those of the preset `small-hmd`. Only the first
+/// slave's share is measured.
 const BOARDS: usize = 12;
 
 /// Number of head poses from which each scene is transformed.
@@ -153,7 +153,8 @@ fn parts(of: CodeUse, share: &Share) -> Vec<Share> {
     }
 }
 
-/// Measures the times of a version of the i860 code, for PPHIGS or for Slats.
+/// Measures the times of a version of the i860 code. `of` selects the code of Slats or the code of PPHIGS, the graphics
+/// library that runs Rendering Control.
 ///
 /// # Errors
 ///

@@ -221,7 +221,7 @@ fn of_rig(bench: &Bench) -> Option<Interval> {
     Some(interval)
 }
 
-/// Returns the assumed photodiode's line on the screen as a parameter that varies.
+/// Returns the line of the screen under the photodiode as a parameter that varies. The preset's value is assumed.
 pub(crate) fn photodiode_line() -> Option<Variation> {
     let line = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE)?;
     let (value, range) = (line.value.whole()?, line.info.whole_range()?);

@@ -161,7 +161,7 @@ impl LimitQuery {
         Ok(triangles)
     }
 
-    /// Returns an error if a limit of zero means that the goal cannot be evaluated.
+    /// Returns an error if `triangles`, the limit that was found, is 0 because the goal cannot be evaluated.
     fn check_limit(&self, triangles: u32) -> Result<(), ExperimentError> {
         if triangles == 0 { self.check_rate() } else { Ok(()) }
     }
@@ -283,7 +283,7 @@ fn is_reached(goal: Goal, summary: &Summary) -> bool {
     }
 }
 
-/// Returns a scene with a number of triangles, at least one.
+/// Returns a test scene with `triangles` triangles, or with one triangle if `triangles` is 0.
 ///
 /// # Panics
 ///

@@ -51,7 +51,7 @@ pub struct Rig {
 pub const PASSES: usize = 24;
 
 impl Rig {
-    /// Creates a rig with the given tracker, and with the assumed pendulum, detection and photodiodes.
+    /// Creates a rig with `tracker` on the pendulum, and with the assumed pendulum, detection and photodiodes.
     #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
         Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES }
@@ -237,7 +237,8 @@ impl Photodiode {
         if found < lines { Ok(()) } else { Err(StudyError::Photodiode { lines, found }) }
     }
 
-    /// Samples the photodiode in a period that has ended. `screen` is the picture of the period, once it was read.
+    /// Samples the photodiode in a period that has ended. `screen` keeps the picture of the period, so that several
+    /// photodiodes read the picture only once.
     fn look(&mut self, period: PeriodNumber, record: &Record, screen: &mut Option<Option<RgbImage>>) {
         let display = record.display();
         let Some(surface) = display.surfaces().first() else { return };

@@ -25,7 +25,7 @@ pub struct WhatIf {
     pub level: &'static str,
 }
 
-/// A resource of the machine, with the setting that gives more of it.
+/// A resource of the machine, and the setting that changes the amount or the speed of the resource.
 struct Knob {
     resource: &'static str,
     key: &'static str,

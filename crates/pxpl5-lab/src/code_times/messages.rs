@@ -11,9 +11,9 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, Message, NodeId, RegionId};
 use std::sync::Arc;
 
-/// Number of words of an order or a report message (rendering-control's protocol).
+/// Number of words of an order, and of a slave's report to the master, under Rendering Control.
 const ORDER: u32 = 3;
-/// Number of words of a token message (rendering-control's protocol).
+/// Number of words of a token message under Rendering Control.
 const TOKEN: u32 = 6;
 
 /// Node number of the board that sends messages to the measured board and receives messages from it.

@@ -1,4 +1,4 @@
-//! Moving-block bootstrap: the interval of a mean over time, from one recording whose values depend on each other.
+//! Moving-block bootstrap: the interval of a mean over time, from one series of values that depend on each other.
 //!
 //! Successive fields of a run have similar errors. The values are therefore not independent, and an interval from their
 //! standard deviation would be too narrow. The bootstrap draws blocks of successive values, so that each block keeps the

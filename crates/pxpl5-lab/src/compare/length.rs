@@ -11,8 +11,8 @@ use pxpl5_wire::NodeId;
 pub struct RecordedLength {
     /// Number of whole display periods in the recording, which is the length of each run.
     pub fields: u64,
-    /// Number of fields that the settings ask for, which is more than the recording covers. `None` if the settings
-    /// state no number of fields.
+    /// Number of fields in the settings, which is more than the recording covers. `None` if the settings state no
+    /// number of fields.
     pub asked: Option<u64>,
 }
 

@@ -84,8 +84,9 @@ pub struct Comparison {
     pub until_precision: Option<String>,
     /// Maximum number of seeds of a row. `None` if the query did not ask for a precision.
     pub max_seeds: Option<usize>,
-    /// First display period in which rows are evaluated, exact to within one interval between due pictures. Rows that
-    /// start up later are evaluated from a later period on ([`ComparisonRow::window`]).
+    /// First display period in which rows are evaluated. A row can begin a few periods later, with the first picture
+    /// that is due after this period. Rows that start up later are evaluated from a later period on
+    /// ([`ComparisonRow::window`]).
     pub evaluated_from: PeriodNumber,
     /// Results of the compared pipelines, in the order of the registry.
     pub pipelines: Vec<ComparisonRow>,
@@ -428,8 +429,8 @@ impl Comparison {
         timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
     }
 
-    /// Returns true if the evaluation of this row begins in a later display period than the evaluation of the other
-    /// rows.
+    /// Returns true if the evaluation of `row` begins four or more display periods after
+    /// [`Comparison::evaluated_from`].
     #[must_use]
     pub fn starts_late(&self, row: &ComparisonRow) -> bool {
         row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MOST_PERIODS_APART)

@@ -23,7 +23,7 @@ pub struct ErrorSpread {
     pub mean_deg: MeanInterval,
     /// Percentiles of the error over all evaluated pixels of all seeds, in pixels.
     pub pixels: Percentiles,
-    /// Number of evaluated pixels of all seeds.
+    /// Number of evaluated pixels, over all seeds.
     pub n: u64,
     /// Percentiles 0 to 100 of the error over all evaluated pixels, in pixels: 101 numbers in ascending order. Empty if
     /// no pixel was evaluated.
@@ -66,7 +66,8 @@ pub struct ComparisonRow {
     pub is_precise: Option<bool>,
     /// Definition of the pipeline's latency, in words.
     pub latency_definition: String,
-    /// Latency of the machine without the tracker in milliseconds, over the complete pictures of all seeds.
+    /// Time in milliseconds from the start of TRANSFORM until the picture is shown, over the complete pictures of all
+    /// seeds.
     pub latency_ms: Statistics,
     /// Latency from the measured pose of the head until the display lights the picture's middle, in milliseconds. All
     /// complete pictures of all seeds count. For pipelines that draw cube faces, only the position of the head counts.
@@ -90,7 +91,7 @@ pub struct ComparisonRow {
     /// Number of new complete pictures per second, averaged over the seeds with at least two pictures. NaN if no seed
     /// has two.
     pub updates_hz: MeanInterval,
-    /// Number of pictures in all seeds that had to be shown in a certain period. `None` if the pipeline has no such
+    /// Number of pictures, over all seeds, that were due at a certain retrace. `None` if the pipeline has no such
     /// deadlines.
     pub due: Option<u64>,
     /// Number of due pictures that were late, incomplete or missed. `None` if the pipeline's pictures have no

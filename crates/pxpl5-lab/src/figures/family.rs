@@ -27,7 +27,7 @@ pub struct FigureFamily {
     pub rows: Vec<FigureRow>,
 }
 
-/// Sizes in triangles of the spheres in experiment E1. The papers' drawing ends at 1,000.
+/// Numbers of triangles of the spheres that experiment E1 draws. The largest number in the papers' drawing is 1,000.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 
 /// Duration of an NTSC field in ms. Pictures of Rendering Control wait for retraces, so a growth of latency below this

@@ -174,8 +174,8 @@ pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<b
     Ok(tried.limit(ceiling))
 }
 
-/// Returns [`Limit::triangles`] of [`most`], without a search for islands above the first miss. An island never changes
-/// the limit, so about half of the trials are left out.
+/// Returns [`Limit::triangles`] of [`most`], without a search for islands (sizes above the first miss that reach the
+/// goal). An island never changes the limit, so about half of the trials are left out.
 ///
 /// # Errors
 ///

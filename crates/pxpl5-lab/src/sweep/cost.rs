@@ -1,7 +1,7 @@
 //! Estimates the cost of points before they run. The formulas are in [`crate::estimate`]. The analytic level (closed
 //! form) gives the number of pictures.
 //!
-//! Callers that distribute points over computers correct the estimates by the durations of finished points.
+//! Programs that distribute points over computers correct the estimates by the durations of finished points.
 
 use super::Sweep;
 use crate::Plan;

@@ -172,7 +172,8 @@ impl Scan {
     }
 }
 
-/// Creates the error of a point with two different rows. Both files may be the same.
+/// Creates the error of a point with two different rows. `first` and `second` name the files of these rows, and can be
+/// equal.
 pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError {
     let reason = format_args!("point {point} has different rows in {first} and {second}");
     FileError::because(FileErrorKind::Damaged, reason)

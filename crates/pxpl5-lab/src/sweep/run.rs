@@ -23,8 +23,8 @@ pub struct RunOptions {
 /// Maximum number of finished rows that wait to be written. A crash loses the waiting rows.
 const WAITING_ROWS: usize = 64;
 
-/// Simulates the points of a shard for which the store has no row yet. `finished` is called with every row after the
-/// row is stored.
+/// Simulates the points of a shard for which `store`, the folder of the sweep, has no row yet. `finished` is called
+/// with every row after the row is stored.
 ///
 /// # Errors
 ///

@@ -93,9 +93,9 @@ pub struct SweepSpace {
 const KEYS: [&str; 3] = ["grid", "together", "seeds"];
 
 impl SweepSpace {
-    /// Reads the table `sweep` of a file. `place` is the place of the table in an error message, and `places` has the
-    /// places of its keys, if they are known. `key_of` returns the name of a key that an axis varies, from the key as
-    /// written and its place.
+    /// Reads the table `sweep` of a file. For error messages, `place` states the file and line of the table, and
+    /// `places` the file and line of each of its keys, if known. `key_of` returns the full name of a key that an axis
+    /// varies. The arguments of `key_of` are the key in the file and its file and line.
     ///
     /// # Errors
     ///

@@ -28,7 +28,7 @@ pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<
     arrows
 }
 
-/// A bar of a timeline with its row and lane.
+/// A bar of a timeline with its row and its lane. Lanes divide a row in which bars overlap.
 #[derive(Clone, Copy)]
 struct Located<'a> {
     place: DrawingPlace,
@@ -71,13 +71,14 @@ fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     before.iter().find_map(|stage| of_stage(bars, *stage, bar.surface))
 }
 
-/// Returns the first bar of a stage that works for a surface.
+/// Returns the first bar of a stage whose work concerns `surface`.
 fn of_stage<'a>(bars: &[Located<'a>], stage: Stage, surface: Option<SurfaceId>) -> Option<Located<'a>> {
     let mut of_stage = bars.iter().filter(|located| located.bar.stage == stage);
     of_stage.find(|located| concerns(located.bar.surface, surface)).copied()
 }
 
-/// Returns true if two bars have a surface in common. `None` stands for all surfaces.
+/// Returns true if two bars have a surface in common. `one` and `other` are the surfaces of the bars, and `None` stands
+/// for all surfaces.
 fn concerns(one: Option<SurfaceId>, other: Option<SurfaceId>) -> bool {
     one.is_none() || other.is_none() || one == other
 }
@@ -90,7 +91,7 @@ fn is_sequel(first: &Bar, second: &Bar) -> bool {
     }
 }
 
-/// Returns the arrow between two bars.
+/// Returns the arrow from the bar of an earlier stage to the bar of a later stage.
 ///
 /// The later stage may begin before the end of the earlier stage, because the later stage needs only a part of the
 /// earlier stage's result. The arrow is then vertical.

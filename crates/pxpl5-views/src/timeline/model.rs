@@ -26,7 +26,7 @@ pub struct Bar {
     pub begin: Time,
     /// Time at which the last board ended this work. For a stage that did not end, the end of the run.
     pub end: Time,
-    /// Index of the bar's lane in its row, counted from the top.
+    /// Index of the bar's lane in its row, counted from the top. Lanes divide a row in which bars overlap.
     pub lane: usize,
     /// For COPY: time spans in which the port received data.
     pub receiving: Vec<(Time, Time)>,
@@ -81,7 +81,7 @@ pub struct Timeline {
     pub picture: Option<PictureNumber>,
     /// Number of the SEND that supplied the head pose of the picture whose dependencies are drawn.
     pub update: Option<PictureNumber>,
-    /// Dependencies of the picture in the field `picture`.
+    /// Dependencies of the picture in [`Timeline::picture`].
     pub arrows: Vec<Arrow>,
 }
 

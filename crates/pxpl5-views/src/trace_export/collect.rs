@@ -117,7 +117,7 @@ impl Trace {
         }
     }
 
-    /// Adds the regions that arrive for a surface, and its swaps.
+    /// Adds the regions that arrive for a surface, and the swaps of this surface.
     fn regions(&mut self, outcome: &Outcome, group: usize, surface: SurfaceId) {
         let record = outcome.record();
         let message = record.message_span();

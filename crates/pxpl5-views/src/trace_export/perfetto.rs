@@ -5,7 +5,7 @@ use super::protobuf::Message;
 use pxpl5_sim::Time;
 use std::io::{self, Write};
 
-/// Field numbers and enumerators from the published `.proto` files.
+/// Numbers of members and of enumerators from the published `.proto` files.
 mod proto {
     pub(super) const TRACE_PACKET: u32 = 1;
     pub(super) const PACKET_TIMESTAMP: u32 = 8;
@@ -120,7 +120,7 @@ fn track_descriptor(trace: &Trace, number: usize, track: &Track) -> Message {
     }
 }
 
-/// Returns an event of the given kind on a track.
+/// Returns an event on a track. `kind` is the number of the kind of event in the Perfetto format.
 fn event(kind: u64, track: u64) -> Message {
     Message::default().number(EVENT_TYPE, kind).number(EVENT_TRACK, track)
 }

@@ -19,7 +19,8 @@ pub(super) const fn stage_name(stage: Stage) -> &'static str {
     }
 }
 
-/// Returns the slice of a picture's stage, for the surface with the given label or for all surfaces.
+/// Returns the slice of a picture's stage. `label` names the surface for which the stage works, and `None` stands for
+/// all surfaces.
 pub(super) fn stage_slice(stage: Stage, picture: PictureNumber, label: Option<&str>, [begin, end]: [Time; 2]) -> Slice {
     let surface = label.map_or_else(String::new, |label| format!(" {label}"));
     let name = format!("{} {picture}{surface}", stage_name(stage));
