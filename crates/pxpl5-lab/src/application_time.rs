@@ -50,7 +50,7 @@ pub struct ApplicationTime {
     pub mean_ms: u64,
     /// Half the width of the uniform distribution of the application's time, in milliseconds.
     pub jitter_ms: u64,
-    /// Latencies of figures 7, 7b and 7c.
+    /// Latencies of the fly-throughs of the scenes "mig", "molecules" and "head", in this order.
     pub figures: Vec<FlyThroughLatency>,
 }
 

@@ -132,8 +132,8 @@ const BLOCK_GPS: f64 = 20.0;
 const LEAST_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
-    /// Combines the estimates of many runs that share a number of threads. The time is the sum of all times divided by
-    /// the number of threads. The memory is the largest memory of a run times the number of threads.
+    /// Combines the estimates of many runs that are divided among `threads` threads. The time is the sum of all times
+    /// divided by the number of threads. The memory is the largest memory of a run times the number of threads.
     #[must_use]
     pub fn of_all(all: impl IntoIterator<Item = Self>, threads: usize) -> Self {
         let threads = threads.max(1) as f64;
@@ -236,7 +236,7 @@ impl RunWork {
 pub enum Study {
     /// The measurement of all published figures.
     Figures,
-    /// The ranking of interpretations ([`crate::readings`]), with the size of figure 7's fly-through.
+    /// The ranking of interpretations ([`crate::readings`]), and the size of the fly-through of the scene "mig".
     Readings {
         /// Number of seeds of the fly-through.
         seeds: u64,
@@ -273,7 +273,7 @@ const READINGS_BYTES: f64 = 60e6;
 const LEVELS_BYTES: f64 = 800e6;
 
 impl Study {
-    /// Estimates the memory and the time of the study on a number of threads. The computer is assumed to do other work
+    /// Estimates the memory and the time of the study on `threads` threads. The computer is assumed to do other work
     /// too.
     #[must_use]
     pub fn estimate(self, threads: usize) -> Estimate {

@@ -97,8 +97,8 @@ impl Interval {
     }
 }
 
-/// Times per triangle in nanoseconds that were fitted to figures 12 and 14. Any time within its range reproduces the
-/// figure exactly.
+/// Times per triangle in nanoseconds of the machines for Slats. The times were fitted to the largest numbers of
+/// triangles in the papers (figures 12 and 14). Any time within its range reproduces the figure exactly.
 const FITTED: [(&str, u64, (u64, u64)); 2] =
     [("slats:gp.triangle_ns", 30_000, (29_800, 30_100)), ("slats-1995:gp.triangle_ns", 55_800, (55_400, 56_300))];
 
@@ -202,7 +202,7 @@ fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: 
     })
 }
 
-/// Number of the figure that the pendulum rig measures.
+/// Number, in [`FIGURES`], of the figure that the pendulum rig measures.
 const OF_RIG: &str = "17";
 
 /// Computes the interval of the pendulum rig's figure by simulation with events. The photodiode's position, machine

@@ -350,7 +350,7 @@ impl Plan {
         self.run_on(Workstation::with_threads(1), scene)
     }
 
-    /// Runs the experiment as [`run`](Self::run) does, but on the given host, which can stop the run.
+    /// Runs the experiment as [`run`](Self::run) does, but on `host`, which can stop the run.
     ///
     /// # Errors
     ///

@@ -66,7 +66,8 @@ impl SceneChoice {
         Ok(if self.culled { whole.culled() } else { whole })
     }
 
-    /// Returns the scene, reduced to the chosen number of primitives, and with the chosen head motion.
+    /// Returns the scene `whole`, reduced to the number of primitives in these settings, and with the head motion in
+    /// these settings.
     pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, SettingError> {
         let decimated = whole.clone();
         self.prepared_by(whole, |n| decimated.decimated(n))

@@ -33,32 +33,32 @@ pub struct Bench {
     /// and a colon changes only that preset. For example, times of PPHIGS code must not change the machines that run
     /// Slats. [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
     pub changes: Vec<(String, u64)>,
-    /// Number of seeds of the head motion in the experiment of figure 7.
+    /// Number of seeds of the head motion for the fly-through of the scene "mig" (figure 7).
     pub seeds: u64,
-    /// Number of evaluated frames for each seed in the experiment of figure 7.
+    /// Number of evaluated frames for each seed of the fly-through of the scene "mig" (figure 7).
     pub frames: u64,
     /// Interpretation of the papers: the answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
     pub(crate) applications: Arc<Applications>,
 }
 
-/// Times of TRANSFORM and RENDER for one eye in figure 6, in milliseconds. The results for several times are averaged,
-/// because the swap waits for a retrace.
+/// Times of TRANSFORM and RENDER for one eye in the experiment of figure 6, in milliseconds. Both stages take longer
+/// than COPY. The results for several times are averaged, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
 
-/// Number of display fields in the runs for figures 16b and 16c, whose frames take about 30 fields each.
+/// Number of display fields in the runs with full bins (figures 16b and 16c), whose frames take about 30 fields each.
 const FIELDS_OF_FULL_BINS: u64 = 600;
 
 /// Paths of the parameters that hold times of the Rendering Control code.
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
 
-/// Number of head poses from which each scene is seen in figure 8.
+/// Number of head poses from which each scene is seen, to count the regions that triangles touch (figure 8).
 const VIEWS: u64 = 40;
-/// Time between two head poses of figure 8 in picoseconds.
+/// Time between two head poses from which the regions of triangles are counted, in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 impl Bench {
-    /// Returns settings with unchanged presets, and with 10 seeds of 150 frames for figure 7.
+    /// Returns settings with unchanged presets. The fly-through of the scene "mig" has 10 seeds of 150 frames.
     #[must_use]
     pub fn new(level: Level) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl Bench {
         }
     }
 
-    /// Returns the same settings with another number of seeds and frames for the fly-through of figure 7.
+    /// Returns the same settings with other numbers of seeds and frames for the fly-through of the scene "mig".
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
@@ -235,7 +235,8 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures figure 17 for three lines of the photodiode, unless the settings choose one line.
+    /// Measures the latency with the pendulum rig (figure 17) for three lines of the photodiode, unless the settings
+    /// choose one line.
     fn rig(&self) -> Result<FigureValue> {
         match self.photodiode_line() {
             Some(_) => self.rig_measurement().map(|measured| heads::rendering(&measured)),

@@ -12,7 +12,7 @@ pub struct Figure {
     pub paper: &'static str,
     /// Topic of the part of the paper that prints the figure.
     pub section: &'static str,
-    /// Statement of the paper that contains the figure, in a few words.
+    /// Statement in the paper that contains the figure, in a few words.
     pub statement: &'static str,
     /// Value printed in the paper, in `unit`.
     pub value: f64,

@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// (second) some fields.
 const FIELDS: (u64, u64) = (48, 14);
 
-/// Returns the random experiment with the given number, without pixels. Even numbers run Rendering Control, odd numbers
-/// run Slats.
+/// Returns the random experiment with the number `number`, without pixels. Even numbers give experiments with Rendering
+/// Control, odd numbers give experiments with Slats.
 ///
 /// # Errors
 ///

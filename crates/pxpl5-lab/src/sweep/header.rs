@@ -25,7 +25,7 @@ pub struct Header {
     pub seed: u64,
     /// Title of the sweep in one line, for the user.
     pub title: Option<String>,
-    /// Number of points of the whole sweep, over all shards.
+    /// Number of points (experiments) of the whole sweep, over all shards.
     pub points: u64,
     /// Names of the measured quantities with their definitions.
     pub measure: BTreeMap<String, String>,

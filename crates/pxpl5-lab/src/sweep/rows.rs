@@ -184,7 +184,7 @@ pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError 
 pub(super) struct RowReader<'a> {
     rows: &'a RowFile,
     file: BufReader<File>,
-    /// Byte position at which the next read begins.
+    /// Byte position in the file at which the next read begins.
     at: u64,
 }
 

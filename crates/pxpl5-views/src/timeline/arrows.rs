@@ -7,8 +7,8 @@ use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
 use pxpl5_wire::display::Display;
 
-/// Returns the dependencies between the stages of the chosen picture as arrows. Arrows outside the drawn time are left
-/// out.
+/// Returns the dependencies between the stages of the picture `chosen` as arrows. Arrows outside the drawn time are
+/// left out.
 pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<&PictureTimes>) -> Vec<Arrow> {
     let Some(chosen) = chosen else { return Vec::new() };
     let bars = located(timeline);
@@ -35,7 +35,7 @@ struct Located<'a> {
     bar: &'a Bar,
 }
 
-/// Returns the bars of the chosen picture with their positions.
+/// Returns the bars of the picture whose dependencies are drawn, each with its row and lane.
 fn located(timeline: &Timeline) -> Vec<Located<'_>> {
     let mut located = Vec::new();
     for (row, bars) in timeline.rows.iter().map(|row| &row.bars).enumerate() {
@@ -51,11 +51,11 @@ fn from_tracker(timeline: &Timeline, bars: &[Located<'_>]) -> Option<Arrow> {
     Some(Arrow { from: DrawingPlace::Tracker, begin: send.bar.begin, to: send.place, end: send.bar.begin })
 }
 
-/// Returns the bar on which another bar depends. Usually this is the previous stage of the same surface.
+/// Returns the bar on which `bar` depends. Usually this is the bar of the previous stage for the same surface.
 ///
-/// There are three other cases. A stage that does not work for single surfaces has one bar, and this bar is used. The
-/// second surface's TRANSFORM depends on the first surface's TRANSFORM. The bottom half of a picture depends on the top
-/// half.
+/// There are three other cases. If the previous stage has a single bar for all surfaces, the function returns this bar.
+/// The TRANSFORM of the second surface depends on the TRANSFORM of the first surface. The bottom half of a picture
+/// depends on the top half.
 fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     let sibling = bars.iter().find(|other| other.bar.stage == bar.stage && is_sequel(other.bar, bar)).copied();
     if sibling.is_some() {

@@ -140,7 +140,7 @@ fn counted(track: u64, value: i64) -> Message {
     event(COUNTER, track).number(EVENT_COUNTER_VALUE, value.cast_unsigned())
 }
 
-/// Returns the start event and the end event of a slice.
+/// Returns the two Perfetto events that mark the start and the end of a slice (an event with a duration).
 fn ends(track: u64, slice: &Slice) -> [(u64, Message); 2] {
     [(ns(slice.begin), begin(track, slice)), (ns(slice.end), event(SLICE_END, track))]
 }
