@@ -87,7 +87,7 @@ pub enum StudyError {
     /// Another thread stopped the comparison.
     #[error("the comparison was stopped")]
     Stopped,
-    /// A line in the file of rows is not a row.
+    /// A line in the file of finished rows cannot be read as a row of a comparison.
     #[error("{path}, line {line}: expected a row of a comparison, found {found}")]
     Damaged {
         /// Path of the file of rows.

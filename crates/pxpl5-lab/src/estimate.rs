@@ -257,8 +257,8 @@ pub enum Study {
 /// CPU seconds of all figures. This constant and the following constants are fitted to measurements with the build
 /// profile `dist` on one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
-/// CPU seconds of one frame of an application scene. `READINGS_BEST` is the fraction of this time that each
-/// interpretation adds if it is simulated with events.
+/// CPU seconds of one frame of an application scene. An interpretation that is also simulated with events adds the
+/// fraction `READINGS_BEST` of this time.
 const READINGS_FRAME_S: f64 = 0.0172;
 const READINGS_BEST: f64 = 0.1;
 /// CPU seconds to simulate the published figures at all levels of modelling. The next two constants are the CPU seconds

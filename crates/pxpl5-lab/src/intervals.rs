@@ -82,8 +82,8 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Returns the minimum and maximum of the figure over all three designs of experiments, as computed at the analytic
-    /// level.
+    /// Returns the minimum and maximum of the figure over three designs of experiments: `one_at_a_time`, `readings` and
+    /// `joint`. The values are computed at the analytic level.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
@@ -187,8 +187,8 @@ fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     Some(interval(id, nominal, &ends, vec![nominal], &variations))
 }
 
-/// Returns the values of a figure at both ends of each range, one parameter at a time. If the experiment yields no
-/// value, the nominal value counts.
+/// Returns the values of a figure at both ends of each range, one parameter at a time. An experiment without a result
+/// gets the value `nominal`.
 fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: f64) -> Vec<f64> {
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     crate::parallel::map(&ends, |(v, value)| {

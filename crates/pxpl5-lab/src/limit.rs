@@ -53,7 +53,8 @@ pub struct Model {
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
-    /// Decimation of `whole`. All sizes of a search share its first steps (collapses of edges).
+    /// Decimation of `whole`. The scenes of a search, one for each number of triangles, share the first steps of the
+    /// decimation (collapses of edges).
     decimation: Arc<Decimation>,
 }
 
@@ -133,7 +134,7 @@ impl LimitQuery {
         self.search_with(|_| {})
     }
 
-    /// Searches for the limit. `progress` is called with the number of sizes tried so far.
+    /// Searches for the limit. `progress` is called with the number of scenes that were simulated so far.
     ///
     /// # Errors
     ///

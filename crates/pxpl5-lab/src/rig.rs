@@ -271,8 +271,8 @@ fn brightness(picture: &RgbImage, x: u32, y: u32) -> u32 {
     picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3
 }
 
-/// Runs an experiment and samples the photodiodes. A run that ends before it can fill the pipeline with pictures is
-/// accepted here.
+/// Runs an experiment and samples the photodiodes. The function accepts a run that is too short to fill the pipeline
+/// with pictures.
 fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
     let machine = experiment.build()?;
     photodiodes.iter().try_for_each(|photodiode| photodiode.check(machine.record().display()))?;

@@ -16,7 +16,7 @@ const ORDER: u32 = 3;
 /// Number of words of a token message under Rendering Control.
 const TOKEN: u32 = 6;
 
-/// Node number of the board that sends messages to the measured board and receives messages from it.
+/// Node number of the partner of the measured board, which sends and receives all messages of the measurement.
 const OTHER: NodeId = NodeId(2);
 
 /// Total time and number of a board's messages. A received message counts once, and a sent chain of messages counts

@@ -105,11 +105,10 @@ pub struct ComparisonRow {
     /// ended before the evaluation began.
     pub window: Option<ResultWindow>,
     /// Contributions of all causes to the mean error. The sum of all contributions is the mean error. Empty unless the
-    /// query asked for them.
+    /// query asked for causes.
     pub causes: Vec<CauseShare>,
-    /// Mean error of the first seed with each predictor. Empty unless the query asked for it, and for the row `ideal`,
-    /// whose pictures no predictor
-    /// changes.
+    /// Mean error of the first seed with each predictor. Empty if the query did not ask for predictors. Also empty for
+    /// the row `ideal`, whose pictures no predictor changes.
     pub predictors: Vec<PredictorMean>,
     /// Largest number of triangles that meets the pipeline's own criterion. `None` if the query did not ask for a
     /// search, or the search failed.

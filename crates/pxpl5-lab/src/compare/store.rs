@@ -211,7 +211,7 @@ fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8])
 }
 
 impl Rows {
-    /// Appends a line. A line that cannot be written completely is removed, so that the lines before it stay readable.
+    /// Appends a line. A line that cannot be written completely is removed, so that all earlier lines stay readable.
     fn put(&mut self, path: &Path, line: &str) -> Result<(), StudyError> {
         if let Err(error) = self.file.write_all(line.as_bytes()) {
             // The first error is the one to report.

@@ -80,8 +80,9 @@ pub(crate) struct Applications {
     limits: Places<String, u32>,
 }
 
-/// Returns the cache key of an experiment with a built-in scene, and the number of finished regions that a backing store
-/// holds. Both together contain everything that determines the result: machine, pipeline, scene, length, seed and level.
+/// Returns the cache key of an experiment with a built-in scene, and the number of finished regions that a backing
+/// store holds. The key and this number contain everything that determines the result: machine, pipeline, scene,
+/// length, seed and level.
 pub(super) fn key_of(experiment: &Experiment, scene: &str) -> (String, u64) {
     let mut machine = experiment.config().clone();
     let capacity = machine.renderer.backing_regions();

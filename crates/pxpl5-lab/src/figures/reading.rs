@@ -149,7 +149,7 @@ impl Reading {
         }
     }
 
-    /// Converts a latency in milliseconds to fields, as this interpretation defines them.
+    /// Converts a latency in milliseconds to fields, by this interpretation's definition of the unit "field".
     #[must_use]
     pub fn fields_of(&self, latency_ms: f64, field_ms: f64) -> f64 {
         match self.fields {

@@ -194,7 +194,7 @@ struct Search<'a> {
     trials: BTreeMap<u64, Trial>,
     /// The error of the last value that could not be run.
     refused: Option<StudyError>,
-    /// The scene that was loaded last, with the settings that chose it.
+    /// The scene that was loaded last, with the settings of this scene.
     scene: Option<(crate::SceneChoice, Arc<Scene>)>,
 }
 
