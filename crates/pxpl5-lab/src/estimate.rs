@@ -43,7 +43,7 @@ pub struct RunWork {
     pub primitives: u64,
     /// Number of eyes for which pictures are drawn.
     pub eyes: u64,
-    /// Number of pictures per eye and field, at most 1.
+    /// Number of pictures for each eye in a display field, at most 1.
     pub pictures_a_field: f64,
     /// True if a closed-form formula gives the times of the pictures. All primitives are then transformed in advance.
     pub uses_closed_form: bool,
@@ -90,9 +90,9 @@ const STATISTICS: f64 = 10.0;
 const BLOCK: f64 = 100.0;
 /// Number of latest fields whose blocks of pixels stay in memory, in a run that keeps only statistics.
 const WINDOW: f64 = 240.0;
-/// Memory in bytes of the pixel errors of a field.
+/// Memory in bytes of the pixel errors of a display field.
 const ERRORS: f64 = 1e3;
-/// Maximum number of fields whose pixel errors are kept one by one.
+/// Maximum number of display fields for which a run keeps separate pixel errors.
 const JUDGED: f64 = 20_971.0;
 
 /// Seconds to simulate a field, including its retrace and the samples of the head pose.

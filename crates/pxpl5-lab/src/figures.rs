@@ -53,14 +53,14 @@ use thiserror::Error;
 pub struct FigureError {
     /// Number of the figure.
     pub id: String,
-    /// Reason for the missing result.
+    /// Reason why the experiment yields no result.
     pub reason: String,
 }
 
 /// All published figures with the model's values and intervals, and further comparisons.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// Rows of the main table, in the order of [`FIGURES`].
+    /// Table rows of the published figures, in the order of [`FIGURES`].
     pub rows: Vec<FigureRow>,
     /// Rows of the main table, measured with the times of executed i860 code, without intervals.
     pub of_code: Vec<FigureRow>,

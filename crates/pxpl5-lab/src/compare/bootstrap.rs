@@ -29,9 +29,9 @@ const SEED: u64 = 0xB10C_B007;
 /// Numbers of fields, blocks and samples that describe a moving-block bootstrap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BootstrapSize {
-    /// Number of fields in the series.
+    /// Number of display fields in the series of values.
     pub fields: usize,
-    /// Number of successive fields in a block.
+    /// Number of successive display fields whose values form a block.
     pub block_fields: usize,
     /// Number of resampled means.
     pub resamples: usize,

@@ -1,4 +1,4 @@
-//! The last picture that a row of a comparison shows in its first run.
+//! The last picture that a compared pipeline shows in the run with the first seed.
 
 use image::RgbImage;
 use pxpl5_measure::Measured;

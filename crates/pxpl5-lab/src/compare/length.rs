@@ -6,7 +6,7 @@ use crate::experiment_file::Plan;
 use pxpl5_sim::Time;
 use pxpl5_wire::NodeId;
 
-/// Length of the runs along a recording.
+/// Length of the runs in which the head replays a recorded motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordedLength {
     /// Number of whole display periods in the recording, which is the length of each run.

@@ -20,7 +20,7 @@ pub enum Precision {
 pub struct UntilPrecise {
     /// Greatest width of the interval of the mean error.
     pub width: Precision,
-    /// Maximum number of seeds of a row.
+    /// Maximum number of seeds for each row of the comparison.
     pub max_seeds: usize,
 }
 

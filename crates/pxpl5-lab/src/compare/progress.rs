@@ -1,4 +1,4 @@
-//! Progress of a comparison, and the flag that stops its runs.
+//! The number of finished runs of a comparison, and the flag by which another thread stops the runs.
 
 use crate::Workstation;
 use crate::error::StudyError;

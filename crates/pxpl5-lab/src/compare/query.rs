@@ -37,7 +37,7 @@ pub struct CompareQuery {
     /// Machine, scene, head and number of fields, without a pipeline. The compared pipelines come from the registry of
     /// this file. If `head.motion` is `synthetic`, every seed has a different motion.
     pub shared: ExperimentFile,
-    /// Names of the rows to run. An empty list runs all rows.
+    /// Names of the rows (pipelines with settings) to run. An empty list runs all rows.
     pub only: Vec<String>,
     /// Seeds of the random numbers of tracker, host and motion. Every row has one run for each seed.
     pub seeds: Vec<u64>,
@@ -88,11 +88,11 @@ pub struct Comparison {
     /// that is due after this period. Rows that start up later are evaluated from a later period on
     /// ([`ComparisonRow::window`]).
     pub evaluated_from: PeriodNumber,
-    /// Results of the compared pipelines, in the order of the registry.
+    /// Rows with the results of the compared pipelines, in the order of the registry.
     pub pipelines: Vec<ComparisonRow>,
 }
 
-/// Data that all rows of a comparison share.
+/// Data that the runs of all rows of a comparison share.
 struct Common<'a> {
     scene: Arc<Scene>,
     tunings: Arc<Tunings>,
@@ -436,7 +436,7 @@ impl Comparison {
         row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MOST_PERIODS_APART)
     }
 
-    /// Returns the row of the pipeline with this name.
+    /// Returns the row that is named `pipeline`, or `None` if the comparison has no such row.
     #[must_use]
     pub fn row(&self, pipeline: &str) -> Option<&ComparisonRow> {
         self.pipelines.iter().find(|row| row.pipeline == pipeline)

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use tracking::predict::PredictorKind;
 
-/// Errors of position on the screen, over the runs of all seeds.
+/// Errors of position on the screen, computed from the runs of all seeds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ErrorSpread {
     /// Mean distance of a pixel's content from its ideal position, in pixels.
@@ -59,7 +59,7 @@ pub struct ComparisonRow {
     pub settings: String,
     /// Number of eyes, each with its own frame buffer, that the pipeline draws for.
     pub eyes: usize,
-    /// Number of seeds with which the row ran.
+    /// Number of seeds with which the pipeline of this row ran.
     pub seeds: usize,
     /// True if the interval of the mean error is as narrow as the query requires. `None` if the query requires no
     /// width.
@@ -120,7 +120,7 @@ pub struct ComparisonRow {
     pub failure: Option<String>,
     /// Time in seconds that the runs took on the host.
     pub host_seconds: f64,
-    /// Errors on the screen of the first seed, for each field.
+    /// Errors of position on the screen in the run with the first seed, for each display field.
     #[serde(skip)]
     pub by_field: Vec<FieldMisregistration>,
     /// Last picture of the first seed for the first eye. `None` if the query did not ask for pictures, or no picture
@@ -195,7 +195,7 @@ impl ComparisonRow {
         self.not_shown.unwrap_or(0) == 0
     }
 
-    /// Returns true if at least one pixel of the row was evaluated.
+    /// Returns true if the error of at least one pixel was evaluated.
     #[must_use]
     pub const fn was_evaluated(&self) -> bool {
         self.error.n > 0

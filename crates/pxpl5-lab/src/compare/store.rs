@@ -58,11 +58,11 @@ struct PictureFiles {
     is_complete: bool,
 }
 
-/// The file of rows, which is open for writing.
+/// The file of finished rows, which is open for writing.
 #[derive(Debug)]
 struct Rows {
     file: File,
-    /// Number of rows in the file.
+    /// Number of finished rows in the file.
     count: usize,
     /// Length of the file in bytes.
     end: u64,

@@ -1,4 +1,4 @@
-//! One run of one row in a comparison.
+//! One run of a compared pipeline, with one seed.
 
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;

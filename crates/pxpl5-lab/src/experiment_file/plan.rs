@@ -34,7 +34,7 @@ pub struct Outputs {
 /// A published figure that the experiment reproduces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Published {
-    /// Number of the figure. `None` if the paper does not number the figure.
+    /// Number of the published figure in the paper. `None` if the paper does not number the figure.
     pub figure: Option<u64>,
     /// Short name of the paper that prints the figure.
     pub source: Option<String>,

@@ -23,7 +23,7 @@ pub struct FigureFamily {
     pub title: &'static str,
     /// Path of the document with more details.
     pub document: &'static str,
-    /// Rows in the order of the experiments.
+    /// Table rows of the figures, in the order of the experiments.
     pub rows: Vec<FigureRow>,
 }
 
@@ -34,7 +34,7 @@ const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 /// duration may be invisible.
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
-/// Number of fields of a run of experiment E1.
+/// Number of display fields in a run of experiment E1.
 const FIELDS: u64 = 60;
 /// Number of rotation latencies that each run of experiment E1 must give. The runs are compared field by field, so this
 /// number must be the same for all runs.

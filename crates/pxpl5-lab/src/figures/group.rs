@@ -18,7 +18,7 @@ pub struct FigureGroup {
     pub title: &'static str,
     /// Conditions of the experiments that all rows of the group share, and conditions that the papers do not state.
     pub about: &'static str,
-    /// Rows in the order of the group's table.
+    /// Table rows of the figures.
     pub rows: Vec<FigureRow>,
 }
 

@@ -1,4 +1,4 @@
-//! The row of a published figure, and the definition of a miss.
+//! The table row of a published figure, and the definition of a figure that the model misses.
 
 use super::measured::FigureValue;
 use super::table::Figure;

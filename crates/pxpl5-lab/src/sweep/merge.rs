@@ -18,7 +18,7 @@ pub struct Merged {
     pub failed: u64,
     /// Points with more than one row. All rows of such a point were equal.
     pub duplicates: Vec<u64>,
-    /// Points without a row. Empty unless missing points were allowed.
+    /// Points (experiments) without a row. Empty unless missing points were allowed.
     pub missing: Vec<u64>,
 }
 

@@ -101,7 +101,7 @@ impl Store {
         Ok(store)
     }
 
-    /// Returns true if the folder has a row for this point.
+    /// Returns true if the folder has a row for the point (experiment) with the index `point`.
     #[must_use]
     pub fn holds(&self, point: u64) -> bool {
         self.rows.holds(point)
