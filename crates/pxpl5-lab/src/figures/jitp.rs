@@ -25,7 +25,7 @@ that it should show when it lights. The unit of the error is a pixel of the pape
 field or line lasts longer than its lit pixels, because a field and a line also include a retrace. Like the paper, the \
 model scales each angle to the whole time of the field or line.";
 
-/// Rate of a fast turn of the head in degrees per second (JITP).
+/// Rate of a fast turn of the head in degrees per second, published in the paper on just-in-time pixels.
 const PAN: f64 = 200.0;
 
 /// Horizontal resolution of the picture in the paper on just-in-time pixels, in pixels per degree.

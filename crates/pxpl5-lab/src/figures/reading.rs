@@ -140,7 +140,8 @@ impl Reading {
         Ok(machine)
     }
 
-    /// Returns the latency samples of this interpretation, up to the swap, in milliseconds.
+    /// Returns the latency samples of a run in milliseconds. Each latency ends at the swap. Depending on the
+    /// interpretation, each frame or each eye gives one sample.
     #[must_use]
     pub fn latencies_ms<'a>(&self, summary: &'a Summary) -> &'a [f64] {
         match self.samples {

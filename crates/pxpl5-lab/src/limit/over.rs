@@ -250,7 +250,8 @@ impl Search<'_> {
         self.trials.iter().map(|(number, trial)| (self.query.values.value(*number), trial.reached)).collect()
     }
 
-    /// Returns the result if all values miss the goal. The best value then states the limiting resource.
+    /// Returns the result of the search if all values of the setting miss the goal. The run with the best value then
+    /// states the limiting resource.
     fn none(mut self) -> Result<OverLimit, StudyError> {
         let is_refused = self.trials.values().all(|trial| trial.score == f64::NEG_INFINITY);
         if let Some(error) = self.refused.take().filter(|_| is_refused) {

@@ -4,7 +4,8 @@ use super::values::{cell, decimal, heading, known, list, number, number_cell, pa
 use crate::markup::Element;
 use serde_json::Value;
 
-/// Returns the section for a report. The result is empty for a report of an older version without these values.
+/// Returns the page section about the busy times and waits in a report. The result is empty for a report of an older
+/// version without these values.
 pub(super) fn utilisation(report: &Value) -> Vec<Element> {
     let mut all = boards(&report["utilisation"]);
     all.extend(path(&report["critical_path"]));
