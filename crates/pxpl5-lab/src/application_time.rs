@@ -5,10 +5,10 @@
 //! are set. This module varies both parameters and reports the mean and standard deviation of each figure. No parameter
 //! is fitted to the results.
 //!
-//! The ranges of the two parameters end where a trivial scene still runs at the printed 30 frames/s. No rate is printed
-//! for the fly-throughs, so the application of a fly-through may have taken longer than this range. In this module,
-//! therefore, the mean time reaches 40 ms, with a jitter of up to 30 ms. A Unix host polled its serial ports once in 30
-//! ms (TR94). Both maxima are assumed.
+//! The ranges of the two parameters end where a trivial scene still runs at the 30 frames/s that TR94 prints. No rate
+//! is printed for the fly-throughs, so the application of a fly-through may have taken longer than this range. In this
+//! module, therefore, the mean time reaches 40 ms, with a jitter of up to 30 ms. A Unix host polled its serial ports
+//! once in 30 ms (TR94). Both maxima are assumed.
 
 use crate::figures::{Bench, FIGURES};
 use crate::parallel;
@@ -25,10 +25,11 @@ const JITTER: &str = "host.application_jitter_ns";
 const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 
 /// Jitters of the application's time to simulate, in milliseconds. A jitter above the mean time is not simulated,
-/// because some times would be negative. Assumed: up to the polling period (TR94).
+/// because some times would be negative. Assumed: up to 30 ms, the period at which a Unix host polled its serial ports
+/// (TR94).
 const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
-/// Numbers of the figures in TR94 that show fly-throughs.
+/// Numbers, as in [`FIGURES`], of the published latencies of fly-throughs.
 const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 
 /// Mean and standard deviation of the latency in one figure.
@@ -36,9 +37,9 @@ const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 pub struct FlyThroughLatency {
     /// Number of the figure, as in [`FIGURES`].
     pub id: &'static str,
-    /// Mean over all samples, in the figure's unit.
+    /// Mean of all latency samples, in the figure's unit.
     pub mean: f64,
-    /// Standard deviation of the samples, in the same unit.
+    /// Standard deviation of all latency samples, in the figure's unit.
     pub sd: f64,
 }
 
@@ -49,12 +50,12 @@ pub struct ApplicationTime {
     pub mean_ms: u64,
     /// Half the width of the uniform distribution of the application's time, in milliseconds.
     pub jitter_ms: u64,
-    /// Latencies of figures 7, 7b and 7c.
+    /// Latencies of the fly-throughs of the scenes "mig", "molecules" and "head", in this order.
     pub figures: Vec<FlyThroughLatency>,
 }
 
-/// Simulates the fly-throughs for all application times at the analytic level. The interpretation of the papers and the
-/// numbers of seeds and frames come from the given bench (common settings of all measurements).
+/// Simulates the fly-throughs for all times of the application at the analytic level. `bench` holds the common settings
+/// of all measurements, such as the interpretation of the papers and the numbers of seeds and frames.
 ///
 /// # Errors
 ///
@@ -80,7 +81,7 @@ fn measure(bench: &Bench, mean_ms: u64, jitter_ms: u64) -> Result<ApplicationTim
     Ok(ApplicationTime { mean_ms, jitter_ms, figures })
 }
 
-/// Returns the printed mean and standard deviation of the latency of each fly-through.
+/// Returns the mean and the standard deviation that TR94 prints for the latency of each fly-through.
 #[must_use]
 pub fn published() -> Vec<FlyThroughLatency> {
     let of_fly_throughs = FIGURES.iter().filter(|figure| FLY_THROUGHS.contains(&figure.id));

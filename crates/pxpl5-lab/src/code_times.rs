@@ -32,10 +32,10 @@
 //! Each of `structure`, `sphere view` and `pass` is the mean of the scenes' means.
 //!
 //! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
-//! PPHIGS the board is a slave, and each message includes the cost of the token whose bin the slave sends. Under Slats,
-//! the measured messages are those that a board receives and sends in one display field. The time of a message is the
-//! mean over the three scenes. `token entry` is the additional time to send a bin for each entry in the bin. This time
-//! is the slope of a least-squares fit over all bins.
+//! PPHIGS (the graphics library that runs Rendering Control) the board is a slave, and each message includes the cost
+//! of the token whose bin the slave sends. Under Slats, the measured messages are those that a board receives and sends
+//! in one display field. The time of a message is the mean over the three scenes. `token entry` is the additional time
+//! to send a bin for each entry in the bin. This time is the slope of a least-squares fit over all bins.
 
 mod messages;
 mod strips;
@@ -60,7 +60,8 @@ use std::sync::Arc;
 /// The application scenes of TR94.
 const SCENES: [&str; 3] = ["mig", "molecules", "head"];
 
-/// Number of boards that share a scene: the slaves of the small machine. Only the first board's share is measured.
+/// Number of slaves among which a scene's triangles are divided: those of the preset `small-hmd`. Only the first
+/// slave's share is measured.
 const BOARDS: usize = 12;
 
 /// Number of head poses from which each scene is transformed.
@@ -137,7 +138,7 @@ fn picture(of: CodeUse) -> Picture {
     Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: false }
 }
 
-/// Returns the indices of the eyes that each pass over the display list transforms, one list for each pass.
+/// Returns the eyes for which each pass transforms the display list: one list of indices (0 or 1) for each pass.
 const fn eyes_of_a_pass(of: CodeUse) -> &'static [&'static [usize]] {
     match of {
         CodeUse::Pphigs => &[&[0], &[1]],
@@ -152,7 +153,8 @@ fn parts(of: CodeUse, share: &Share) -> Vec<Share> {
     }
 }
 
-/// Measures the times of a version of the i860 code, for PPHIGS or for Slats.
+/// Measures the times of a version of the i860 code. `of` selects the code of Slats or the code of PPHIGS, the graphics
+/// library that runs Rendering Control.
 ///
 /// # Errors
 ///
@@ -197,7 +199,7 @@ pub fn code_times(version: CodeVersion, of: CodeUse) -> Result<CodeTimes, Experi
 
 impl CodeTimes {
     /// Improves the times of a bin entry, a triangle and the clipper by one step of an iteration. Each time is fitted
-    /// to the samples after the other two times are subtracted.
+    /// to measured passes, after the estimated contributions of the other two times are subtracted.
     fn improve(&mut self, of: CodeUse, cut: &[Sample], scenes: &[Vec<Sample>]) {
         // Clipped triangles are counted apart, so their time is subtracted here.
         let of_clipper = self.triangle_ns + self.guard_ns;
@@ -342,8 +344,9 @@ fn measured<const N: usize>(
     Ok(samples)
 }
 
-/// Replaces every triangle by a larger right-angled triangle that reaches beyond the guard band. At the distance d both
-/// legs measure 4 ([`CLIPPED_M`] d + 0.5 m). The 0.5 m allow for the positions of the eyes.
+/// Replaces every triangle by a larger right-angled triangle that reaches beyond the guard band. A triangle at the
+/// distance d from the viewer gets two legs with a length of 4 ([`CLIPPED_M`] d + 0.5 m). The 0.5 m allow for the
+/// positions of the eyes.
 fn beyond_the_guard_band(mut list: DisplayList) -> DisplayList {
     for triangle in list.positions.chunks_exact_mut(3) {
         for (corner, [x, y]) in triangle.iter_mut().zip([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]]) {
@@ -396,7 +399,8 @@ fn begun(version: CodeVersion, of: CodeUse, scene: &str) -> Result<PassBeginning
     })
 }
 
-/// Returns the mean time to begin a pass in nanoseconds. A pass covers one eye or both.
+/// Returns the mean time to begin a pass in nanoseconds. Depending on `of`, a pass transforms the scene for one eye or
+/// for both eyes.
 fn beginning_ns(of: CodeUse, mut rig: Rig) -> Result<f64, ExperimentError> {
     let eyes = eyes_of_a_pass(of);
     let mut all_ns = 0.0;

@@ -1,4 +1,4 @@
-//! The error of studies of many experiments.
+//! The error type of studies, which consist of many experiments.
 
 use pxpl5_run::ExperimentError;
 use pxpl5_sim::parameters::{FileError, SettingError};
@@ -16,12 +16,12 @@ pub enum StudyError {
     /// An experiment of the study cannot run.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
-    /// The number of fields is too small or too large.
+    /// The number of display fields of a run is too small or too large.
     #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
     Fields {
-        /// Minimum and maximum number of fields.
+        /// Minimum and maximum number of display fields of a run.
         expected: (u64, u64),
-        /// Number of fields in the settings.
+        /// Number of display fields in the settings.
         found: u64,
     },
     /// The query has no seeds.
@@ -30,10 +30,10 @@ pub enum StudyError {
     /// The registry has no pipeline that takes part in comparisons.
     #[error("expected a registry with a pipeline that is compared, found none")]
     NoPipeline,
-    /// A row in the query does not exist.
+    /// The query names a row of the comparison that does not exist.
     #[error("expected one of {expected}; found `{found}`, did you mean `{nearest}`?")]
     Row {
-        /// Names of all rows, separated by commas.
+        /// Names of all rows of the comparison, separated by commas.
         expected: String,
         /// Name of the row in the query.
         found: String,
@@ -63,7 +63,7 @@ pub enum StudyError {
     /// The folder holds rows of a comparison with other settings.
     #[error("{path}: these rows are of another comparison: {key} was {found}, expected {expected}")]
     OtherSettings {
-        /// Path of the file of rows.
+        /// Path of the file of finished rows.
         path: String,
         /// First key or option that differs.
         key: String,
@@ -77,22 +77,22 @@ pub enum StudyError {
         "{path}: {rows} of {of} rows of an interrupted comparison are here; continue with --resume, or choose another folder"
     )]
     Unfinished {
-        /// Path of the file of rows.
+        /// Path of the file of finished rows.
         path: String,
-        /// Number of finished rows.
+        /// Number of finished rows of the interrupted comparison.
         rows: usize,
-        /// Number of rows of the interrupted comparison.
+        /// Number of all rows of the interrupted comparison.
         of: usize,
     },
-    /// The caller stopped the comparison.
+    /// Another thread stopped the comparison.
     #[error("the comparison was stopped")]
     Stopped,
-    /// A line in the file of rows is not a row.
+    /// A line in the file of finished rows cannot be read as a row of a comparison.
     #[error("{path}, line {line}: expected a row of a comparison, found {found}")]
     Damaged {
-        /// Path of the file of rows.
+        /// Path of the file of finished rows.
         path: String,
-        /// Number of the line, counted from 1.
+        /// Number of the damaged line in the file, counted from 1.
         line: usize,
         /// Error of the parser.
         found: String,
@@ -106,7 +106,7 @@ pub enum StudyError {
         "expected the time of complete display for {expected} frames that low points requested, found it for {found}"
     )]
     NotShown {
-        /// Number of frames that were requested at low points.
+        /// Number of frames that the rig requested at low points of the pendulum.
         expected: usize,
         /// Number of requested frames that were shown completely, according to the pipeline's records.
         found: usize,
@@ -126,7 +126,7 @@ pub enum StudyError {
     Photodiode {
         /// Number of lines on the screen.
         lines: u32,
-        /// Number of the photodiode's line in the settings, counted from 0.
+        /// Number of the screen's line under the photodiode in the settings, counted from 0.
         found: u32,
     },
 }

@@ -43,7 +43,7 @@ pub struct RunWork {
     pub primitives: u64,
     /// Number of eyes for which pictures are drawn.
     pub eyes: u64,
-    /// Number of pictures per eye and field, at most 1.
+    /// Number of pictures for each eye in a display field, at most 1.
     pub pictures_a_field: f64,
     /// True if a closed-form formula gives the times of the pictures. All primitives are then transformed in advance.
     pub uses_closed_form: bool,
@@ -90,9 +90,9 @@ const STATISTICS: f64 = 10.0;
 const BLOCK: f64 = 100.0;
 /// Number of latest fields whose blocks of pixels stay in memory, in a run that keeps only statistics.
 const WINDOW: f64 = 240.0;
-/// Memory in bytes of the pixel errors of a field.
+/// Memory in bytes of the pixel errors of a display field.
 const ERRORS: f64 = 1e3;
-/// Maximum number of fields whose pixel errors are kept one by one.
+/// Maximum number of display fields for which a run keeps separate pixel errors.
 const JUDGED: f64 = 20_971.0;
 
 /// Seconds to simulate a field, including its retrace and the samples of the head pose.
@@ -132,8 +132,8 @@ const BLOCK_GPS: f64 = 20.0;
 const LEAST_BLOCK_S: f64 = 6e-6;
 
 impl Estimate {
-    /// Combines the estimates of many runs that share a number of threads. The time is the sum of all times divided by
-    /// the number of threads. The memory is the largest memory of a run times the number of threads.
+    /// Combines the estimates of many runs that are divided among `threads` threads. The time is the sum of all times
+    /// divided by the number of threads. The memory is the largest memory of a run times the number of threads.
     #[must_use]
     pub fn of_all(all: impl IntoIterator<Item = Self>, threads: usize) -> Self {
         let threads = threads.max(1) as f64;
@@ -236,13 +236,13 @@ impl RunWork {
 pub enum Study {
     /// The measurement of all published figures.
     Figures,
-    /// The ranking of interpretations ([`crate::readings`]), with the size of figure 7's fly-through.
+    /// The ranking of interpretations ([`crate::readings`]), and the size of the fly-through of the scene "mig".
     Readings {
         /// Number of seeds of the fly-through.
         seeds: u64,
         /// Number of frames for each seed.
         frames: u64,
-        /// Number of interpretations that are measured with events too.
+        /// Number of best interpretations that are also simulated with events.
         best: u64,
     },
     /// The comparison of all levels of modelling ([`crate::levels`]).
@@ -257,8 +257,8 @@ pub enum Study {
 /// CPU seconds of all figures. This constant and the following constants are fitted to measurements with the build
 /// profile `dist` on one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
-/// CPU seconds of one frame of an application scene. `READINGS_BEST` is the fraction of this time that each
-/// interpretation adds if it is simulated with events.
+/// CPU seconds of one frame of an application scene. An interpretation that is also simulated with events adds the
+/// fraction `READINGS_BEST` of this time.
 const READINGS_FRAME_S: f64 = 0.0172;
 const READINGS_BEST: f64 = 0.1;
 /// CPU seconds to simulate the published figures at all levels of modelling. The next two constants are the CPU seconds
@@ -273,7 +273,7 @@ const READINGS_BYTES: f64 = 60e6;
 const LEVELS_BYTES: f64 = 800e6;
 
 impl Study {
-    /// Estimates the memory and the time of the study on a number of threads. The computer is assumed to do other work
+    /// Estimates the memory and the time of the study on `threads` threads. The computer is assumed to do other work
     /// too.
     #[must_use]
     pub fn estimate(self, threads: usize) -> Estimate {

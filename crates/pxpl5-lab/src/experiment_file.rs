@@ -101,8 +101,9 @@ impl ExperimentFile {
         &self.registry
     }
 
-    /// Returns all keys of a registry except two groups. The keys of machine parameters are `machine.` followed by a
-    /// path of `MachineConfig::set`. [`tracking_parameters`] lists the parameters of trackers and predictors.
+    /// Returns the keys for the pipelines and displays of a registry. Two groups of keys are left out. The keys of
+    /// machine parameters are `machine.` followed by a path of `MachineConfig::set`. [`tracking_parameters`] lists the
+    /// keys of trackers and predictors.
     #[must_use]
     pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
         keys::keys(registry)
@@ -200,7 +201,7 @@ impl ExperimentFile {
         self.settings.get(key).map(|setting| setting.place.as_str())
     }
 
-    /// Returns the seed, 1 by default.
+    /// Returns the seed of the random numbers, which is 1 by default.
     ///
     /// # Errors
     ///

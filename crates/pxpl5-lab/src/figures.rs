@@ -53,14 +53,14 @@ use thiserror::Error;
 pub struct FigureError {
     /// Number of the figure.
     pub id: String,
-    /// Reason for the missing result.
+    /// Reason why the experiment yields no result.
     pub reason: String,
 }
 
 /// All published figures with the model's values and intervals, and further comparisons.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// Rows of the main table, in the order of [`FIGURES`].
+    /// Table rows of the published figures, in the order of [`FIGURES`].
     pub rows: Vec<FigureRow>,
     /// Rows of the main table, measured with the times of executed i860 code, without intervals.
     pub of_code: Vec<FigureRow>,
@@ -70,7 +70,8 @@ pub struct Figures {
     pub families: Vec<FigureFamily>,
     /// Further figures of Pixel-Planes 5 by topic: peak rates, just-in-time pixels, trackers.
     pub groups: Vec<FigureGroup>,
-    /// Fit of the Rendering Control figures under all interpretations of the papers, at the analytic level.
+    /// Agreement of the model with the published figures of Rendering Control, for each interpretation of the papers at
+    /// the analytic level.
     pub readings: Readings,
     /// Latencies of the fly-throughs for several times of the host's application, at the analytic level.
     pub application_times: Vec<ApplicationTime>,

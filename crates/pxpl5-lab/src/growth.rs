@@ -243,8 +243,8 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
     text
 }
 
-/// Returns the exponent of the power law of a quantity over the number of primitives. Only runs with at least `from`
-/// primitives count.
+/// Returns the exponent of the power law by which a quantity grows with the number of primitives. Only runs with at
+/// least `from` primitives count.
 fn power(points: &[Point], from: usize, of: impl Fn(&Point) -> f64) -> f64 {
     let large = points.iter().filter(|p| p.primitives >= from && p.frames > 0);
     exponent(&large.map(|p| (p.primitives as f64, of(p))).collect::<Vec<_>>())
@@ -279,8 +279,8 @@ fn table(text: &mut String, points: &[Point]) {
     }
 }
 
-/// Writes a chart of host time over triangles, both logarithmic. Each row of the chart is one scene size, and each
-/// column is a tenth of a decade of the host time.
+/// Writes a chart of the host time for each number of triangles, with logarithmic axes. Each row of the chart is one
+/// scene size, and each column is a tenth of a decade of the host time.
 fn chart(text: &mut String, points: &[Point]) {
     let least = points.iter().filter(|p| p.frames > 0).map(|p| p.host_ms).fold(f64::INFINITY, f64::min).log10().floor();
     for p in points.iter().filter(|p| p.frames > 0) {

@@ -29,7 +29,7 @@ const HIGHEST_HZ: f64 = 100.0;
 /// Options for replaying a recorded head motion: the format of its file, and the behaviour at its end.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Replay {
-    /// Columns and axes of the recording's file, for a file whose header does not state them.
+    /// Columns and axes of the recording's file, for a file whose header does not state the columns and axes.
     pub format: RecordingFormat,
     /// Behaviour after the last sample of the recording.
     pub end: End,
@@ -168,7 +168,7 @@ pub(crate) fn recording_of(contents: impl Read, name: &str, replay: &Replay) -> 
 /// Names of all trackers that [`tracker`] accepts, for help texts and errors.
 pub const TRACKERS: &str = "optical, fastrak, fastrak-polled, flock, flock-patched, 3space, 3space-patched or ideal";
 
-/// Returns the tracker with one of the names in [`TRACKERS`].
+/// Returns the tracker called `name`, one of the names in [`TRACKERS`].
 ///
 /// # Errors
 ///
@@ -177,8 +177,8 @@ pub fn tracker(name: &str) -> Result<TrackerConfig, SettingError> {
     Ok(tracker_by(&Tables::PAPERS, name)?.0)
 }
 
-/// Returns the tracker with one of the names in [`TRACKERS`] and the constants of `tables`. Also returns the name of
-/// the table from which the tracker's constants come.
+/// Returns the tracker called `name`, one of the names in [`TRACKERS`], with the constants of `tables`. Also returns
+/// the name of the table from which the tracker's constants come.
 ///
 /// # Errors
 ///
@@ -200,7 +200,7 @@ pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'stati
 /// Names of all predictors that [`predictor`] accepts, for help texts and errors.
 pub const PREDICTORS: &str = "none, velocity, acceleration or kalman";
 
-/// Returns the predictor with one of the names in [`PREDICTORS`].
+/// Returns the predictor called `name`, one of the names in [`PREDICTORS`].
 ///
 /// # Errors
 ///

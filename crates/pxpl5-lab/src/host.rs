@@ -1,4 +1,5 @@
-//! The computer on which experiments run. Provides a clock, and threads that compute pixels outside simulated time.
+//! The computer on which experiments run. The computer has a clock, and threads that compute pixels outside simulated
+//! time.
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use pxpl5_machine::{PixelWorker, SameThread};
@@ -25,7 +26,7 @@ impl Workstation {
         Self::with_threads(std::thread::available_parallelism().map_or(1, usize::from))
     }
 
-    /// Creates a host with this number of worker threads. With 0 threads, the simulating thread computes the pixels.
+    /// Creates a host with `threads` worker threads. With 0 threads, the simulating thread computes the pixels.
     #[must_use]
     pub const fn with_threads(threads: usize) -> Self {
         Self { threads }

@@ -82,8 +82,8 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Returns the minimum and maximum of the figure over all three designs of experiments, as computed at the analytic
-    /// level.
+    /// Returns the minimum and maximum of the figure over three designs of experiments: `one_at_a_time`, `readings` and
+    /// `joint`. The values are computed at the analytic level.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
         let [low, high] = self.of_parameters();
@@ -97,8 +97,8 @@ impl Interval {
     }
 }
 
-/// Times per triangle in nanoseconds that were fitted to figures 12 and 14. Any time within its range reproduces the
-/// figure exactly.
+/// Times per triangle in nanoseconds of the machines for Slats. The times were fitted to the largest numbers of
+/// triangles in the papers (figures 12 and 14). Any time within its range reproduces the figure exactly.
 const FITTED: [(&str, u64, (u64, u64)); 2] =
     [("slats:gp.triangle_ns", 30_000, (29_800, 30_100)), ("slats-1995:gp.triangle_ns", 55_800, (55_400, 56_300))];
 
@@ -138,8 +138,8 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     Some(bench.measure(id).ok()?.value).filter(|value| value.is_finite())
 }
 
-/// Computes the intervals of all figures at the analytic level, around the figures' values for the given bench (common
-/// settings of all measurements).
+/// Computes the intervals of all figures at the analytic level, around the figures' values for `bench`, the common
+/// settings of all measurements.
 #[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
@@ -187,8 +187,8 @@ fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     Some(interval(id, nominal, &ends, vec![nominal], &variations))
 }
 
-/// Returns the values of a figure at both ends of each range, one parameter at a time. If the experiment yields no
-/// value, the nominal value counts.
+/// Returns the values of a figure at both ends of each range, one parameter at a time. An experiment without a result
+/// gets the value `nominal`.
 fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: f64) -> Vec<f64> {
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     crate::parallel::map(&ends, |(v, value)| {
@@ -202,7 +202,7 @@ fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: 
     })
 }
 
-/// Number of the figure that the pendulum rig measures.
+/// Number, in [`FIGURES`], of the figure that the pendulum rig measures.
 const OF_RIG: &str = "17";
 
 /// Computes the interval of the pendulum rig's figure by simulation with events. The photodiode's position, machine
@@ -221,15 +221,15 @@ fn of_rig(bench: &Bench) -> Option<Interval> {
     Some(interval)
 }
 
-/// Returns the assumed photodiode's line on the screen as a parameter that varies.
+/// Returns the line of the screen under the photodiode as a parameter that varies. The preset's value is assumed.
 pub(crate) fn photodiode_line() -> Option<Variation> {
     let line = crate::tracking_parameters().into_iter().find(|parameter| parameter.path == PHOTODIODE_LINE)?;
     let (value, range) = (line.value.whole()?, line.info.whole_range()?);
     Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
 }
 
-/// Combines two designs into the interval of one figure. `ends` has the figure's values at both ends of each parameter
-/// range, one parameter after the other. `joint` has the figure's values on the random machines.
+/// Combines two designs of experiments into the interval of one figure. `ends` has the figure's values at both ends of
+/// each parameter's range, one parameter after the other. `joint` has the figure's values on the random machines.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {

@@ -53,7 +53,8 @@ pub struct Model {
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
-    /// Decimation of `whole`. All sizes of a search share the first collapses.
+    /// Decimation of `whole`. The scenes of a search, one for each number of triangles, share the first steps of the
+    /// decimation (collapses of edges).
     decimation: Arc<Decimation>,
 }
 
@@ -133,7 +134,7 @@ impl LimitQuery {
         self.search_with(|_| {})
     }
 
-    /// Searches for the limit. `progress` is called with the number of sizes tried so far.
+    /// Searches for the limit. `progress` is called with the number of scenes that were simulated so far.
     ///
     /// # Errors
     ///
@@ -149,8 +150,8 @@ impl LimitQuery {
         Ok(limit)
     }
 
-    /// Searches for the largest number of triangles alone. It equals [`Limit::triangles`] of [`search`](Self::search),
-    /// but no sizes above the first miss are tried.
+    /// Searches for the largest number of triangles. The result equals [`Limit::triangles`] of
+    /// [`search`](Self::search), but the search is shorter, because no sizes above the first miss are tried.
     ///
     /// # Errors
     ///
@@ -161,7 +162,7 @@ impl LimitQuery {
         Ok(triangles)
     }
 
-    /// Returns an error if a limit of zero means that the goal cannot be evaluated.
+    /// Returns an error if `triangles`, the limit that was found, is 0 because the goal cannot be evaluated.
     fn check_limit(&self, triangles: u32) -> Result<(), ExperimentError> {
         if triangles == 0 { self.check_rate() } else { Ok(()) }
     }
@@ -283,7 +284,7 @@ fn is_reached(goal: Goal, summary: &Summary) -> bool {
     }
 }
 
-/// Returns a scene with a number of triangles, at least one.
+/// Returns a test scene with `triangles` triangles, or with one triangle if `triangles` is 0.
 ///
 /// # Panics
 ///

@@ -168,8 +168,8 @@ impl Manifest {
         if entry.is_of(&bytes) { Ok(Some(bytes)) } else { Err(changed("other contents")) }
     }
 
-    /// Declares that this manifest replaces the previous manifest (`before`). Returns the old files to remove. These
-    /// are files that the new run does not write and that have not changed since they were written.
+    /// Declares that this manifest replaces the previous manifest (`before`). Returns the old files to remove. An old
+    /// file is removed if the new run does not write the file, and if the file has not changed since it was written.
     #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {
         let gone = before.files.iter().chain(&before.replaced).filter(|entry| !self.lists(&entry.name));

@@ -77,7 +77,7 @@ impl PipelineFigure {
     ///
     /// # Errors
     ///
-    /// Returns [`StudyError`].
+    /// Returns [`StudyError`] if the experiment cannot run.
     pub fn run(&self) -> Result<Outcome, StudyError> {
         let plan = ExperimentFile::parse(self.experiment, self.name)?.resolve()?;
         Ok(plan.experiment(plan.load_scene()?).run()?)

@@ -51,7 +51,7 @@ pub struct Rig {
 pub const PASSES: usize = 24;
 
 impl Rig {
-    /// Creates a rig with the given tracker, and with the assumed pendulum, detection and photodiodes.
+    /// Creates a rig with `tracker` on the pendulum, and with the assumed pendulum, detection and photodiodes.
     #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
         Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES }
@@ -237,7 +237,8 @@ impl Photodiode {
         if found < lines { Ok(()) } else { Err(StudyError::Photodiode { lines, found }) }
     }
 
-    /// Samples the photodiode in a period that has ended. `screen` is the picture of the period, once it was read.
+    /// Samples the photodiode in a period that has ended. `screen` keeps the picture of the period, so that several
+    /// photodiodes read the picture only once.
     fn look(&mut self, period: PeriodNumber, record: &Record, screen: &mut Option<Option<RgbImage>>) {
         let display = record.display();
         let Some(surface) = display.surfaces().first() else { return };
@@ -270,8 +271,8 @@ fn brightness(picture: &RgbImage, x: u32, y: u32) -> u32 {
     picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3
 }
 
-/// Runs an experiment and samples the photodiodes. A run that ends before it can fill the pipeline with pictures is
-/// accepted here.
+/// Runs an experiment and samples the photodiodes. The function accepts a run that is too short to fill the pipeline
+/// with pictures.
 fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outcome, StudyError> {
     let machine = experiment.build()?;
     photodiodes.iter().try_for_each(|photodiode| photodiode.check(machine.record().display()))?;

@@ -40,7 +40,7 @@ pub struct Snapshot {
     pub level: String,
     /// Seed of the head motion.
     pub seed: u64,
-    /// Number of the field whose first retrace is the instant of the snapshot. No event of this field has happened yet.
+    /// Number of the field that begins at the instant of the snapshot. No event of this field has happened yet.
     pub field: PeriodNumber,
     /// Instant of the snapshot in picoseconds.
     pub time_ps: u64,
@@ -48,7 +48,7 @@ pub struct Snapshot {
     pub trace_hash: String,
     /// Number of events before the snapshot.
     pub events: u64,
-    /// Fingerprint of the scene's contents.
+    /// Hash of the scene's contents.
     pub scene_hash: String,
     /// Text of the experiment file. `None` for an experiment that was built in code.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -59,7 +59,7 @@ impl Snapshot {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-snapshot/1";
 
-    /// Creates a snapshot of a machine that has just reached the first retrace of a field.
+    /// Creates a snapshot of a machine that has just reached the retrace at which a field begins.
     #[must_use]
     pub fn of_machine(
         plan: &Plan,
@@ -86,8 +86,8 @@ impl Snapshot {
 
     /// Creates a snapshot of a run of an experiment that was built in code.
     ///
-    /// The file of the snapshot does not describe such an experiment, so the caller must give the same experiment to
-    /// [`Snapshot::resume`].
+    /// The file of the snapshot does not describe such an experiment, so [`Snapshot::resume`] needs the same experiment
+    /// as its argument.
     ///
     /// # Errors
     ///
@@ -122,7 +122,7 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns a [`FileError`] if the experiment, the scene or the repeated run is not the saved one, or if the
+    /// Returns a [`FileError`] if the experiment, the scene or the repeated run differs from the saved data, or if the
     /// experiment cannot run.
     pub fn resume(&self, experiment: &Experiment, file: &str) -> Result<Stepper, FileError> {
         // A different experiment is refused before its run.
@@ -187,7 +187,7 @@ impl Snapshot {
         self.experiment_with(crate::registry(), file)
     }
 
-    /// Returns the saved experiment, which may name the pipelines and displays of the given registry.
+    /// Returns the saved experiment, which may name the pipelines and displays of `registry`.
     ///
     /// # Errors
     ///
@@ -200,7 +200,7 @@ impl Snapshot {
         ExperimentFile::with(registry).and_parse(experiment, &text).map_err(|error| foreign(file, error))
     }
 
-    /// Compares the scene with the saved scene.
+    /// Compares the hash of `scene` with the hash in the snapshot.
     ///
     /// # Errors
     ///
@@ -209,11 +209,12 @@ impl Snapshot {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
-    /// Compares a machine with the saved machine. The machine must have repeated the run up to the saved field.
+    /// Compares the trace hash and the number of events of `machine` with the values in the snapshot. The machine must
+    /// have repeated the run up to the saved field.
     ///
     /// # Errors
     ///
-    /// Returns a [`FileError`] if the machines differ.
+    /// Returns a [`FileError`] if a value differs.
     pub fn check_machine(&self, machine: &Machine, file: &str) -> Result<(), FileError> {
         self.same("the trace hash", &self.trace_hash, machine.record().trace_hash().to_string(), file)?;
         self.same("the number of events", &self.events.to_string(), machine.events().to_string(), file)

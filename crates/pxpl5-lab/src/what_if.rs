@@ -12,9 +12,9 @@ pub struct WhatIf {
     pub resource: &'static str,
     /// The setting that was changed, such as `machine.n_gps`.
     pub key: &'static str,
-    /// The current value of the setting.
+    /// The value of the setting on the unchanged machine.
     pub from: u64,
-    /// The value that was tried: 10 % better, and changed by at least one step.
+    /// The value of the setting on the changed machine: 10 % better, and changed by at least one step.
     pub to: u64,
     /// Mean latency in milliseconds without (first) and with (second) the change. `None` if no picture was complete.
     pub latency_ms: [Option<f64>; 2],
@@ -25,7 +25,7 @@ pub struct WhatIf {
     pub level: &'static str,
 }
 
-/// A resource of the machine, with the setting that gives more of it.
+/// A resource of the machine, and the setting that changes the amount or the speed of the resource.
 struct Knob {
     resource: &'static str,
     key: &'static str,

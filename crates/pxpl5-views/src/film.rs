@@ -48,7 +48,8 @@ impl Film {
     ///
     /// # Errors
     ///
-    /// Returns [`PictureError`]. The file is then incomplete.
+    /// Returns [`PictureError`] if the experiment cannot run, or if a picture cannot be written. The file is then
+    /// incomplete.
     pub fn write(&self, texts: &[(&str, String)], out: impl Write) -> Result<(), PictureError> {
         let mut machine = self.begin()?;
         let surfaces = self.surfaces(machine.record().display())?;
@@ -107,8 +108,8 @@ impl Film {
         Ok(())
     }
 
-    /// Runs the experiment for the same length without pixels, to find the shift that the display applies to the
-    /// picture in each period. Returns `None` if the display shifts no pictures.
+    /// Runs the experiment for the periods of the film without pixels, to find the shift that the display applies to
+    /// the picture in each period. Returns `None` if the display shifts no pictures.
     fn without_pixels(&self) -> Result<Option<Outcome>, PictureError> {
         if self.experiment.raster() == Raster::Plain {
             return Ok(None);

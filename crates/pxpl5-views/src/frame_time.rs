@@ -48,7 +48,8 @@ impl Fraction {
     }
 }
 
-/// Returns the fraction that is nearest to `exact` and has no part above [`LIMIT`], by continued fractions.
+/// Returns the fraction that is nearest to `exact` and has no numerator or denominator above [`LIMIT`], by continued
+/// fractions.
 ///
 /// The result is the last convergent within the limit, or a fraction between this convergent and the next convergent.
 fn nearest_fraction(exact: Fraction) -> Fraction {

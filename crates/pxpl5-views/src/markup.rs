@@ -41,12 +41,12 @@ impl Element {
         self
     }
 
-    /// Appends a child element to an element that the caller keeps.
+    /// Appends a child element in place.
     pub(crate) fn add(&mut self, child: &Self) {
         let _ = write!(self.content(), "{child}");
     }
 
-    /// Appends a child element and a line feed.
+    /// Appends a child element and a line feed in place.
     pub(crate) fn add_line(&mut self, child: &Self) {
         self.add(child);
         self.end_line();

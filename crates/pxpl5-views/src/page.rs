@@ -1,7 +1,7 @@
 //! Results as a single HTML page. The page needs no network, fits on a phone and can be printed.
 //!
-//! A page is made from the content of results folders ([`PageRun`]). Runs of every version with the same report schema
-//! can be shown. Values that a report lacks are left out.
+//! A page is made from the content of results folders ([`PageRun`]). The page can show results of every program version
+//! with the same report schema. Values that a report lacks are left out.
 
 mod configuration;
 mod html;

@@ -17,7 +17,7 @@ pub enum PictureError {
     /// The machine failed before the last frame of the film.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The number of periods, or the surface of the display, does not exist.
+    /// The number of periods is out of range, or the display has no surface with the chosen number.
     #[error(transparent)]
     Setting(#[from] SettingError),
     /// The PNG encoder refuses the picture, for example a picture without pixels, or a text with a key that PNG does not
@@ -40,7 +40,7 @@ pub fn png_bytes(picture: &RgbImage, texts: &[(&str, String)]) -> Result<Vec<u8>
     Ok(bytes)
 }
 
-/// Returns an encoder for pictures with eight bits per colour component. The encoder also writes the given texts.
+/// Returns an encoder for pictures with eight bits per colour component. The encoder also writes `texts` into the file.
 pub(crate) fn encoder<W: Write>(
     out: W,
     (width, height): (u32, u32),

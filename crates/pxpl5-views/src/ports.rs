@@ -24,7 +24,8 @@ pub struct ShownPicture {
     pub end: Time,
 }
 
-/// Returns the ports of all displays that have more ports than surfaces.
+/// Returns the ports of all displays that have more ports than surfaces. Each of these ports swaps independently of the
+/// other ports.
 pub(crate) fn display_ports(record: &Record) -> Vec<DisplayPort> {
     let many = record.displays().iter().filter(|display| has_more_ports(display.as_ref()));
     let ports = many.flat_map(|display| {

@@ -66,7 +66,7 @@ pub(crate) fn segment(class: &str, [x1, y1, x2, y2]: [Units; 4]) -> Element {
     Element::new("path").with("class", class).with("d", format_args!("M{x1} {y1}L{x2} {y2}"))
 }
 
-/// Returns an empty text element with a CSS class, at a position. The caller adds the text.
+/// Returns an empty text element with a CSS class at the point (`x`, `y`). The text is added later.
 pub(crate) fn caption(class: &str, [x, y]: [Units; 2]) -> Element {
     Element::new("text").with("class", class).with("x", x).with("y", y)
 }
@@ -76,7 +76,7 @@ pub(crate) fn line(course: impl Display, colour: &str) -> Element {
     Element::new("path").with("d", course).with("stroke", colour)
 }
 
-/// Returns an empty text element of a chart. `anchor` states which part of the text is at the point (`x`, `y`):
+/// Returns an empty text element of a chart. `anchor` states which part of the text lies at the point (`x`, `y`):
 /// `middle` or `end`.
 pub(crate) fn anchored(x: impl Display, y: impl Display, anchor: &str) -> Element {
     Element::new("text").with("x", x).with("y", y).with("text-anchor", anchor)

@@ -14,7 +14,7 @@
 //! | each port of a display that has more ports than surfaces (a display memory) | COPY as above; below it the picture that the port shows, from a swap to the next |
 //! | beam | the displayed picture, from the first lit pixel of a period to the last, with the position of the beam |
 //!
-//! If bars of one row overlap in time, the row has several lanes.
+//! If bars of one row overlap in time, the row is divided into several lanes, one below the other.
 
 mod arrows;
 mod collect;

@@ -6,10 +6,10 @@ use pxpl5_run::{PictureTimes, SoFar};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 
-/// The updates that the host sent in a run.
+/// The updates (head poses with edits) that the host sent in a run.
 pub(crate) struct Updates {
-    /// True if the host samples a pose for each picture. An update and the picture that shows it then have the same
-    /// number.
+    /// True if the host samples a pose for each picture. In this case, an update and the picture that shows the update
+    /// have the same number.
     by_picture: bool,
     /// Updates that a graphics processor has received, in order of time.
     received: Vec<Received>,

@@ -11,12 +11,12 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, Message, NodeId, RegionId};
 use std::sync::Arc;
 
-/// Number of words of an order or a report message (rendering-control's protocol).
+/// Number of words of an order, and of a slave's report to the master, under Rendering Control.
 const ORDER: u32 = 3;
-/// Number of words of a token message (rendering-control's protocol).
+/// Number of words of a token message under Rendering Control.
 const TOKEN: u32 = 6;
 
-/// Node number of a board other than the measured one.
+/// Node number of the partner of the measured board, which sends and receives all messages of the measurement.
 const OTHER: NodeId = NodeId(2);
 
 /// Total time and number of a board's messages. A received message counts once, and a sent chain of messages counts

@@ -1,4 +1,4 @@
-//! Moving-block bootstrap: the interval of a mean over time, from one recording whose values depend on each other.
+//! Moving-block bootstrap: the interval of a mean over time, from one series of values that depend on each other.
 //!
 //! Successive fields of a run have similar errors. The values are therefore not independent, and an interval from their
 //! standard deviation would be too narrow. The bootstrap draws blocks of successive values, so that each block keeps the
@@ -26,12 +26,12 @@ const MIN_BLOCKS: usize = 10;
 /// Seed of the random blocks, so that the same values give the same interval.
 const SEED: u64 = 0xB10C_B007;
 
-/// Size of a moving-block bootstrap.
+/// Numbers of fields, blocks and samples that describe a moving-block bootstrap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BootstrapSize {
-    /// Number of fields in the series.
+    /// Number of display fields in the series of values.
     pub fields: usize,
-    /// Number of successive fields in a block.
+    /// Number of successive display fields whose values form a block.
     pub block_fields: usize,
     /// Number of resampled means.
     pub resamples: usize,
@@ -81,9 +81,9 @@ impl BlockBootstrap {
     /// The ends are percentiles of the resampled means, with two corrections:
     ///
     /// - Values at the ends of the series are in fewer blocks than other values. The percentiles are therefore shifted,
-    ///   so that the mean of the resampled means becomes the given mean. If the given mean is positive and all
-    ///   resampled means are at least 0, a factor shifts the percentiles; otherwise an added difference does. With the
-    ///   factor, the interval of a quantity that is never negative has no negative end.
+    ///   so that the mean of the resampled means becomes `mean`. The shift multiplies by a factor if `mean` is positive
+    ///   and all resampled means are at least 0. Otherwise the shift adds a difference. With the factor, the interval
+    ///   of a quantity that is never negative has no negative end.
     /// - A series of k blocks gives the variance as imprecisely as k independent values do. The distance of both ends
     ///   from the mean is therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees
     ///   of freedom to the normal distribution. The second is the root of k / (k - 1). If a factor shifts the
@@ -129,8 +129,8 @@ fn running_sums(series: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Returns the mean of values from random blocks. The number of values is the length of the series, so the last block
-/// may be shortened.
+/// Returns the mean of random blocks that follow each other up to the length of the series. The last block may be
+/// shortened.
 fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     let n = sums.len() - 1;
     let starts = (n - block + 1) as u64;

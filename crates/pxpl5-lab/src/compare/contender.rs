@@ -40,8 +40,8 @@ impl ComparedPipeline {
     }
 }
 
-/// Name of the row whose error is measured against delayed video of the world. This error cannot be ranked with the
-/// errors of the other rows.
+/// Name of the row in which the viewer sees delayed video of the world, and the error is measured against this video.
+/// This error cannot be ranked with the errors of other rows.
 pub(super) const DELAYED_VIDEO: &str = "delayed-video";
 
 /// Returns the names of the rows in a short comparison: one or two for each family of pipelines

@@ -1,4 +1,4 @@
-//! The last picture that a row of a comparison shows in its first run.
+//! The last picture that a compared pipeline shows in the run with the first seed.
 
 use image::RgbImage;
 use pxpl5_measure::Measured;
@@ -12,7 +12,7 @@ pub struct LastPicture {
     /// Picture that the eye sees, which may be incomplete.
     pub seen: RgbImage,
     /// Ideal picture of the scene in the middle of the last display period, for the true pose of the head and with the
-    /// pipeline's shading. `None` if the display has no such instant.
+    /// pipeline's shading. `None` if the display lit no pixel in the middle of the picture.
     pub should_be: Option<RgbImage>,
     /// True if the picture that the eye sees was complete in time.
     pub is_complete: bool,

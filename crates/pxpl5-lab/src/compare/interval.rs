@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IntervalMethod {
-    /// No interval, because the numbers are too few.
+    /// No interval, because the runs are too few or too short.
     None,
     /// Student's t over the means of the seeds.
     StudentT,
@@ -103,7 +103,8 @@ impl MeanInterval {
     }
 }
 
-/// Returns the quantile of Student's t distribution for a two-sided interval of the given confidence.
+/// Returns the quantile of Student's t distribution for a two-sided interval. `freedom` is the number of degrees of
+/// freedom.
 fn quantile_of_t(freedom: usize, confidence: f64) -> f64 {
     StudentsT::ppf(0.5 + confidence / 2.0, freedom as f64)
 }

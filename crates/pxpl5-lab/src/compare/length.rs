@@ -1,4 +1,4 @@
-//! The number of fields of a comparison in which the head replays a recording.
+//! The number of display fields that each run of a comparison simulates if the head replays a recorded motion.
 
 use super::query::CompareQuery;
 use crate::error::StudyError;
@@ -6,13 +6,13 @@ use crate::experiment_file::Plan;
 use pxpl5_sim::Time;
 use pxpl5_wire::NodeId;
 
-/// Length of the runs along a recording.
+/// Length of the runs in which the head replays a recorded motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordedLength {
     /// Number of whole display periods in the recording, which is the length of each run.
     pub fields: u64,
-    /// Number of fields that the settings ask for, which is more than the recording covers. `None` if the settings
-    /// state no number of fields.
+    /// Number of fields in the settings, which is more than the recording covers. `None` if the settings state no
+    /// number of fields.
     pub asked: Option<u64>,
 }
 

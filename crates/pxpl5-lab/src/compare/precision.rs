@@ -9,7 +9,7 @@ use std::str::FromStr;
 /// Greatest width of the interval of a mean error, from its lower to its upper end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Precision {
-    /// Width as a share of the mean, above 0.
+    /// Width divided by the mean, above 0.
     Share(f64),
     /// Width in pixels, above 0.
     Pixels(f64),
@@ -18,9 +18,9 @@ pub enum Precision {
 /// Goal of a comparison that adds seeds to a row until the interval of the row's mean error is narrow enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UntilPrecise {
-    /// Greatest width of the interval.
+    /// Greatest width of the interval of the mean error.
     pub width: Precision,
-    /// Maximum number of seeds of a row.
+    /// Maximum number of seeds for each row of the comparison.
     pub max_seeds: usize,
 }
 
@@ -73,7 +73,7 @@ impl fmt::Display for Precision {
 impl FromStr for Precision {
     type Err = SettingError;
 
-    /// Parses a share of the mean (`10%`) or a width in pixels (`0.2px`).
+    /// Parses a percentage of the mean (`10%`) or a width in pixels (`0.2px`).
     fn from_str(text: &str) -> Result<Self, SettingError> {
         let number = |digits: &str| digits.trim().parse().ok().filter(|n: &f64| n.is_finite() && *n > 0.0);
         let share = text.strip_suffix('%').and_then(number).map(|percent| Self::Share(percent / 100.0));

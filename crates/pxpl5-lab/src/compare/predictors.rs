@@ -15,7 +15,8 @@ pub struct PredictorError {
     pub kind: PredictorKind,
     /// Parameters of the predictor during the run. `None` if the run failed.
     pub numbers: Option<PredictorConfig>,
-    /// Data on which the parameters were tuned. `None` if the parameters were given, or if the predictor is not tuned.
+    /// Data on which the parameters were tuned. `None` if the settings state the parameters, or if the predictor is not
+    /// tuned.
     pub training: Option<Training>,
     /// Errors of position on the screen in pixels. `None` if no pixel was evaluated.
     pub error: Option<PixelErrors>,
@@ -28,10 +29,10 @@ pub struct PredictorError {
 pub struct Predictors {
     /// Predictor that the experiment selects.
     pub chosen: PredictorKind,
-    /// Predictor with the smallest mean error. Of several predictors with equal errors, the simplest. `None` if no
-    /// error was evaluated.
+    /// Predictor with the smallest mean error. Among predictors with equal errors, the simplest one is best. `None` if
+    /// no error was evaluated.
     pub best: Option<PredictorKind>,
-    /// Results of all predictors, from the simplest on.
+    /// Results of all predictors. The simplest predictor comes first.
     pub each: Vec<PredictorError>,
 }
 
@@ -57,8 +58,8 @@ pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     Some(Predictors { chosen: head.predictor_kind(), best: best.map(|(kind, _)| kind), each })
 }
 
-/// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the mean error with the chosen
-/// predictor, which a run has already given. The mean is NaN if no error was evaluated.
+/// Returns the mean error of an experiment with each predictor. `of_chosen_px` is the mean error with the experiment's
+/// own predictor, known from an earlier run. The mean is NaN if no error was evaluated.
 pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chosen_px: f64) -> Vec<PredictorMean> {
     let Some(head) = experiment.tracked_head() else { return Vec::new() };
     parallel::map(&PredictorKind::ALL, |kind| {

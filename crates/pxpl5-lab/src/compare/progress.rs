@@ -1,4 +1,4 @@
-//! Progress of a comparison, and the flag that stops its runs.
+//! The number of finished runs of a comparison, and the flag by which another thread stops the runs.
 
 use crate::Workstation;
 use crate::error::StudyError;
@@ -41,7 +41,7 @@ impl<'a> Progress<'a> {
     }
 }
 
-/// The computer of a comparison, on which another thread can stop runs.
+/// A computer on which another thread can stop the runs of a comparison.
 #[derive(Debug)]
 struct StoppableWorkstation {
     workstation: Workstation,

@@ -37,7 +37,7 @@ pub struct CompareQuery {
     /// Machine, scene, head and number of fields, without a pipeline. The compared pipelines come from the registry of
     /// this file. If `head.motion` is `synthetic`, every seed has a different motion.
     pub shared: ExperimentFile,
-    /// Names of the rows to run. An empty list runs all rows.
+    /// Names of the rows (pipelines with settings) to run. An empty list runs all rows.
     pub only: Vec<String>,
     /// Seeds of the random numbers of tracker, host and motion. Every row has one run for each seed.
     pub seeds: Vec<u64>,
@@ -84,14 +84,15 @@ pub struct Comparison {
     pub until_precision: Option<String>,
     /// Maximum number of seeds of a row. `None` if the query did not ask for a precision.
     pub max_seeds: Option<usize>,
-    /// First display period in which rows are evaluated, exact to within one interval between due pictures. Rows that
-    /// start up later are evaluated from a later period on ([`ComparisonRow::window`]).
+    /// First display period in which rows are evaluated. A row can begin a few periods later, with the first picture
+    /// that is due after this period. Rows that start up later are evaluated from a later period on
+    /// ([`ComparisonRow::window`]).
     pub evaluated_from: PeriodNumber,
-    /// Results of the compared pipelines, in the order of the registry.
+    /// Rows with the results of the compared pipelines, in the order of the registry.
     pub pipelines: Vec<ComparisonRow>,
 }
 
-/// Data that all rows of a comparison share.
+/// Data that the runs of all rows of a comparison share.
 struct Common<'a> {
     scene: Arc<Scene>,
     tunings: Arc<Tunings>,
@@ -99,7 +100,8 @@ struct Common<'a> {
 }
 
 impl Common<'_> {
-    /// Returns the experiment of a plan. Its head shares the tuning with the other rows, and its host can stop the run.
+    /// Returns the experiment of a plan (checked settings). The predictor's tuning is shared with all other rows, and
+    /// another thread can stop the run.
     fn experiment(&self, plan: &Plan) -> Experiment {
         let experiment = plan.experiment(Arc::clone(&self.scene)).host(self.progress.host());
         let head = experiment.tracked_head().map(|head| Head::clone(head).sharing_tunings(Arc::clone(&self.tunings)));
@@ -138,8 +140,8 @@ impl CompareQuery {
         self.run_into(None, finished, ended)
     }
 
-    /// Runs every row that the store does not hold yet. A row is stored as soon as all of its runs have ended. `ended`
-    /// is called with each new row after the row is stored.
+    /// Runs every row that is not yet in `store`, the folder of finished rows. A row is stored as soon as all of its
+    /// runs have ended. `ended` is called with each new row after the row is stored.
     ///
     /// # Errors
     ///
@@ -416,7 +418,7 @@ impl Comparison {
     ///
     /// - rows with pictures that were due and not shown
     /// - the row `ideal`, which shows ideal pictures as a reference
-    /// - rows that were evaluated over other display periods
+    /// - rows that were evaluated over later display periods than most rows
     /// - the row of delayed video, whose error leaves out the delay of the world
     #[must_use]
     pub fn best(&self) -> Option<&ComparisonRow> {
@@ -427,14 +429,14 @@ impl Comparison {
         timed.min_by(|one, other| one.error.mean_px.mean.total_cmp(&other.error.mean_px.mean))
     }
 
-    /// Returns true if the evaluation of this row begins in a later display period than the evaluation of the other
-    /// rows.
+    /// Returns true if the evaluation of `row` begins four or more display periods after
+    /// [`Comparison::evaluated_from`].
     #[must_use]
     pub fn starts_late(&self, row: &ComparisonRow) -> bool {
         row.window.is_some_and(|window| window.first_period.0 >= self.evaluated_from.0 + MOST_PERIODS_APART)
     }
 
-    /// Returns the row of the pipeline with this name.
+    /// Returns the row that is named `pipeline`, or `None` if the comparison has no such row.
     #[must_use]
     pub fn row(&self, pipeline: &str) -> Option<&ComparisonRow> {
         self.pipelines.iter().find(|row| row.pipeline == pipeline)

@@ -19,7 +19,7 @@ impl CompareQuery {
     /// Returns [`StudyError`] in these cases:
     ///
     /// - The folder cannot be read or written, or is in use.
-    /// - A line before the last is damaged.
+    /// - A line of the file of rows is damaged, and is not the last line.
     /// - `resume` is true, and the folder holds rows with other settings. The error names the first key that differs.
     /// - `resume` is false, and the folder holds rows of an interrupted comparison.
     /// - A setting of the query is invalid.

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use tracking::predict::PredictorKind;
 
-/// Errors of position on the screen, over the runs of all seeds.
+/// Errors of position on the screen, computed from the runs of all seeds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ErrorSpread {
     /// Mean distance of a pixel's content from its ideal position, in pixels.
@@ -23,7 +23,7 @@ pub struct ErrorSpread {
     pub mean_deg: MeanInterval,
     /// Percentiles of the error over all evaluated pixels of all seeds, in pixels.
     pub pixels: Percentiles,
-    /// Number of evaluated pixels of all seeds.
+    /// Number of evaluated pixels, over all seeds.
     pub n: u64,
     /// Percentiles 0 to 100 of the error over all evaluated pixels, in pixels: 101 numbers in ascending order. Empty if
     /// no pixel was evaluated.
@@ -59,14 +59,15 @@ pub struct ComparisonRow {
     pub settings: String,
     /// Number of eyes, each with its own frame buffer, that the pipeline draws for.
     pub eyes: usize,
-    /// Number of seeds with which the row ran.
+    /// Number of seeds with which the pipeline of this row ran.
     pub seeds: usize,
     /// True if the interval of the mean error is as narrow as the query requires. `None` if the query requires no
     /// width.
     pub is_precise: Option<bool>,
     /// Definition of the pipeline's latency, in words.
     pub latency_definition: String,
-    /// Latency of the machine alone in milliseconds, over the complete pictures of all seeds.
+    /// Time in milliseconds from the start of TRANSFORM until the picture is shown, over the complete pictures of all
+    /// seeds.
     pub latency_ms: Statistics,
     /// Latency from the measured pose of the head until the display lights the picture's middle, in milliseconds. All
     /// complete pictures of all seeds count. For pipelines that draw cube faces, only the position of the head counts.
@@ -75,8 +76,8 @@ pub struct ComparisonRow {
     /// milliseconds. Cube faces are turned at scan-out with the newest orientation. Other pictures show the orientation
     /// and the position of the same pose.
     pub turn_to_light_ms: Statistics,
-    /// Sum of two means that the papers add (figure 19), in milliseconds, averaged over the seeds. The first is the
-    /// time from the measurement of a pose to the arrival of the tracker's report. The second is the time from the
+    /// Sum of two mean times in milliseconds, averaged over the seeds. The papers print the same sum. The first time
+    /// lasts from the measurement of a pose to the arrival of the tracker's report. The second time lasts from the
     /// start of an eye's TRANSFORM to the swap.
     ///
     /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND,
@@ -90,7 +91,7 @@ pub struct ComparisonRow {
     /// Number of new complete pictures per second, averaged over the seeds with at least two pictures. NaN if no seed
     /// has two.
     pub updates_hz: MeanInterval,
-    /// Number of pictures in all seeds that had to be shown in a certain period. `None` if the pipeline has no such
+    /// Number of pictures, over all seeds, that were due at a certain retrace. `None` if the pipeline has no such
     /// deadlines.
     pub due: Option<u64>,
     /// Number of due pictures that were late, incomplete or missed. `None` if the pipeline's pictures have no
@@ -104,11 +105,10 @@ pub struct ComparisonRow {
     /// ended before the evaluation began.
     pub window: Option<ResultWindow>,
     /// Contributions of all causes to the mean error. The sum of all contributions is the mean error. Empty unless the
-    /// query asked for them.
+    /// query asked for causes.
     pub causes: Vec<CauseShare>,
-    /// Mean error of the first seed with each predictor. Empty unless the query asked for it, and for the row `ideal`,
-    /// whose pictures no predictor
-    /// changes.
+    /// Mean error of the first seed with each predictor. Empty if the query did not ask for predictors. Also empty for
+    /// the row `ideal`, whose pictures no predictor changes.
     pub predictors: Vec<PredictorMean>,
     /// Largest number of triangles that meets the pipeline's own criterion. `None` if the query did not ask for a
     /// search, or the search failed.
@@ -120,7 +120,7 @@ pub struct ComparisonRow {
     pub failure: Option<String>,
     /// Time in seconds that the runs took on the host.
     pub host_seconds: f64,
-    /// Errors on the screen of the first seed, for each field.
+    /// Errors of position on the screen in the run with the first seed, for each display field.
     #[serde(skip)]
     pub by_field: Vec<FieldMisregistration>,
     /// Last picture of the first seed for the first eye. `None` if the query did not ask for pictures, or no picture
@@ -195,7 +195,7 @@ impl ComparisonRow {
         self.not_shown.unwrap_or(0) == 0
     }
 
-    /// Returns true if at least one pixel of the row was evaluated.
+    /// Returns true if the error of at least one pixel was evaluated.
     #[must_use]
     pub const fn was_evaluated(&self) -> bool {
         self.error.n > 0
@@ -213,7 +213,7 @@ pub(super) struct Sampling {
     pub(super) confidence: f64,
 }
 
-/// Returns the sum of the values that are not `None`, or `None` if there is no such value.
+/// Returns the sum of the values that are not `None`. Returns `None` if all values are `None`.
 fn sum<T: std::iter::Sum>(values: impl Iterator<Item = Option<T>>) -> Option<T> {
     let mut known = values.flatten().peekable();
     known.peek().is_some().then(|| known.sum())

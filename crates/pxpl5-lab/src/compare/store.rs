@@ -58,11 +58,11 @@ struct PictureFiles {
     is_complete: bool,
 }
 
-/// The file of rows, which is open for writing.
+/// The file of finished rows, which is open for writing.
 #[derive(Debug)]
 struct Rows {
     file: File,
-    /// Number of rows in the file.
+    /// Number of finished rows in the file.
     count: usize,
     /// Length of the file in bytes.
     end: u64,
@@ -75,7 +75,7 @@ pub struct CompareStore {
     /// Rows that an earlier process has finished.
     found: Vec<ComparisonRow>,
     rows: Mutex<Rows>,
-    /// Lock of the folder, held as long as the store exists.
+    /// Lock of the folder, which no other process can open while this object exists.
     _lock: File,
 }
 
@@ -211,7 +211,7 @@ fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8])
 }
 
 impl Rows {
-    /// Appends a line. A line that cannot be written completely is removed, so that the lines before it stay readable.
+    /// Appends a line. A line that cannot be written completely is removed, so that all earlier lines stay readable.
     fn put(&mut self, path: &Path, line: &str) -> Result<(), StudyError> {
         if let Err(error) = self.file.write_all(line.as_bytes()) {
             // The first error is the one to report.

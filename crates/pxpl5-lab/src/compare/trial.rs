@@ -1,4 +1,4 @@
-//! One run of one row in a comparison.
+//! One run of a compared pipeline, with one seed.
 
 use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
@@ -55,8 +55,8 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the first display period in which the rows of a comparison are evaluated. This period comes after a quarter
-/// of the run and after the warm-up.
+/// Returns the first display period in which the rows of a comparison are evaluated. `fields` is the length of each
+/// run. This period comes after a quarter of the run and after the warm-up.
 ///
 /// All rows are thus evaluated over the same periods, although some pipelines start up later than others.
 pub(super) fn common_window_from(fields: u64) -> PeriodNumber {

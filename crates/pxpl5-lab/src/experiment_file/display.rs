@@ -97,7 +97,7 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
     Ok(Some(config))
 }
 
-/// Sets one parameter of the display to the value in the file.
+/// Sets one parameter of the display to the value in the experiment file.
 fn set(config: &mut dyn DisplayConfig, key: &NumberKey, path: &str, setting: &Setting) -> Result<(), SettingError> {
     let name = config.name();
     let tables = config.tables_mut();

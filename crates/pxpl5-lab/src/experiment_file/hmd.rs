@@ -90,7 +90,7 @@ fn expected(error: &SettingError) -> &str {
     }
 }
 
-/// Returns the parameters whose values differ from the papers' display, with their keys.
+/// Returns the keys and values of the parameters that differ from the head-mounted display of the papers.
 pub(super) fn settings(hmd: &Hmd) -> impl Iterator<Item = (&'static str, Value)> {
     let config = *hmd.config();
     let usual = HmdConfig::unc();

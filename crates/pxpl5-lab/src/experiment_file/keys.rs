@@ -13,7 +13,7 @@ use tracking::motion::Columns;
 pub struct FileKey {
     /// Path of the key, as written before the equals sign: `motion.path`.
     pub path: String,
-    /// Meaning and valid values of the key.
+    /// Meaning and valid values of the key, for the user.
     pub about: String,
     /// Pipeline families to which the key applies. An empty list means all pipelines.
     pub applies_to: Vec<&'static str>,

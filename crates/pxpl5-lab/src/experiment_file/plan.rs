@@ -34,7 +34,7 @@ pub struct Outputs {
 /// A published figure that the experiment reproduces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Published {
-    /// Number of the figure. `None` if the paper does not number the figure.
+    /// Number of the published figure in the paper. `None` if the paper does not number the figure.
     pub figure: Option<u64>,
     /// Short name of the paper that prints the figure.
     pub source: Option<String>,
@@ -265,7 +265,7 @@ const CODES: [(&str, Option<CodeVersion>); 4] = [
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
 
-/// Names of the possible origins of primitive times: the papers, or executed code (true).
+/// Names of the sources of the times of primitives: the papers (false) or executed code (true).
 const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 impl PartialEq for Plan {
@@ -350,7 +350,7 @@ impl Plan {
         self.run_on(Workstation::with_threads(1), scene)
     }
 
-    /// Runs the experiment as [`run`](Self::run) does, but on the given host, which can stop the run.
+    /// Runs the experiment as [`run`](Self::run) does, but on `host`, which can stop the run.
     ///
     /// # Errors
     ///

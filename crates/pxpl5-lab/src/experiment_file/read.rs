@@ -85,7 +85,8 @@ pub(super) fn unknown<'a>(key: &str, setting: &Setting, valid: impl IntoIterator
     error.at(format_args!("{}: {key}", setting.place))
 }
 
-/// Creates the error of a key that the chosen pipeline does not have. `applies_to` names the pipelines that have it.
+/// Creates the error of a key that the chosen pipeline does not have. `applies_to` names the pipelines that have the
+/// key.
 pub(super) fn not_applicable(key: &str, pipeline: &str, applies_to: &str) -> SettingError {
     SettingError::combination(format_args!(
         "{key} does not apply to the pipeline {pipeline}; leave it out (it is for {applies_to})"

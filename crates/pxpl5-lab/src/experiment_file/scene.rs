@@ -8,7 +8,7 @@ use pxpl5_sim::parameters::SettingError;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The scene of an experiment: its name or file, its number of primitives, and the head motion in front of it.
+/// The scene of an experiment: its name or file, its number of primitives, and the head motion in front of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
     /// Name of a built-in scene, or path of a model file.
@@ -66,7 +66,8 @@ impl SceneChoice {
         Ok(if self.culled { whole.culled() } else { whole })
     }
 
-    /// Returns the scene, reduced to the chosen number of primitives, and with the chosen head motion.
+    /// Returns the scene `whole`, reduced to the number of primitives in these settings, and with the head motion in
+    /// these settings.
     pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, SettingError> {
         let decimated = whole.clone();
         self.prepared_by(whole, |n| decimated.decimated(n))

@@ -28,7 +28,7 @@ fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> &'static str 
 }
 
 impl Plan {
-    /// Returns every setting with its effective value.
+    /// Returns every setting with its value in the checked experiment, including defaults.
     #[must_use]
     pub fn settings(&self) -> Settings {
         let mut all = Settings { values: BTreeMap::new(), remarks: BTreeMap::new() };

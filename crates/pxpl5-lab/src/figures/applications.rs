@@ -23,15 +23,15 @@ pub(super) type RigKey = (FinishedRegions, Vec<(String, u64)>);
 
 /// Results by the number of finished regions that a backing store holds.
 ///
-/// A run in which no store was ever full is also the run with any larger store ([`Record::met_full_store`]), so one
-/// result serves all of these capacities.
+/// If no backing store was full in a run ([`Record::met_full_store`]), larger stores give the same run. One result
+/// therefore serves all larger capacities.
 ///
 /// [`Record::met_full_store`]: pxpl5_machine::Record::met_full_store
 #[derive(Debug)]
 struct ByCapacity<K, T> {
-    /// Results for single capacities. The boolean is true if the run has met a full store.
+    /// Results for single capacities. The boolean is true if a backing store was full at some time of the run.
     exact: Places<(K, u64), (Arc<T>, bool)>,
-    /// Smallest capacity whose run has met no full store, with its result.
+    /// Smallest capacity with which no backing store was full in the run, and the result of this run.
     roomy: Mutex<BTreeMap<K, (u64, Arc<T>)>>,
 }
 
@@ -42,8 +42,8 @@ impl<K, T> Default for ByCapacity<K, T> {
 }
 
 impl<K: Ord + Clone, T> ByCapacity<K, T> {
-    /// Returns the result for a capacity. `make` computes the result, and returns true with it if the run has met a full
-    /// store or if that is unknown. `make` is not called if a smaller store was never full.
+    /// Returns the result for a capacity. `make` computes the result, and a boolean that is true if a backing store was
+    /// full in the run or if that is unknown. `make` is not called if no smaller store was ever full.
     fn get(&self, key: K, capacity: u64, make: impl FnOnce() -> Result<(T, bool)>) -> Result<Arc<T>> {
         if let Some((least, known)) = locked(&self.roomy).get(&key)
             && *least <= capacity
@@ -80,8 +80,9 @@ pub(crate) struct Applications {
     limits: Places<String, u32>,
 }
 
-/// Returns the cache key of an experiment with a built-in scene, and the number of finished regions that a backing store
-/// holds. Both together contain everything that determines the result: machine, pipeline, scene, length, seed and level.
+/// Returns the cache key of an experiment with a built-in scene, and the number of finished regions that a backing
+/// store holds. The key and this number contain everything that determines the result: machine, pipeline, scene,
+/// length, seed and level.
 pub(super) fn key_of(experiment: &Experiment, scene: &str) -> (String, u64) {
     let mut machine = experiment.config().clone();
     let capacity = machine.renderer.backing_regions();
@@ -112,8 +113,9 @@ impl Applications {
         find_or_compute(&self.loads, key, || make().map(Arc::new))
     }
 
-    /// Returns the measurements with the pendulum rig for the given rules and number of kept regions. `make` performs
-    /// the measurements at the first request. Its boolean is true if the run has met a full backing store.
+    /// Returns the measurements with the pendulum rig. `key` holds the rule for finished regions and the changed
+    /// parameters. `kept` is the number of regions that a backing store holds. `make` performs the measurements at the
+    /// first request. The boolean of `make` is true if a backing store was full at some time of the run.
     pub(super) fn rig(
         &self,
         key: RigKey,
@@ -123,8 +125,8 @@ impl Applications {
         self.rigs.get(key, kept, make)
     }
 
-    /// Returns the summary of an experiment. `make` runs the experiment at the first request. Its boolean is true if the
-    /// run has met a full backing store, or if that is unknown.
+    /// Returns the summary of an experiment. `make` runs the experiment at the first request. The boolean of `make` is
+    /// true if a backing store was full in the run, or if that is unknown.
     pub(super) fn summary(
         &self,
         (key, capacity): (String, u64),

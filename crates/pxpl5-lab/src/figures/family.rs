@@ -23,18 +23,18 @@ pub struct FigureFamily {
     pub title: &'static str,
     /// Path of the document with more details.
     pub document: &'static str,
-    /// Rows in the order of the experiments.
+    /// Table rows of the figures, in the order of the experiments.
     pub rows: Vec<FigureRow>,
 }
 
-/// Sizes in triangles of the spheres in experiment E1. The papers' drawing ends at 1,000.
+/// Numbers of triangles of the spheres that experiment E1 draws. The largest number in the papers' drawing is 1,000.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 
 /// Duration of an NTSC field in ms. Pictures of Rendering Control wait for retraces, so a growth of latency below this
 /// duration may be invisible.
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
-/// Number of fields of a run of experiment E1.
+/// Number of display fields in a run of experiment E1.
 const FIELDS: u64 = 60;
 /// Number of rotation latencies that each run of experiment E1 must give. The runs are compared field by field, so this
 /// number must be the same for all runs.

@@ -18,7 +18,7 @@ pub struct FigureGroup {
     pub title: &'static str,
     /// Conditions of the experiments that all rows of the group share, and conditions that the papers do not state.
     pub about: &'static str,
-    /// Rows in the order of the group's table.
+    /// Table rows of the figures.
     pub rows: Vec<FigureRow>,
 }
 
@@ -90,8 +90,9 @@ impl Measurement {
         Ok(FigureRow { interval, ..self.figure.row(measured) })
     }
 
-    /// Returns the minimum and maximum of the figure over both ends of each parameter's range, including the value for
-    /// the presets. If the experiment yields no value for an end of a range, the figure for the presets counts.
+    /// Returns the minimum and maximum of the figure when each parameter in turn takes the two ends of its range. The
+    /// figure for the presets is included, and also replaces a result that the experiment does not yield. Returns
+    /// `None` if no parameter is varied.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));

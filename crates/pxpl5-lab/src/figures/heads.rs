@@ -12,18 +12,21 @@ use tracking::predict::PredictorKind;
 use tracking::rig::{Measurement as RigMeasurement, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
-/// Path of the parameter for the photodiode's position in figure 17: the visible line of the screen under the
-/// photodiode. The common settings of measurements ([`Bench::changes`](super::Bench)) may change this parameter.
+/// Path of the parameter for the photodiode's position when the pendulum rig measures latency (figure 17 in
+/// [`FIGURES`](super::FIGURES)): the visible line of the screen under the photodiode. The common settings of
+/// measurements ([`Bench::changes`](super::Bench)) may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
-/// The rig's measurements of one run, under the first, the assumed and the last line of the screen.
+/// The measurements of the pendulum rig in one run, with the photodiode under the first, the assumed and the last line
+/// of the screen.
 #[derive(Clone, Debug)]
 pub(super) struct RigLines {
     measured: [(u32, Arc<RigMeasurement>); 3],
 }
 
 impl RigLines {
-    /// Measures the latency seen from outside. Also returns true if a full backing store has changed the run.
+    /// Measures the latency with a pendulum and a photodiode. Also returns true if a full backing store has changed the
+    /// run.
     pub(super) fn measure(machine: &MachineConfig, pipeline: RenderingControl) -> Result<(Self, bool)> {
         let lines = photodiode_lines();
         let (measured, met_full_store) = under_lines(machine, pipeline, lines)?;
@@ -32,8 +35,9 @@ impl RigLines {
         Ok((Self { measured }, met_full_store))
     }
 
-    /// Returns figure 17 with the photodiode on the assumed line. The paper does not print the photodiode's position,
-    /// so the details state the latency under the first and the last line.
+    /// Returns the latency that the pendulum rig measures (figure 17), with the photodiode on the assumed line. The
+    /// paper does not print the photodiode's position, so the details state the latency under the first and the last
+    /// line.
     pub(super) fn figure(&self) -> FigureValue {
         let [first, assumed, last] = self.measured.each_ref().map(|(_, measured)| rendering(measured));
         let lines =
@@ -43,12 +47,12 @@ impl RigLines {
         FigureValue { value: assumed.value, details, unprinted }
     }
 
-    /// Returns the measurement under the assumed line.
+    /// Returns the measurement with the photodiode under the assumed line.
     pub(super) fn assumed(&self) -> Arc<RigMeasurement> {
         Arc::clone(&self.measured[1].1)
     }
 
-    /// Returns the measurement under a line, or `None` if this line was not measured.
+    /// Returns the measurement with the photodiode under a line, or `None` if this line was not measured.
     pub(super) fn under(&self, line: u64) -> Option<Arc<RigMeasurement>> {
         let found = self.measured.iter().find(|(measured, _)| u64::from(*measured) == line);
         found.map(|(_, measured)| Arc::clone(measured))
@@ -69,7 +73,8 @@ pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, li
     Ok(measured)
 }
 
-/// Measures the latency under some lines in one run. Also returns true if a full backing store has changed the run.
+/// Measures the latency with the photodiode under each of several lines in one run. Also returns true if a full backing
+/// store has changed the run.
 fn under_lines<const N: usize>(
     machine: &MachineConfig,
     pipeline: RenderingControl,
@@ -81,7 +86,7 @@ fn under_lines<const N: usize>(
     Ok((measured, outcome.record().met_full_store()))
 }
 
-/// Returns the latency of rendering, as figure 17 counts it.
+/// Returns the latency of rendering: from the start of SEND to the light under the photodiode (figure 17).
 pub(super) fn rendering(measured: &RigMeasurement) -> FigureValue {
     let Statistics { mean, min, max, .. } = measured.outside.rendering;
     let details = vec![
@@ -92,12 +97,13 @@ pub(super) fn rendering(measured: &RigMeasurement) -> FigureValue {
     FigureValue::with(mean * 1e3, details)
 }
 
-/// Number of seeds of the head motion in figure 18.
+/// Number of seeds of the head motion for the measurement of figure 18, the ratio of two errors.
 const SEEDS: u64 = 4;
-/// Duration of the head motion in figure 18, in seconds.
+/// Duration of the head motion for the measurement of figure 18, in seconds.
 const SECONDS: u64 = 120;
 
-/// Measures figure 18. Almost all of the error comes from rotation. The position adds little for a point 1 m ahead.
+/// Measures figure 18: the ratio of the errors of two systems with 90 and 50 ms from head to light. Almost all of the
+/// error comes from rotation. The position adds little for a point 1 m ahead.
 pub(super) fn ratio_of_errors() -> FigureValue {
     let ratio = |seed: u64| {
         let motion = Synthetic::recorded_use(seed);
@@ -108,11 +114,11 @@ pub(super) fn ratio_of_errors() -> FigureValue {
     FigureValue::with(mean, vec![detail("least", min, ""), detail("greatest", max, "")])
 }
 
-/// Number of display fields in the runs for figure 19: ten seconds.
+/// Number of display fields in the runs that measure the latency of tracker and rendering: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Measures figures 19 and 19b: the sum of those stages of the latency that the paper adds. The details state the other
-/// stages of the latency.
+/// Measures figures 19 and 19b: the latency of the optical tracker and of rendering, with Rendering Control or Slats.
+/// The value is the sum of the stages of the latency that the paper adds. The details state all other stages.
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,

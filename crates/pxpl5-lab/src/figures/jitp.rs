@@ -1,5 +1,5 @@
-//! Figures of just-in-time pixels (Mine and Bishop). The figures concern errors while the head turns, the duration of a
-//! line, the number of transforms, and the pictures of an edge.
+//! Figures of the paper on just-in-time pixels (JITP, by Mine and Bishop). The figures concern errors while the head
+//! turns, the duration of a line, the number of transforms, and the pictures of an edge.
 
 use super::Bench;
 use super::group::{Measurement, free};
@@ -25,10 +25,10 @@ that it should show when it lights. The unit of the error is a pixel of the pape
 field or line lasts longer than its lit pixels, because a field and a line also include a retrace. Like the paper, the \
 model scales each angle to the whole time of the field or line.";
 
-/// Rate of a fast turn of the head in degrees per second (JITP).
+/// Rate of a fast turn of the head in degrees per second, published in the paper on just-in-time pixels.
 const PAN: f64 = 200.0;
 
-/// Horizontal resolution of the paper's picture in pixels per degree.
+/// Horizontal resolution of the picture in the paper on just-in-time pixels, in pixels per degree.
 const PX_PER_DEG: f64 = 10.0;
 
 /// Number of the field that is evaluated. The number is even, and the field is long after the start of the run.
@@ -193,11 +193,11 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(line / field, details))
 }
 
-/// Number of fields over which transforms are counted.
+/// Number of display fields over which vertex transforms are counted.
 const COUNTED: u64 = 20;
 
-/// Returns a machine with one slave. The software of all boards takes no time, so that only the number of transforms
-/// matters.
+/// Returns a machine with one slave. The software of all boards takes no simulated time, because only the number of
+/// transforms is measured.
 fn free_slave(bench: &Bench) -> Result<MachineConfig> {
     let mut machine = MachineConfig { n_gps: 2, code: None, ..bench.machine("small-hmd")? };
     for name in ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"] {

@@ -33,32 +33,32 @@ pub struct Bench {
     /// and a colon changes only that preset. For example, times of PPHIGS code must not change the machines that run
     /// Slats. [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
     pub changes: Vec<(String, u64)>,
-    /// Number of seeds of the head motion in the experiment of figure 7.
+    /// Number of seeds of the head motion for the fly-through of the scene "mig" (figure 7).
     pub seeds: u64,
-    /// Number of evaluated frames for each seed in the experiment of figure 7.
+    /// Number of evaluated frames for each seed of the fly-through of the scene "mig" (figure 7).
     pub frames: u64,
     /// Interpretation of the papers: the answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
     pub(crate) applications: Arc<Applications>,
 }
 
-/// Times of TRANSFORM and RENDER for one eye in figure 6, in milliseconds. The results for several times are averaged,
-/// because the swap waits for a retrace.
+/// Times of TRANSFORM and RENDER for one eye in the experiment of figure 6, in milliseconds. Both stages take longer
+/// than COPY. The results for several times are averaged, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
 
-/// Number of display fields in the runs for figures 16b and 16c, whose frames take about 30 fields each.
+/// Number of display fields in the runs with full bins (figures 16b and 16c), whose frames take about 30 fields each.
 const FIELDS_OF_FULL_BINS: u64 = 600;
 
 /// Paths of the parameters that hold times of the Rendering Control code.
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
 
-/// Number of head poses from which each scene is seen in figure 8.
+/// Number of head poses from which each scene is seen, to count the regions that triangles touch (figure 8).
 const VIEWS: u64 = 40;
-/// Time between two head poses of figure 8 in picoseconds.
+/// Time between two head poses from which the regions of triangles are counted, in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 impl Bench {
-    /// Returns settings with unchanged presets, and with 10 seeds of 150 frames for figure 7.
+    /// Returns settings with unchanged presets. The fly-through of the scene "mig" has 10 seeds of 150 frames.
     #[must_use]
     pub fn new(level: Level) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl Bench {
         }
     }
 
-    /// Returns the same settings with another number of seeds and frames for the fly-through of figure 7.
+    /// Returns the same settings with other numbers of seeds and frames for the fly-through of the scene "mig".
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
@@ -160,8 +160,8 @@ impl Bench {
         Ok(machine)
     }
 
-    /// Returns true if every preset gives the same machine under both settings, and the photodiode is under the same
-    /// line. If nothing but the changed parameters differs, both settings then give the same figures.
+    /// Returns true if `other` gives the same machine for every preset, and the same line of the photodiode. If the
+    /// other settings are equal too, the figures are equal.
     pub(crate) fn has_machines_of(&self, other: &Self) -> bool {
         let is_same =
             |preset: &Preset| self.machine(preset.name).is_ok_and(|one| other.machine(preset.name) == Ok(one));
@@ -184,7 +184,8 @@ impl Bench {
         self.applications.summary(key_of(&experiment, scene), make)
     }
 
-    /// Runs an experiment. Returns true with the summary if the run has met a full backing store, or if that is unknown.
+    /// Runs an experiment and returns its summary. The boolean is true if a backing store was full at some time of the
+    /// run, or if that is unknown.
     fn summarise(&self, experiment: &Experiment) -> Result<(Summary, bool)> {
         let experiment = experiment.clone().pixels(Pixels::Off).level(self.level);
         if self.level == Level::Analytic {
@@ -203,7 +204,7 @@ impl Bench {
         self.stereo(self.machine("small-hmd")?)
     }
 
-    /// Runs the experiment of figures 16b and 16c: the number of screen-filling triangles that fit into the bins
+    /// Runs the experiment of figures 16b and 16c. The scene has as many screen-filling triangles as fit into the bins
     /// according to the papers.
     fn full_bins(&self) -> Result<Arc<Summary>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
@@ -234,7 +235,8 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures figure 17 for all lines of the photodiode, unless the settings choose one line.
+    /// Measures the latency with the pendulum rig (figure 17) for three lines of the photodiode, unless the settings
+    /// choose one line.
     fn rig(&self) -> Result<FigureValue> {
         match self.photodiode_line() {
             Some(_) => self.rig_measurement().map(|measured| heads::rendering(&measured)),
@@ -257,8 +259,8 @@ impl Bench {
         self.changes.iter().rev().find(|(path, _)| path == PHOTODIODE_LINE).map(|(_, line)| *line)
     }
 
-    /// Returns the rig's measurements of one run. They do not depend on the level of modelling or on the definition of
-    /// latency samples.
+    /// Returns the measurements of the pendulum rig in one run. The level of modelling and the definition of latency
+    /// samples do not change these measurements.
     fn rig_lines(&self) -> Result<Arc<RigLines>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         // The line does not change the run, so it is no part of the key.
@@ -413,7 +415,7 @@ fn regions_touched() -> Result<FigureValue> {
     Ok(FigureValue::with(value, details))
 }
 
-/// Returns the number of bin entries per visible triangle, over both eyes and a number of head poses.
+/// Returns the number of bin entries per visible triangle, over both eyes and `n_views` head poses.
 fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     let list = Arc::new(display_list(scene)?);
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");

@@ -1,5 +1,5 @@
 //! Published peak rates: triangles per second of the machine, a renderer and a processor, and operations of the i860.
-//! The total latency of the rig is included.
+//! The total latency that the pendulum rig measures is also in this module.
 
 use super::group::{Measurement, free};
 use super::measured::{FigureValue, Result, detail, scene_named};

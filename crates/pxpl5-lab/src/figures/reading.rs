@@ -72,7 +72,7 @@ impl Reading {
     };
 
     /// The rules in the text of TR94: a renderer stores its finished region and continues with the next region. The
-    /// theory behind figures 3 and 5 assumes this interpretation.
+    /// theoretical latencies in TR94 (figures 3 and 5) assume this interpretation.
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
     /// Returns the interpretations that differ from this interpretation in the answer to exactly one question.
@@ -140,7 +140,8 @@ impl Reading {
         Ok(machine)
     }
 
-    /// Returns the latency samples of this interpretation, up to the swap, in milliseconds.
+    /// Returns the latency samples of a run in milliseconds. Each latency ends at the swap. Depending on the
+    /// interpretation, each frame or each eye gives one sample.
     #[must_use]
     pub fn latencies_ms<'a>(&self, summary: &'a Summary) -> &'a [f64] {
         match self.samples {
@@ -149,7 +150,7 @@ impl Reading {
         }
     }
 
-    /// Converts a latency in milliseconds to fields, as this interpretation defines them.
+    /// Converts a latency in milliseconds to fields, by this interpretation's definition of the unit "field".
     #[must_use]
     pub fn fields_of(&self, latency_ms: f64, field_ms: f64) -> f64 {
         match self.fields {

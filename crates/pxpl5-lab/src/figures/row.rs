@@ -1,4 +1,4 @@
-//! The row of a published figure, and the definition of a miss.
+//! The table row of a published figure, and the definition of a figure that the model misses.
 
 use super::measured::FigureValue;
 use super::table::Figure;
@@ -8,7 +8,7 @@ use pxpl5_sim::figures::{Basis, FigureRow, around};
 pub const MISS_PERCENT: f64 = 3.0;
 
 impl Figure {
-    /// Returns the row of the figure from its measurement.
+    /// Returns the table row of the figure, with the printed value and the simulated value `measured`.
     ///
     /// The model misses the figure if its value lies outside the printed range. If no range is printed, an error of
     /// more than [`MISS_PERCENT`] is a miss. If the paper does not print a condition, the figure is missed only if no

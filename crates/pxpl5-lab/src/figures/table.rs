@@ -6,13 +6,13 @@ use serde::Serialize;
 /// A figure printed in a paper.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Number of the figure in the specification, with a letter if one statement holds several numbers.
+    /// Number of the figure in this project's list, with a letter if one statement of a paper holds several numbers.
     pub id: &'static str,
     /// Short name of the paper.
     pub paper: &'static str,
     /// Topic of the part of the paper that prints the figure.
     pub section: &'static str,
-    /// Statement of the paper in a few words.
+    /// Statement in the paper that contains the figure, in a few words.
     pub statement: &'static str,
     /// Value printed in the paper, in `unit`.
     pub value: f64,
@@ -53,7 +53,7 @@ impl Figure {
     }
 }
 
-/// All published figures, in the order of the specification.
+/// All published figures, in the order of their numbers.
 pub const FIGURES: [Figure; 26] = [
     figure(
         "1",

@@ -95,7 +95,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     })
 }
 
-/// Returns the random experiment with the given number, at one of the compared levels.
+/// Returns the random experiment with the number `number`, at one of the compared levels of modelling.
 fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Experiment, ExperimentError> {
     let experiment = experiment(number)?.level(level);
     if !times_of_code || level == Level::Cycle {
@@ -106,8 +106,8 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
     Ok(other.fields(experiment.length()).seed(experiment.motion_seed()).pixels(Pixels::Off).level(level))
 }
 
-/// Runs the random experiment with the given number, and returns the time that is compared between levels, in
-/// milliseconds. The value is NaN if no picture is shown.
+/// Runs the random experiment with the number `number`, and returns the time that is compared between levels of
+/// modelling, in milliseconds. The value is NaN if no picture is shown.
 fn value(variant: (Level, bool), number: u64) -> Result<f64, ExperimentError> {
     let experiment = of_variant(variant, number)?;
     match summarise(&crate::registry(), &experiment) {

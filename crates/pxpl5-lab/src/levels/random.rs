@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// (second) some fields.
 const FIELDS: (u64, u64) = (48, 14);
 
-/// Returns the random experiment with the given number, without pixels. Even numbers run Rendering Control, odd numbers
-/// run Slats.
+/// Returns the random experiment with the number `number`, without pixels. Even numbers give experiments with Rendering
+/// Control, odd numbers give experiments with Slats.
 ///
 /// # Errors
 ///
@@ -56,8 +56,9 @@ fn slats(random: &mut SplitMix64) -> Result<Experiment, ExperimentError> {
     Ok(Experiment::new(machine, program, Arc::new(scene)).fields(FIELDS.1))
 }
 
-/// Changes a preset at random: its numbers of boards, and ring and FIFO parameters within the ranges of their sources.
-/// At least two ring channels remain for the transfer of finished regions, because the analytic level requires them.
+/// Changes a preset at random: the numbers of boards, and ring and FIFO parameters within the ranges of their sources.
+/// At least two ring channels remain for the transfer of finished regions, because the analytic level requires two
+/// channels.
 fn machine(preset: &str, random: &mut SplitMix64, gps: (u64, u64)) -> Result<MachineConfig, ExperimentError> {
     let mut machine = MachineConfig::preset(preset)?;
     machine.n_gps = random.between(gps.0, gps.1) as usize;

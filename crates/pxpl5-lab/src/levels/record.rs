@@ -53,11 +53,11 @@ pub struct LevelSpeed {
 /// Median of a set of values, and the interval that contains the middle 90 % of the values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Median of the values.
+    /// Median of the set of values.
     pub median: f64,
-    /// 5th percentile of the values.
+    /// 5th percentile of the set of values.
     pub low_5: f64,
-    /// 95th percentile of the values.
+    /// 95th percentile of the set of values.
     pub high_95: f64,
 }
 

@@ -15,9 +15,9 @@ use std::sync::Arc;
 /// The values of a setting that a search can try: equally spaced, from a smallest value on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Values {
-    /// The smallest value.
+    /// Smallest value that a search can try.
     pub from: f64,
-    /// The distance from one value to the next; 1 for whole numbers.
+    /// Difference between neighbouring values, which is 1 for whole numbers.
     pub step: f64,
     /// Number of values, at least 2.
     pub count: u64,
@@ -37,13 +37,13 @@ impl Values {
         (step > 0.0 && step.is_finite()).then_some(Self { from, step, count: STEPS + 1 })
     }
 
-    /// Returns the value with an index, counted from 0.
+    /// Returns the value with the index `number`, counted from 0.
     #[must_use]
     pub fn value(&self, number: u64) -> f64 {
         self.from + self.step * number as f64
     }
 
-    /// Returns the greatest value.
+    /// Returns the greatest value that a search can try.
     #[must_use]
     pub fn last(&self) -> f64 {
         self.value(self.count - 1)
@@ -66,7 +66,7 @@ pub const STEPS: u64 = 64;
 /// A search for the values of one setting with which an experiment reaches a goal.
 #[derive(Clone, Debug)]
 pub struct OverQuery {
-    /// The experiment, with all settings except the varied one.
+    /// The experiment, with values of all settings except the varied setting.
     pub file: ExperimentFile,
     /// Path of the varied setting, such as `machine.n_gps`.
     pub key: String,
@@ -194,7 +194,7 @@ struct Search<'a> {
     trials: BTreeMap<u64, Trial>,
     /// The error of the last value that could not be run.
     refused: Option<StudyError>,
-    /// The scene that was loaded last, with the settings that chose it.
+    /// The scene that was loaded last, with the settings of this scene.
     scene: Option<(crate::SceneChoice, Arc<Scene>)>,
 }
 
@@ -250,7 +250,8 @@ impl Search<'_> {
         self.trials.iter().map(|(number, trial)| (self.query.values.value(*number), trial.reached)).collect()
     }
 
-    /// Returns the result if all values miss the goal. The best value then states the limiting resource.
+    /// Returns the result of the search if all values of the setting miss the goal. The run with the best value then
+    /// states the limiting resource.
     fn none(mut self) -> Result<OverLimit, StudyError> {
         let is_refused = self.trials.values().all(|trial| trial.score == f64::NEG_INFINITY);
         if let Some(error) = self.refused.take().filter(|_| is_refused) {

@@ -1,4 +1,5 @@
-//! Searches for the smallest number of triangles (size) that misses a goal, by trying sizes.
+//! Searches for the smallest number of triangles (size of a scene) that misses a goal, by simulating scenes of several
+//! sizes.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -16,7 +17,7 @@ pub struct Limit {
     /// Smallest number of triangles from which on all sizes up to `triangles` were tried. Below this size only some
     /// sizes were tried.
     pub unbroken_from: u32,
-    /// Number of sizes that were simulated.
+    /// Number of scene sizes that were simulated.
     pub tried: usize,
 }
 
@@ -30,18 +31,20 @@ pub struct Hints {
     pub doubtful: Vec<u32>,
 }
 
-/// Number of sizes directly below the result that are all tried: 60 sizes, or two clumps of 30 triangles. The search
-/// also tries equally many sizes above the result, because some of these may reach the goal.
+/// Maximum number of sizes (numbers of triangles) directly below the result that are all tried: 60 sizes, or two clumps
+/// of 30 triangles. The search also tries about as many sizes above the result, because some of these may reach the
+/// goal.
 const LOOK: u32 = 60;
 
-/// Maximum sum of triangles over the consecutive sizes tried on either side of the result. Larger sizes take longer to
-/// simulate, so fewer large sizes are tried.
+/// Maximum sum of the triangles of all scenes that are tried directly below the result. Larger scenes take longer to
+/// simulate, so fewer large scenes are tried.
 const TRIANGLES_IN_A_ROW: u32 = 60_000;
 
-/// Minimum number of consecutive sizes that are tried on either side of the result.
+/// Minimum number of consecutive scene sizes that are tried directly below the result.
 const LEAST_IN_A_ROW: u32 = 4;
 
-/// The sizes that were tried so far, with the result of each.
+/// The scene sizes (numbers of triangles) that were tried so far. Each size has a boolean that is true if the size
+/// reached the goal.
 struct Tried<F> {
     answers: BTreeMap<u32, bool>,
     reached: F,
@@ -60,17 +63,18 @@ impl<F> Tried<F> {
         Ok(answer)
     }
 
-    /// Returns the smallest tried size that missed the goal.
+    /// Returns the smallest tried size (number of triangles) that missed the goal.
     fn first_miss(&self) -> Option<u32> {
         self.answers.iter().find(|(_, reached)| !**reached).map(|(size, _)| *size)
     }
 
-    /// Returns the largest tried size below `size`, or 0 if no smaller size was tried.
+    /// Returns the largest tried number of triangles below `size`, or 0 if no smaller number was tried.
     fn before(&self, size: u32) -> u32 {
         self.answers.range(..size).next_back().map_or(0, |(size, _)| *size)
     }
 
-    /// Tries sizes around `near` in steps that double, until one size has reached the goal and another has missed.
+    /// Tries numbers of triangles around `near` in steps that double, until one number has reached the goal and another
+    /// number has missed.
     fn bracket<E>(&mut self, near: u32, ceiling: u32) -> Result<(), E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -89,7 +93,7 @@ impl<F> Tried<F> {
         Ok(())
     }
 
-    /// Bisects the gap below the first miss, until the size directly before the first miss was tried.
+    /// Bisects the gap below the first miss, until the number of triangles directly before the first miss was tried.
     fn bisect<E>(&mut self) -> Result<(), E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -104,7 +108,7 @@ impl<F> Tried<F> {
         Ok(())
     }
 
-    /// Tries sizes until a size misses the goal. Returns true if a size missed.
+    /// Tries the numbers of triangles in `sizes` until a number misses the goal. Returns true if a number missed.
     fn finds_a_miss<E>(&mut self, sizes: impl IntoIterator<Item = u32>) -> Result<bool, E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -117,7 +121,7 @@ impl<F> Tried<F> {
         Ok(false)
     }
 
-    /// Finds a first miss, then bisects again as long as a smaller size misses.
+    /// Finds a number of triangles that misses the goal, then bisects again as long as a smaller number misses.
     fn find_limit<E>(&mut self, ceiling: u32, hints: &Hints) -> Result<(), E>
     where
         F: FnMut(u32) -> Result<bool, E>,
@@ -148,7 +152,8 @@ impl<F> Tried<F> {
     }
 }
 
-/// Returns the smallest size that misses the goal, up to `ceiling`, as far as trials can show.
+/// Searches for the smallest size (number of triangles) that misses the goal, up to `ceiling`, as far as trials can
+/// show.
 ///
 /// Sizes above the first miss may reach the goal, because a nearly empty clump (group of triangles) costs as many
 /// messages as a full clump. The result is guaranteed in three respects:
@@ -174,8 +179,8 @@ pub fn most<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -> Result<b
     Ok(tried.limit(ceiling))
 }
 
-/// Returns [`Limit::triangles`] of [`most`], without a search for islands above the first miss. An island never changes
-/// the limit, so about half of the trials are left out.
+/// Returns [`Limit::triangles`] of [`most`], without a search for islands (sizes above the first miss that reach the
+/// goal). An island never changes the limit, so about half of the trials are left out.
 ///
 /// # Errors
 ///
@@ -198,8 +203,8 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the sizes to try below a found limit: consecutive sizes, doubtful sizes, and some sizes at distances that
-/// double.
+/// Returns the numbers of triangles to try below `limit`: consecutive numbers, doubtful numbers, and some numbers at
+/// distances that double.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
     // All sizes directly below, from the largest down.
@@ -208,12 +213,13 @@ fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     near.chain(doubtful.iter().copied().filter(move |size| *size < limit)).chain(far).filter(|size| *size > 0)
 }
 
-/// Returns the number of consecutive sizes to try on either side of a found limit.
+/// Returns how many numbers of triangles to try on either side of `limit`. The numbers below `limit` are consecutive.
 fn in_a_row(limit: u32) -> u32 {
     (TRIANGLES_IN_A_ROW / limit.max(1)).clamp(LEAST_IN_A_ROW, LOOK)
 }
 
-/// Returns the sizes to try above the first miss. As many sizes are tried above the limit as directly below the limit.
+/// Returns the numbers of triangles to try above the first miss, from the largest down. The numbers are evenly spaced
+/// and at most 61 above `limit`. About as many numbers are tried as directly below `limit`.
 fn above(limit: u32, ceiling: u32) -> impl Iterator<Item = u32> {
     let farthest = limit.saturating_add(1 + LOOK.min(limit / 2)).min(ceiling);
     let step = (farthest.saturating_sub(limit) / in_a_row(limit)).max(1) as usize;

@@ -40,9 +40,9 @@ pub struct Readings {
     pub rounding_percent: f64,
 }
 
-/// Ranks all interpretations at the analytic level, with the seeds and frames of a bench (common settings). The first
-/// `best` interpretations are then simulated at the transaction level. `finished` is called with the number of finished
-/// runs and the number of all runs.
+/// Ranks all interpretations at the analytic level, with the numbers of seeds and frames in `bench`. The first `best`
+/// interpretations are then simulated at the transaction level. `finished` is called with the number of finished runs
+/// and the number of all runs.
 ///
 /// # Errors
 ///
@@ -79,9 +79,9 @@ pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Re
     Ok(Readings { schema: "pxpl5-readings/1", analytic, transaction, left_out, as_good, rounding_percent })
 }
 
-/// Groups the interpretations that differ only in the number of regions that a renderer keeps and in the evaluation of
-/// a run. In a group, the smallest number comes first: if no backing store is full in its run, the run also serves the
-/// larger numbers.
+/// Groups the interpretations whose runs differ at most in the number of regions that a renderer keeps. Within a group,
+/// the interpretation with the smallest number comes first. If no backing store is full in its run, the run also serves
+/// the larger numbers.
 fn groups(readings: &[Reading]) -> Vec<Vec<Reading>> {
     let mut groups: BTreeMap<Reading, Vec<Reading>> = BTreeMap::new();
     for reading in readings {

@@ -7,12 +7,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 impl Sweep {
-    /// Simulates the given points one after the other on this thread, until the time `at_most` has passed. Returns each
+    /// Simulates `points` one after the other on the calling thread, until the time `at_most` has passed. Returns each
     /// row with the seconds that its simulation took.
     ///
-    /// The first point is always simulated, and no point is interrupted. A caller that repeats the call with the
-    /// remaining points therefore finishes. A row depends only on the file and the point. An error of a point, even a
-    /// panic, is stored in the row.
+    /// The first point is always simulated, and no point is interrupted. Repeated calls with the remaining points
+    /// therefore reach the end. A row depends only on the file and the point. An error of a point, even a panic, is
+    /// stored in the row.
     #[must_use]
     pub fn rows(&self, points: &[u64], at_most: Duration) -> Vec<(SweepRow, f64)> {
         let begin = Instant::now();

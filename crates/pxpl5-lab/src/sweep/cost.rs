@@ -1,7 +1,7 @@
 //! Estimates the cost of points before they run. The formulas are in [`crate::estimate`]. The analytic level (closed
 //! form) gives the number of pictures.
 //!
-//! Callers that distribute points over computers correct the estimates by the durations of finished points.
+//! Programs that distribute points over computers correct the estimates by the durations of finished points.
 
 use super::Sweep;
 use crate::Plan;
@@ -9,16 +9,16 @@ use crate::estimate::{Estimate, RunWork};
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
 
-/// Seconds to check the settings of a point, to build the scene, and to write the row.
+/// Seconds to check the settings of a point (experiment) of a sweep, to build the scene, and to write the row.
 const POINT: f64 = 3e-3;
 
-/// Memory in bytes of a point that simulates nothing.
+/// Memory in bytes for a point without a simulation: an invalid point, or a point at the analytic level.
 const NO_RUN_BYTES: f64 = 15e6;
 
 impl Sweep {
-    /// Estimates the time in seconds that each point takes on one core. If the pipeline has a closed form, the closed
-    /// form gives the number of pictures. An invalid point costs almost nothing. Points that differ only in their seed
-    /// get the same estimate.
+    /// Estimates the time in seconds that each point (experiment) takes on one core. If the pipeline has a closed form,
+    /// the closed form gives the number of pictures. An invalid point costs almost nothing. Points that differ only in
+    /// their seed get the same estimate.
     #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
         self.estimates(points).into_iter().map(|estimate| estimate.seconds).collect()

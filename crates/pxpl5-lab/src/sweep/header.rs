@@ -25,7 +25,7 @@ pub struct Header {
     pub seed: u64,
     /// Title of the sweep in one line, for the user.
     pub title: Option<String>,
-    /// Number of points of the whole sweep, over all shards.
+    /// Number of points (experiments) of the whole sweep, over all shards.
     pub points: u64,
     /// Names of the measured quantities with their definitions.
     pub measure: BTreeMap<String, String>,
@@ -63,7 +63,7 @@ impl Header {
     pub const SCHEMA: &'static str = "pxpl5-sweep/1";
 
     /// Returns the header with the hash that identifies the sweep. The hash covers `first`, the effective settings of
-    /// the first point, because a preset may change between versions. It also covers the names of the measured
+    /// the first point, because a preset may change between versions. The hash also covers the names of the measured
     /// quantities in their order, and the contents of all files that points name.
     #[must_use]
     pub fn with_hash<'a>(

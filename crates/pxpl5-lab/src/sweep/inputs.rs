@@ -23,8 +23,8 @@ const KEYS: [FileKey; 2] = [
 ];
 
 impl Sweep {
-    /// Returns the hash of each file that a point may read, by the name in the sweep. A file that cannot be read counts
-    /// as empty. Points that need this file fail with the reason.
+    /// Returns the hash of each file that a point may read. The keys are the names of the files in the sweep. A file
+    /// that cannot be read counts as empty. Points that need this file fail with the reason.
     pub(super) fn inputs(&self) -> BTreeMap<String, Fingerprint> {
         let mut inputs = inputs_of(&self.base);
         let folder = self.folder();
@@ -35,7 +35,7 @@ impl Sweep {
     }
 }
 
-/// Returns the hash of each file that an experiment file names, by the name in the file.
+/// Returns the hash of each file that an experiment file names. The keys are the names in the experiment file.
 pub(crate) fn inputs_of(experiment: &ExperimentFile) -> BTreeMap<String, Fingerprint> {
     let mut inputs = BTreeMap::new();
     for file in &KEYS {

@@ -13,7 +13,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::PathBuf;
 
-/// Number of bytes read from a file at a time: some tens of rows.
+/// Number of bytes that are read from a file of rows at a time: some tens of rows.
 const BLOCK: usize = 16 << 10;
 
 /// Error text for a file that was read before and can no longer be read.
@@ -28,7 +28,7 @@ pub(super) struct Joined {
     /// Byte position at which the row of each point begins in its file.
     places: Vec<u64>,
     failed: Points,
-    /// Points that have several equal rows.
+    /// Points (experiments of the sweep) that have several equal rows.
     duplicates: Vec<u64>,
 }
 

@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 /// Result of merging the shards of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Merged {
-    /// Number of points of the sweep.
+    /// Number of points (experiments) of the sweep.
     pub points: u64,
     /// Number of points that could not be simulated.
     pub failed: u64,
-    /// Points that occurred in more than one row. The rows were equal.
+    /// Points with more than one row. All rows of such a point were equal.
     pub duplicates: Vec<u64>,
-    /// Points without a row. Empty unless missing points were allowed.
+    /// Points (experiments) without a row. Empty unless missing points were allowed.
     pub missing: Vec<u64>,
 }
 

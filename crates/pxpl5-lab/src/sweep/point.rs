@@ -1,4 +1,4 @@
-//! Simulates one point of a sweep.
+//! Simulates one point (experiment) of a sweep.
 
 use super::header::json;
 use super::{Sweep, SweepSpace, measures};
@@ -13,7 +13,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Result status of a point in a sweep.
+/// Result status of a point (experiment) of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
@@ -23,10 +23,10 @@ pub enum Status {
     Failed,
 }
 
-/// Results of a point in a sweep, identical on every host.
+/// Results of a point (experiment) of a sweep. The results are identical on every host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweepRow {
-    /// Index of the point in the parameter space, from 0.
+    /// Index of the point in the parameter space, counted from 0.
     pub point: u64,
     /// Result status of the point: simulated or failed.
     pub status: Status,
@@ -34,7 +34,7 @@ pub struct SweepRow {
     pub parameters: BTreeMap<String, Value>,
     /// Measured quantities by name. The value is null if the run does not define the quantity.
     pub measured: BTreeMap<String, Option<f64>>,
-    /// Hash of all settings on which the trace depends. Null if the experiment is invalid.
+    /// Hash of all settings on which the simulated events depend. Null if the experiment is invalid.
     pub config_hash: Option<String>,
     /// Hash over the trace of all events. Null for a level of modelling without events.
     pub trace_hash: Option<String>,
@@ -43,7 +43,7 @@ pub struct SweepRow {
 }
 
 impl Sweep {
-    /// Returns the checked experiment at a point.
+    /// Checks the settings of a point and returns its experiment.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Replaces a file by a complete new version, so that no reader finds a file in part.
+//! Replaces a file by a complete new version, so that no reader finds an incomplete file.
 
 use pxpl5_sim::parameters::FileError;
 use std::fs::{self, File};

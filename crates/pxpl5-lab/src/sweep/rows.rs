@@ -18,12 +18,12 @@ pub(super) struct RowFile {
     places: Vec<u64>,
     finished: u64,
     failed: Points,
-    /// Length in bytes up to the end of the last complete line.
+    /// Length of the file in bytes, up to the end of the last complete line.
     whole_bytes: u64,
 }
 
 impl RowFile {
-    /// Builds the index of a file. An incomplete last line is ignored.
+    /// Builds the index of a file of result rows. An incomplete last line is ignored.
     pub(super) fn open(path: &Path) -> Result<Self, FileError> {
         let mut scan = Scan::open(path)?;
         let mut found = Self { path: path.to_owned(), header: scan.header.take(), ..Self::default() };
@@ -34,7 +34,7 @@ impl RowFile {
         Ok(found)
     }
 
-    /// Builds the index of a file. The index is empty if the file does not exist.
+    /// Builds the index of a file of result rows. The index is empty if the file does not exist.
     pub(super) fn open_or_none(path: &Path) -> Result<Self, FileError> {
         match path.try_exists() {
             Ok(false) => Ok(Self { path: path.to_owned(), ..Self::default() }),
@@ -73,7 +73,7 @@ impl RowFile {
         self.whole_bytes
     }
 
-    /// Returns the number of points with a row.
+    /// Returns the number of points (experiments) with a row.
     pub(super) const fn finished(&self) -> u64 {
         self.finished
     }
@@ -82,7 +82,7 @@ impl RowFile {
         self.place(point).is_some()
     }
 
-    /// Returns true if a point has a row and could not be simulated.
+    /// Returns true if a point has a row that states that the point could not be simulated.
     pub(super) fn is_failed(&self, point: u64) -> bool {
         self.failed.holds(point)
     }
@@ -110,7 +110,7 @@ pub(super) struct Scan {
     path: PathBuf,
     file: BufReader<File>,
     text: Vec<u8>,
-    /// Number of the last line that was read, counted from 1.
+    /// Number of the last line that was read from the file, counted from 1.
     line: usize,
     points: u64,
     /// Header of the file. `None` if the file does not contain a complete header.
@@ -149,7 +149,7 @@ impl Scan {
         Ok(Some((row, begin)))
     }
 
-    /// Reads a line. Returns false if the line is incomplete.
+    /// Reads a line of the file. Returns false if the line is incomplete.
     fn read_line(&mut self) -> Result<bool, FileError> {
         self.text.clear();
         self.file.read_until(b'\n', &mut self.text).map_err(FileError::io(&self.path, "cannot be read"))?;
@@ -172,7 +172,8 @@ impl Scan {
     }
 }
 
-/// Creates the error of a point with two different rows. Both files may be the same.
+/// Creates the error of a point with two different rows. `first` and `second` name the files of these rows, and can be
+/// equal.
 pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError {
     let reason = format_args!("point {point} has different rows in {first} and {second}");
     FileError::because(FileErrorKind::Damaged, reason)
@@ -183,7 +184,7 @@ pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError 
 pub(super) struct RowReader<'a> {
     rows: &'a RowFile,
     file: BufReader<File>,
-    /// Byte position at which the next read begins.
+    /// Byte position in the file at which the next read begins.
     at: u64,
 }
 

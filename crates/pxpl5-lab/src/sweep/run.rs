@@ -16,15 +16,15 @@ use std::time::Instant;
 pub struct RunOptions {
     /// Shard (part) of the sweep to run.
     pub shard: Shard,
-    /// Number of points that are simulated in parallel.
+    /// Number of points (experiments) that are simulated in parallel.
     pub threads: usize,
 }
 
 /// Maximum number of finished rows that wait to be written. A crash loses the waiting rows.
 const WAITING_ROWS: usize = 64;
 
-/// Simulates the points of a shard for which the store has no row yet. `finished` is called with every row after the
-/// row is stored.
+/// Simulates the points of a shard for which `store`, the folder of the sweep, has no row yet. `finished` is called
+/// with every row after the row is stored.
 ///
 /// # Errors
 ///
@@ -84,11 +84,11 @@ pub fn run_stoppable(
 struct Work<'a, S> {
     sweep: &'a S,
     shard: Shard,
-    /// Points that were finished before this run.
+    /// Points (experiments) that were finished before this run of the sweep.
     finished: Points,
     /// Index of the next point to take.
     next: AtomicU64,
-    /// True after an error of the store, when no row can be stored any more.
+    /// True after a row could not be written, so that no further row can be written.
     ended: AtomicBool,
     /// True when another thread has asked the sweep to stop.
     stop: &'a Arc<AtomicBool>,

@@ -1,4 +1,4 @@
-//! The parameter space of a sweep: axes of values, and points by index.
+//! The parameter space of a sweep: axes of values, and the combinations of values (points) by index.
 
 use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
@@ -40,7 +40,7 @@ impl Axis {
     }
 }
 
-/// Values of one setting in order. A range stores only three numbers.
+/// Values of one setting along an axis, in order. A range stores only three numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxisValues {
     /// Values as listed in the sweep's file.
@@ -57,7 +57,7 @@ pub enum AxisValues {
 }
 
 impl AxisValues {
-    /// Returns the number of values.
+    /// Returns the number of values along the axis.
     #[must_use]
     pub fn len(&self) -> u64 {
         match self {
@@ -66,7 +66,7 @@ impl AxisValues {
         }
     }
 
-    /// Returns true if there are no values.
+    /// Returns true if the axis has no values.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -93,9 +93,9 @@ pub struct SweepSpace {
 const KEYS: [&str; 3] = ["grid", "together", "seeds"];
 
 impl SweepSpace {
-    /// Reads the table `sweep` of a file. `place` is the place of the table in an error message, and `places` has the
-    /// places of its keys, if they are known. `key_of` returns the name of a key that an axis varies, from the key as
-    /// written and its place.
+    /// Reads the table `sweep` of a file. For error messages, `place` states the file and line of the table, and
+    /// `places` the file and line of each of its keys, if known. `key_of` returns the full name of a key that an axis
+    /// varies. The arguments of `key_of` are the key in the file and its file and line.
     ///
     /// # Errors
     ///

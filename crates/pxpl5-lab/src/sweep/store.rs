@@ -35,7 +35,8 @@ pub struct Store {
     times_file: File,
     /// True after this process has appended a row, and has removed the plots and pages that were made from fewer rows.
     is_renewed: bool,
-    /// Lock of the folder, held as long as the store exists. The operating system releases the lock after a crash.
+    /// Lock of the folder, which no other process can open while this object exists. The operating system releases the
+    /// lock after a crash.
     _lock: File,
 }
 
@@ -55,7 +56,7 @@ impl Store {
     /// Returns a [`FileError`] in these cases:
     ///
     /// - The folder cannot be read or written, or is in use.
-    /// - A line before the last is damaged.
+    /// - A line of the file of rows is damaged, and is not the last line.
     /// - The folder holds results of another sweep.
     /// - The folder holds finished points although `resume` is false.
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, FileError> {
@@ -100,7 +101,7 @@ impl Store {
         Ok(store)
     }
 
-    /// Returns true if the folder has a row for this point.
+    /// Returns true if the folder has a row for the point (experiment) with the index `point`.
     #[must_use]
     pub fn holds(&self, point: u64) -> bool {
         self.rows.holds(point)
@@ -278,7 +279,7 @@ fn whole_lines(path: &Path) -> u64 {
     whole
 }
 
-/// Returns an error that names the first difference between two headers.
+/// Returns an error that names the first difference between the header of a file and the header of this sweep.
 pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header>) -> Result<(), FileError> {
     let Some(found) = found.filter(|found| *found != expected) else { return Ok(()) };
     let pairs = [

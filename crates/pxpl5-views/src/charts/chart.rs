@@ -42,7 +42,7 @@ pub struct ChartPoint {
 /// The style in which the points of a series are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeriesStyle {
-    /// A line that joins the points in their given order.
+    /// A line that joins the points in the order of [`ChartSeries::points`].
     Line,
     /// A line with a marker at each point. The confidence intervals form a band.
     Band,

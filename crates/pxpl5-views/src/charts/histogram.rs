@@ -16,7 +16,7 @@ const FLOOR: f64 = HEIGHT - BOTTOM;
 
 /// Number of bars of a histogram.
 const BINS: usize = 24;
-/// Distance from one bar to the next: the width of a bar and of the gap.
+/// Distance between the left edges of neighbouring bars: the width of a bar and of the gap.
 const STEP: f64 = (WIDTH - LEFT - RIGHT) / BINS as f64;
 
 /// Returns a histogram of latencies in milliseconds, as SVG for a page.

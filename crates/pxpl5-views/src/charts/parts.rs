@@ -34,7 +34,7 @@ pub(crate) fn colour_of_part(name: &str) -> &'static str {
 
 /// Returns a single bar with the mean parts of the latency, as SVG for a page.
 ///
-/// A frame marks the parts that the papers count as latency. The SVG text is empty if the sum of the parts is not
+/// An outline marks the parts that the papers count as latency. The SVG text is empty if the sum of the parts is not
 /// positive.
 #[must_use]
 pub fn part_bar(parts: &[MeanPart]) -> String {
@@ -72,8 +72,7 @@ fn piece(part: &MeanPart, x: f64, width: f64) -> Element {
     piece.child(&hint(format_args!("{}: {:.3} ms", part.name, part.mean_ms)))
 }
 
-/// Horizontal range of the frame in chart units, around the published parts: from the left edge of the first to the
-/// right edge of the last.
+/// Horizontal range, in chart units, of the outline around the parts that the papers count as latency.
 struct Frame {
     from: f64,
     to: f64,
@@ -85,7 +84,7 @@ impl Frame {
         self.to = self.to.max(to);
     }
 
-    /// Returns the frame as an element. Without published parts, its width is 0.
+    /// Returns the outline as an SVG rectangle. If the papers count no part as latency, the width is 0.
     fn drawn(&self) -> Element {
         let width = (self.to - self.from).max(0.0);
         let frame = Element::new("rect").with("x", Tenths(self.from.min(WIDTH))).with("y", 11);

@@ -17,7 +17,7 @@ pub struct Curve {
 pub struct MarkedPoint {
     /// Name in the legend.
     pub name: String,
-    /// Horizontal and vertical value. If either is NaN, the point is not drawn.
+    /// Horizontal and vertical value of the point. If either value is NaN, the point is not drawn.
     pub at: (f64, f64),
     /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),

@@ -7,9 +7,9 @@ use std::ops::Range;
 /// Scale of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxisScale {
-    /// Linear scale from 0 to the greatest number.
+    /// Linear scale from 0 to the greatest drawn number.
     FromZero,
-    /// Linear scale from the smallest number to the greatest.
+    /// Linear scale from the smallest to the greatest drawn number.
     Fitted,
     /// Logarithmic scale in powers of ten. Zero and negative numbers have no position.
     Decades,
@@ -26,7 +26,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Creates an axis whose range contains the given numbers. NaN and numbers without a position are ignored.
+    /// Creates an axis whose range contains all elements of `numbers`. NaN and numbers without a position are ignored.
     pub(super) fn reaching(scale: &AxisScale, numbers: impl Iterator<Item = f64>) -> Self {
         let blank = Self { scale: scale.clone(), ends: (0.0, 1.0) };
         let places = numbers.map(|number| blank.place(number)).filter(|place| place.is_finite());

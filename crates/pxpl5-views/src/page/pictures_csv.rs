@@ -1,4 +1,4 @@
-//! Reads the values from `pictures.csv` that a page needs.
+//! Reads the values that a page needs from the file `pictures.csv`.
 
 use csv::{ReaderBuilder, StringRecord};
 

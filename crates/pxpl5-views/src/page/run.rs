@@ -12,7 +12,7 @@ pub struct PageRun {
     /// Comparison with a published value: `quantity`, `published`, `error_percent` and `source`. Null if the papers
     /// give no value.
     pub published: Value,
-    /// Pictures that the viewer sees at the end of the run, by surface.
+    /// Pictures that the viewer sees at the end of the run, one for each surface.
     pub pictures: Vec<PagePicture>,
     /// Timeline as SVG.
     pub timeline: Option<Vec<u8>>,

@@ -9,8 +9,8 @@ use crate::markup::Element;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-/// Returns the three sections of an experiment: pictures, latencies, and the rest. In print, each section stays
-/// together.
+/// Returns the three sections of an experiment: pictures, latencies, and all other values of the report. In print, each
+/// section stays together.
 pub(super) fn sections(run: &PageRun) -> [Element; 3] {
     [seen(run), timed(run), told(run)]
 }

@@ -1,18 +1,19 @@
-//! Page section about the share of time for which each board was busy, and about the waits in the latency.
+//! Page section about the fraction of time for which each board was busy, and about the waits in the latency.
 
 use super::values::{cell, decimal, heading, known, list, number, number_cell, paragraph, plain, row, table};
 use crate::markup::Element;
 use serde_json::Value;
 
-/// Returns the section for a report. The result is empty for a report of an older version without these values.
+/// Returns the page section about the busy times and waits in a report. The result is empty for a report of an older
+/// version without these values.
 pub(super) fn utilisation(report: &Value) -> Vec<Element> {
     let mut all = boards(&report["utilisation"]);
     all.extend(path(&report["critical_path"]));
     all
 }
 
-/// A kind of board: its title, the report keys of its busy share of time, and the keys and labels of further shares of
-/// time.
+/// A kind of board: the title, the keys of the fraction of busy time in the report, and the keys and labels of other
+/// fractions of time.
 type Kind = (&'static str, [&'static str; 2], &'static [(&'static str, &'static str)]);
 
 const KINDS: [Kind; 4] = [

@@ -7,8 +7,8 @@ use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
 use pxpl5_wire::display::Display;
 
-/// Returns the dependencies between the stages of the chosen picture as arrows. Arrows outside the drawn time are left
-/// out.
+/// Returns the dependencies between the stages of the picture `chosen` as arrows. Arrows outside the drawn time are
+/// left out.
 pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<&PictureTimes>) -> Vec<Arrow> {
     let Some(chosen) = chosen else { return Vec::new() };
     let bars = located(timeline);
@@ -28,14 +28,14 @@ pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<
     arrows
 }
 
-/// A bar of a timeline with its row and lane.
+/// A bar of a timeline with its row and its lane. Lanes divide a row in which bars overlap.
 #[derive(Clone, Copy)]
 struct Located<'a> {
     place: DrawingPlace,
     bar: &'a Bar,
 }
 
-/// Returns the bars of the chosen picture with their positions.
+/// Returns the bars of the picture whose dependencies are drawn, each with its row and lane.
 fn located(timeline: &Timeline) -> Vec<Located<'_>> {
     let mut located = Vec::new();
     for (row, bars) in timeline.rows.iter().map(|row| &row.bars).enumerate() {
@@ -51,11 +51,11 @@ fn from_tracker(timeline: &Timeline, bars: &[Located<'_>]) -> Option<Arrow> {
     Some(Arrow { from: DrawingPlace::Tracker, begin: send.bar.begin, to: send.place, end: send.bar.begin })
 }
 
-/// Returns the bar on which another bar depends. Usually this is the previous stage of the same surface.
+/// Returns the bar on which `bar` depends. Usually this is the bar of the previous stage for the same surface.
 ///
-/// There are three other cases. A stage that does not work for single surfaces has one bar, and this bar is used. The
-/// second surface's TRANSFORM depends on the first surface's TRANSFORM. The bottom half of a picture depends on the top
-/// half.
+/// There are three other cases. If the previous stage has a single bar for all surfaces, the function returns this bar.
+/// The TRANSFORM of the second surface depends on the TRANSFORM of the first surface. The bottom half of a picture
+/// depends on the top half.
 fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     let sibling = bars.iter().find(|other| other.bar.stage == bar.stage && is_sequel(other.bar, bar)).copied();
     if sibling.is_some() {
@@ -71,13 +71,14 @@ fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
     before.iter().find_map(|stage| of_stage(bars, *stage, bar.surface))
 }
 
-/// Returns the first bar of a stage that works for a surface.
+/// Returns the first bar of a stage whose work concerns `surface`.
 fn of_stage<'a>(bars: &[Located<'a>], stage: Stage, surface: Option<SurfaceId>) -> Option<Located<'a>> {
     let mut of_stage = bars.iter().filter(|located| located.bar.stage == stage);
     of_stage.find(|located| concerns(located.bar.surface, surface)).copied()
 }
 
-/// Returns true if two bars have a surface in common. `None` stands for all surfaces.
+/// Returns true if two bars have a surface in common. `one` and `other` are the surfaces of the bars, and `None` stands
+/// for all surfaces.
 fn concerns(one: Option<SurfaceId>, other: Option<SurfaceId>) -> bool {
     one.is_none() || other.is_none() || one == other
 }
@@ -90,7 +91,7 @@ fn is_sequel(first: &Bar, second: &Bar) -> bool {
     }
 }
 
-/// Returns the arrow between two bars.
+/// Returns the arrow from the bar of an earlier stage to the bar of a later stage.
 ///
 /// The later stage may begin before the end of the earlier stage, because the later stage needs only a part of the
 /// earlier stage's result. The arrow is then vertical.

@@ -12,7 +12,8 @@ use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
-/// Divisor of the drawn time span. Two bars that overlap by less than the quotient can share a lane.
+/// Divisor for the largest overlap of two bars that share a lane (a part of a row). The largest overlap is the drawn
+/// time span divided by this number.
 const TOUCHING: u64 = 300;
 
 /// Smallest number of display periods in a drawing, if the user gives no number.
@@ -73,13 +74,13 @@ fn chosen(pictures: &[PictureTimes], wanted: Option<PictureNumber>) -> Option<&P
     }
 }
 
-/// Returns the time at which the host began to send an update. Returns `None` if the host has no row.
+/// Returns the time at which the host began the SEND with the number `update`. Returns `None` if the host has no row.
 fn sent_at(rows: &[TimelineRow], update: Option<PictureNumber>) -> Option<Time> {
     let bar = rows.first()?.bars.iter().find(|bar| Some(bar.picture) == update)?;
     (bar.stage == Stage::Send).then_some(bar.begin)
 }
 
-/// Returns the periods of the first display that the timeline shows.
+/// Returns the range of the first display's periods in which the timeline begins and ends.
 fn periods(
     run: &SoFar<'_>,
     options: &TimelineOptions,

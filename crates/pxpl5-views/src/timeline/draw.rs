@@ -22,7 +22,7 @@ const FOOT: i64 = 84;
 const STRIP: i64 = 6;
 const SHOWN: i64 = 18;
 
-/// Number of periods from which the axis omits the word `field`, because space is short.
+/// Smallest number of drawn retraces for which the axis omits the word `field`, because space is short.
 const CROWDED: usize = 10;
 
 /// A timeline that is being drawn, with the vertical positions of its rows.

@@ -26,7 +26,7 @@ pub struct Bar {
     pub begin: Time,
     /// Time at which the last board ended this work. For a stage that did not end, the end of the run.
     pub end: Time,
-    /// Index of the bar's lane in its row, counted from the top.
+    /// Index of the bar's lane in its row, counted from the top. Lanes divide a row in which bars overlap.
     pub lane: usize,
     /// For COPY: time spans in which the port received data.
     pub receiving: Vec<(Time, Time)>,
@@ -37,9 +37,9 @@ pub struct Bar {
 pub struct TimelineRow {
     /// Name of the resource, drawn on the left of the row.
     pub name: String,
-    /// Bars, in the order of their start.
+    /// Bars for the work of the resource, in the order of their start.
     pub bars: Vec<Bar>,
-    /// Number of lanes, which is the largest number of overlapping bars.
+    /// Number of lanes into which the row is divided, which is the largest number of overlapping bars.
     pub lanes: usize,
     /// Pictures that the port of this row showed. The list is empty unless the row belongs to a port that swaps
     /// independently.
@@ -81,7 +81,7 @@ pub struct Timeline {
     pub picture: Option<PictureNumber>,
     /// Number of the SEND that supplied the head pose of the picture whose dependencies are drawn.
     pub update: Option<PictureNumber>,
-    /// Dependencies of the picture in the field `picture`.
+    /// Dependencies of the picture in [`Timeline::picture`].
     pub arrows: Vec<Arrow>,
 }
 
@@ -115,15 +115,15 @@ pub struct Arrow {
 /// One end of an arrow: a row of the drawing, and the lane if the row belongs to boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawingPlace {
-    /// The row of the tracker.
+    /// The row of the timeline that shows the samples of the tracker.
     Tracker,
-    /// A lane in a row of boards.
+    /// A lane (part of a row) in a row of boards.
     Lane {
-        /// Index of the row.
+        /// Index of the row, counted from the top.
         row: usize,
-        /// Index of the lane in the row.
+        /// Index of the lane in the row, counted from the top.
         lane: usize,
     },
-    /// The row of the display's beam.
+    /// The row of the timeline that shows the display's beam.
     Beam,
 }

@@ -61,7 +61,7 @@ fn has_many_surfaces(record: &Record) -> bool {
     record.surfaces().nth(1).is_some()
 }
 
-/// Copies to a display, by picture and by part of the picture.
+/// COPY bars of a row. The key is the number of the picture, and the number of the part of the picture.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
 /// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two
@@ -120,7 +120,7 @@ fn name_halves(parts: &mut Parts) {
     }
 }
 
-/// Largest gap between two transfers that are drawn as one bar. The gap is less than a tenth of an SVG unit.
+/// Largest gap between two transfers that are drawn as one bar: 20 us, less than a tenth of an SVG unit.
 const JOINED: Span = Span(20_000_000);
 
 fn join(times: &mut Vec<(Time, Time)>) {
@@ -135,8 +135,8 @@ fn join(times: &mut Vec<(Time, Time)>) {
     *times = joined;
 }
 
-/// Assigns each bar of a row to the first lane that is free when the bar begins. An overlap of at most `touching` is
-/// allowed.
+/// Assigns each bar of a row to the first lane that is free when the bar begins. Two bars in one lane may overlap by at
+/// most `touching`.
 pub(super) fn set_lanes(row: &mut TimelineRow, touching: Span) {
     let mut free_at: Vec<Time> = Vec::new();
     for bar in &mut row.bars {

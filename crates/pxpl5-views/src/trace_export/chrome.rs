@@ -38,7 +38,7 @@ fn names(trace: &Trace) -> Vec<String> {
     groups.chain(tracks).map(|event| event.to_string()).collect()
 }
 
-/// Returns an event of the trace as a JSON object. `rest` contains additional members of this object.
+/// Returns an event of the trace as a JSON object. `rest` is the text of additional members of this object.
 fn event(place: &str, kind: &str, time: Time, name: &str, rest: &str) -> String {
     format!(r#"{{"name":{},"ph":"{kind}","ts":{},{place}{rest}}}"#, json!(name), us(time.0))
 }

@@ -9,7 +9,7 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// Position of a slice: its start time, its track and its index in the track.
+/// Position of an event with a duration (slice): its start time, its track and its index in the track.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Stop {
     begin: Time,
@@ -17,7 +17,7 @@ struct Stop {
     place: usize,
 }
 
-/// Connects the slices of each shown picture by a flow (a chain of arrows).
+/// Connects the events of each shown picture by a flow (a chain of arrows).
 pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     let updates = Updates::of(&outcome.so_far(), &outcome.stages());
     let sends = firsts(trace, &[Stage::Send]);
@@ -35,8 +35,8 @@ pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     }
 }
 
-/// Returns the first slices of the given stages, by picture. Slices with different names count separately, so that the
-/// result has the first slice of each surface.
+/// Returns the first events of `stages`, by picture. Events with different names count separately, so that the result
+/// has the first event of each surface.
 fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>> {
     let mut all: BTreeMap<(PictureNumber, String), Stop> = BTreeMap::new();
     let names: Vec<&str> = stages.iter().map(|stage| stage_name(*stage)).collect();
@@ -54,7 +54,7 @@ fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>>
     pictures
 }
 
-/// Returns all slices with their positions and the names of their tracks.
+/// Returns all events with a duration (slices), with their positions and the names of their tracks.
 fn stops(trace: &Trace) -> impl Iterator<Item = (Stop, &str, &Slice)> {
     trace.tracks.iter().enumerate().flat_map(|(track, it)| {
         let slices = if let Events::Slices(slices) = &it.events { &slices[..] } else { &[] };

@@ -8,7 +8,7 @@ use pxpl5_wire::PictureNumber;
 pub struct Trace {
     /// Origin of the trace: the facts from which the trace can be reproduced, as pairs of key and value.
     pub origin: Vec<(&'static str, String)>,
-    /// Names of the groups: boards, surfaces and others.
+    /// Names of the groups of tracks: boards, surfaces, the ring and the video of displays.
     pub groups: Vec<String>,
     /// Tracks, sorted by group.
     pub tracks: Vec<Track>,
@@ -28,46 +28,46 @@ pub struct Track {
 /// The events of a track. All events of a track have the same kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Events {
-    /// Slices that do not overlap.
+    /// Events with a duration (slices), which do not overlap.
     Slices(Vec<Slice>),
-    /// Instants with their names.
+    /// Events without a duration (instants), with their names.
     Instants(Vec<(Time, String)>),
     /// Values of a counter. Each value is valid from its time until the next value.
     Counter(Vec<(Time, i64)>),
 }
 
-/// An event with a duration.
+/// An event with a duration. The formats of trace viewers call such an event a slice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slice {
-    /// Name inside the slice.
+    /// Name that the trace viewer shows inside the event.
     pub name: String,
-    /// Time at which the slice begins.
+    /// Time at which the event begins.
     pub begin: Time,
-    /// Time at which the slice ends.
+    /// Time at which the event ends.
     pub end: Time,
-    /// Number of the frame, field or update to which the slice belongs.
+    /// Number of the frame, field or update to which the event belongs.
     pub picture: Option<PictureNumber>,
-    /// Position of the slice in a flow, a chain of arrows between slices. `None` if the slice is not in a flow.
+    /// Position of the event in a flow, a chain of arrows between events. `None` if the event is not in a flow.
     pub flow: Option<Flow>,
 }
 
-/// Position of a slice in the flow of a picture, the chain of arrows from SEND to the display.
+/// Position of an event in the flow of a picture, the chain of arrows from SEND to the display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flow {
     /// Number of the flow, which is the picture's number plus 1.
     pub id: u64,
-    /// Position of the slice among the slices of the flow.
+    /// Position of the event among the events of the flow: first, middle or last.
     pub step: Step,
 }
 
-/// Position of a slice among the slices of a flow.
+/// Position of an event among the events of a flow, a chain of arrows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// First slice of the flow.
+    /// First event of the flow.
     First,
-    /// Slice between the first and the last.
+    /// Event between the first and the last event of the flow.
     Middle,
-    /// Last slice of the flow.
+    /// Last event of the flow.
     Last,
 }
 

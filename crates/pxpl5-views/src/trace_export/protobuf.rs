@@ -17,14 +17,16 @@ impl Message {
         self.raw(u64::from(field) << 3 | wire_type);
     }
 
-    /// Appends a field with an unsigned number or an enumerator.
+    /// Appends a member of the message that holds an unsigned number or an enumerator. `field` is the number of the
+    /// member.
     pub(super) fn number(mut self, field: u32, value: u64) -> Self {
         self.tag(field, 0);
         self.raw(value);
         self
     }
 
-    /// Appends a field of eight bytes, with the least significant byte first.
+    /// Appends a member of the message that holds eight bytes. The least significant byte comes first. `field` is the
+    /// number of the member.
     pub(super) fn fixed64(mut self, field: u32, value: u64) -> Self {
         self.tag(field, 1);
         self.0.extend(value.to_le_bytes());

@@ -1,4 +1,4 @@
-//! Slices of stages, messages and regions.
+//! Slices (events with a duration) of stages, messages and regions.
 
 use super::model::Slice;
 use pxpl5_gp::Stage;
@@ -19,21 +19,22 @@ pub(super) const fn stage_name(stage: Stage) -> &'static str {
     }
 }
 
-/// Returns the slice of a picture's stage, for the surface with the given label or for all surfaces.
+/// Returns the slice (event with a duration) of a picture's stage. `label` names the surface for which the stage works,
+/// and `None` stands for all surfaces.
 pub(super) fn stage_slice(stage: Stage, picture: PictureNumber, label: Option<&str>, [begin, end]: [Time; 2]) -> Slice {
     let surface = label.map_or_else(String::new, |label| format!(" {label}"));
     let name = format!("{} {picture}{surface}", stage_name(stage));
     Slice { name, begin, end, picture: Some(picture), flow: None }
 }
 
-/// Returns the slice of a message. `toward` names the sender or the receiver.
+/// Returns the slice (event with a duration) of a message. `toward` names the sender or the receiver.
 pub(super) fn message_slice(transfer: &Transfer, toward: &str) -> Slice {
     let name = format!("{} words {toward}", transfer.words);
     Slice { name, begin: transfer.begin, end: transfer.end, picture: None, flow: None }
 }
 
-/// Returns the slice of a region during its transfer to a surface. `message` is the duration of one ring message with a
-/// part of the region.
+/// Returns the slice (event with a duration) of a region during its transfer to a surface. `message` is the duration of
+/// one ring message with a part of the region.
 pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
     Slice {
         name: format!("COPY region {}", arrival.target.region.0),
@@ -44,7 +45,8 @@ pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
     }
 }
 
-/// Sorts slices by time. A slice that overlaps the previous slice is shortened to begin at the previous slice's end.
+/// Sorts slices (events with a duration) by time. A slice that overlaps the previous slice is shortened to begin at the
+/// previous slice's end.
 pub(super) fn apart(slices: impl Iterator<Item = Slice>) -> Vec<Slice> {
     let mut slices: Vec<Slice> = slices.collect();
     slices.sort_by_key(|slice| (slice.end, slice.begin));
