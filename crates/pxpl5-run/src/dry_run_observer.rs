@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 
 /// Streaming observer that collects the times at which views are shown, and the prediction intervals of views and
-/// latched orientations.
+/// latched (sampled and held) orientations.
 #[derive(Debug, Default)]
 pub(crate) struct DryRunObserver {
     pictures: usize,

@@ -91,10 +91,10 @@ impl DuePictures {
         self.not_shown() as f64 / self.due as f64
     }
 
-    /// Returns true if the load is too heavy for the pipeline.
+    /// Returns true if the scene is too heavy for the pipeline.
     ///
-    /// In a pipeline with deadlines, some pictures were late or incomplete. In a pipeline without deadlines, fewer than
-    /// half of the due pictures were shown.
+    /// This is the case if any due picture was late or incomplete, or if fewer than half of the due pictures were
+    /// shown.
     #[must_use]
     pub const fn is_too_heavy(&self) -> bool {
         self.late + self.incomplete > 0 || 2 * self.shown < self.due

@@ -77,8 +77,8 @@ pub enum ExperimentError {
     /// The scene has no primitives, or too many moving structures.
     #[error("{0}")]
     Scene(String),
-    /// The function that observes the run ended it ([`crate::Experiment::run_stopping`]), or the host ended it
-    /// ([`crate::Host::is_stopped`]).
+    /// The run was ended early by the function that observes the run ([`crate::Experiment::run_stopping`]), or by the
+    /// host ([`crate::Host::is_stopped`]).
     #[error("{0}")]
     Stopped(String),
     /// The machine failed. All observations before the failure are kept.

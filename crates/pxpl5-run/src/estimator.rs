@@ -56,7 +56,7 @@ pxpl5_sim::parameters::named!(Cause, "cause", Cause::ALL.map(|cause| (cause.name
 /// its own series ([`Cause::Sampling`]).
 const FED_PS: u64 = 2 * PS_PER_S;
 
-/// An estimator of the head's pose from the reports that are known at an instant.
+/// An estimator of the head's pose from the tracker reports that have reached the host by an instant.
 pub struct Estimator {
     views: Arc<HeadViews>,
     way: Way,
@@ -99,8 +99,8 @@ impl Estimator {
         Self { views: Arc::clone(views), way }
     }
 
-    /// Returns the pose in the scene at the instant `at`, from reports that had arrived by `known`. From call to call,
-    /// `known` must not decrease.
+    /// Returns the head's pose at the instant `at` in the scene's coordinates, from tracker reports that had arrived by
+    /// the instant `known`. From call to call, `known` must not decrease.
     pub fn pose(&mut self, known: Time, at: Time) -> Pose {
         let start = self.views.start();
         let tracked = match &mut self.way {
@@ -112,12 +112,12 @@ impl Estimator {
     }
 }
 
-/// Returns a tracker model for a configuration without one cause of error.
+/// Returns a tracker model for the settings `tracker`, from which one cause of error has been removed.
 fn model_of(tracker: TrackerConfig) -> TrackerModel {
     TrackerModel::new(tracker).expect("less of what was checked by Head::new")
 }
 
-/// Returns a predictor with the settings of the run's predictor, which receives the reports of another tracker.
+/// Returns a predictor that has the settings of the run's predictor, but receives the reports of the tracker `tracker`.
 fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     let head = views.head();
     let model = model_of(tracker);

@@ -42,8 +42,8 @@ pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
 /// Returns the parameters whose values no source supports.
 ///
-/// An unsupported value lies outside the stated range of its parameter, and differs from the values of preset and
-/// pipeline.
+/// An unsupported value lies outside the range that the sources give for its parameter. It also differs from the value
+/// that the machine's preset or the pipeline sets.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
@@ -238,8 +238,8 @@ impl Experiment {
 
     /// Sets the streaming observer of a run with [`Keep::Statistics`].
     ///
-    /// A report about a head needs old records, which such a run discards. An observer must therefore process these
-    /// records during the run. A run with [`Keep::Everything`] needs no observer.
+    /// A run with [`Keep::Statistics`] discards old records, which the results for a tracked head need. The observer
+    /// must therefore process these records during the run. A run with [`Keep::Everything`] needs no observer.
     #[must_use]
     pub const fn observed_by(mut self, sums: Option<ObserverFactory>) -> Self {
         self.sums = sums;
@@ -401,7 +401,8 @@ impl Experiment {
         &self.scene
     }
 
-    /// Returns the configuration of the machine as the caller set it, before the pipeline adapted the configuration.
+    /// Returns the machine's configuration that this experiment received, without the changes that the pipeline makes
+    /// in [`Pipeline::adapt`].
     #[must_use]
     pub const fn config(&self) -> &MachineConfig {
         &self.config

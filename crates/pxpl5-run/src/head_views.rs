@@ -65,8 +65,8 @@ impl Follower {
         Self::new(head.arrivals(until), head.contents(), head.build_predictor())
     }
 
-    /// Gives the predictor all reports that had arrived by `known`. If `known` is earlier than before, the predictor
-    /// keeps the later reports.
+    /// Gives the predictor all reports that had arrived by `known`. If `known` is earlier than in a previous call, the
+    /// predictor keeps all reports that it has received.
     fn follow(&mut self, known: Time) {
         while self.arrivals.next_if(|coming| coming.arrives <= known).is_some() {
             let Some(report) = self.contents.next() else { return };
@@ -179,8 +179,8 @@ impl HeadViews {
         self.state().1.len() + self.schedule().held()
     }
 
-    /// Discards records of poses that were requested before an instant, and of reports that newer reports had replaced
-    /// by then.
+    /// Discards records of poses that were requested before an instant. Also discards records of reports that a newer
+    /// report had replaced before this instant.
     pub(crate) fn discard_before(&self, instant: Time) {
         self.state().1.retain(|sampled| sampled.known >= instant);
         self.schedule().discard_before(instant);

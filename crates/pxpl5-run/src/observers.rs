@@ -30,7 +30,7 @@ pub struct FinalResults<'a> {
     pub head: Option<&'a Arc<HeadViews>>,
     /// Optics of the head-mounted display.
     pub hmd: HmdConfig,
-    /// Requested updates of display memories that remain in memory.
+    /// Records of the requested updates of display memories, as far as the records are still in memory.
     pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.
     pub arrivals: &'a [Arrival],

@@ -34,8 +34,8 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
     all
 }
 
-/// Checks that a renderer's backing store has room for a finished region, which takes `blocks` blocks. Without room, no
-/// region could be copied.
+/// Checks that a renderer's backing store has room for a finished region. The region takes `blocks` blocks of
+/// `renderer.kept_bits` bits. Without room, no region could be copied.
 fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     let renderer = &record.config().renderer;
     if renderer.backing_regions() >= blocks {

@@ -73,7 +73,7 @@ impl ReportSchedule {
         self.known.len()
     }
 
-    /// Computes the times of further reports until a report arrives after an instant.
+    /// Computes the times of the reports that follow the last report in memory, until a report arrives after `instant`.
     fn read_until_after(&mut self, instant: Time) {
         while self.known.back().is_none_or(|last| last.arrives <= instant) {
             let Some(coming) = self.arrivals.next() else { return };

@@ -57,9 +57,9 @@ impl Every {
 
     /// Returns the default latency of a device, in microseconds (assumed).
     ///
-    /// The latency is 2,000 for one pose per field, because a graphics processor begins this long before the retrace
-    /// (range 1,000 to 4,000). For one pose per strip the latency is 500, and for one pose per line 100 (range 64 to
-    /// 1,000). In both cases the device works during the scan and holds only a few lines.
+    /// The latency is 2,000 for one pose per field, because the graphics hardware of a current headset begins this long
+    /// before the retrace (range 1,000 to 4,000). For one pose per strip the latency is 500, and for one pose per line
+    /// 100 (range 64 to 1,000). In both cases the device works during the scan and holds only a few lines.
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {

@@ -91,7 +91,7 @@ impl Experiment {
         stepper.finish()
     }
 
-    /// Returns an error if the host no longer wants the result ([`Host::is_stopped`](crate::Host::is_stopped)).
+    /// Returns an error if the host no longer needs the result ([`Host::is_stopped`](crate::Host::is_stopped)).
     ///
     /// # Errors
     ///

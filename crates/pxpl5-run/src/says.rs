@@ -124,7 +124,8 @@ pub struct PixelField {
     pub value: u128,
 }
 
-/// Returns one bit of a pixel, from a bit plane. `x` is the column and `y` the row of the array.
+/// Returns one bit of a pixel. `plane` holds this bit of every pixel of a renderer's array. `x` is the column and `y`
+/// the row of the array.
 #[must_use]
 pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
     plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1

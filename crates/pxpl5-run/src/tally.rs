@@ -277,8 +277,8 @@ impl Tally {
         }
     }
 
-    /// Adds regions that have arrived. Each region must be added once. A message occupies a channel for the span
-    /// `message`.
+    /// Adds regions that have arrived. Each region must be added once. `message` is the time for which one message
+    /// occupies a channel of the ring.
     pub(crate) fn take_arrivals(&mut self, arrivals: &[Arrival], message: Span) {
         for arrival in arrivals {
             let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);
@@ -306,7 +306,7 @@ impl Tally {
     }
 }
 
-/// Returns the stages of a picture. The given stages must be sorted by picture.
+/// Returns the part of `stages` that belongs to one picture. `stages` must be sorted by picture.
 pub(crate) fn of_picture(stages: &[StageSpan], picture: PictureNumber) -> &[StageSpan] {
     let first = stages.partition_point(|span| span.picture < picture);
     let count = stages[first..].iter().take_while(|span| span.picture == picture).count();

@@ -158,7 +158,7 @@ impl Window {
     }
 }
 
-/// Returns the instant that is [`PERIODS_HELD`] periods earlier than the given instant.
+/// Returns the beginning of the period that is [`PERIODS_HELD`] periods earlier than the period of `instant`.
 fn before(record: &Record, instant: Time) -> Option<Time> {
     let period = record.display().period_at(instant).before(PERIODS_HELD)?;
     Some(record.tick(period))

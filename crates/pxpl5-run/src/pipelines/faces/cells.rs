@@ -10,13 +10,13 @@ use rendering_control::cube::FaceWarp;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Region priority rendering: assigns each structure to the fastest display memory of any of its cells. A structure
-/// that moves by itself is in memory 0.
+/// Region priority rendering: assigns each structure to the fastest (most often updated) display memory among the
+/// memories of its cells. A structure that moves by itself is in memory 0.
 ///
-/// In each cycle, the policy redraws the display memories that are due. All memories of a cycle are drawn from one
-/// position of the eye, because warping needs the exact positions. With warping, all memories of a cycle swap together.
-/// Otherwise, a memory that swapped before its neighbour would be warped for an eye position that the neighbour does
-/// not display yet.
+/// In each cycle (a round of updates), the policy redraws the display memories that are due. All memories of a cycle
+/// are drawn from one position of the eye, because warping needs the exact positions. With warping, all memories of a
+/// cycle swap together. Otherwise, a memory that swapped before its neighbour would be warped for an eye position that
+/// the neighbour does not display yet.
 pub(super) struct ByCells {
     policy: Cells,
     cells: Arc<[Vec<Cell>]>,
@@ -50,8 +50,8 @@ impl ByCells {
         cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)
     }
 
-    /// Returns the displacement of vertices with which the image of a display memory meets the image of the next slower
-    /// memory at their border.
+    /// Returns the displacement of vertices with which the image of a display memory meets the image of the memory with
+    /// the next lower update rate, at the border of the two images.
     fn warp(&self, memory: usize) -> Option<FaceWarp> {
         let slower_from = *self.drawn_from.get(memory + 1).filter(|_| self.falloff != Falloff::None)?;
         Some(FaceWarp {

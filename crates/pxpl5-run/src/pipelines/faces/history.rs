@@ -41,8 +41,8 @@ impl FaceHistory {
         Some(Self { memories: memories.collect() })
     }
 
-    /// Returns the update that each display memory shows in a period, from the lowest memory to the highest. Memories
-    /// that show nothing are left out.
+    /// Returns the update that each display memory shows in a period, in ascending order of the memory's index.
+    /// Memories that show nothing are left out.
     pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownUpdate> {
         (0..self.memories.len()).filter_map(move |memory| self.memory_at(memory, period))
     }
@@ -114,8 +114,8 @@ impl Outcome {
 }
 
 impl FinalResults<'_> {
-    /// Returns the rotation latency of the middle pixel of each given field. Fields without a latency are left out. The
-    /// results of the fields must be final.
+    /// Returns the rotation latency of the middle pixel of each of the fields `fields`. Fields without a latency are
+    /// left out. The results of the fields must be final.
     #[must_use]
     pub fn rotation_latencies(&self, fields: impl Iterator<Item = PeriodNumber>) -> Vec<RotationLatency> {
         let Some((latched, head)) = OrientationTiming::of_run(self).zip(self.head) else { return Vec::new() };

@@ -144,7 +144,7 @@ pub(super) struct Cycles<P> {
     scan: FaceScan,
     policy: P,
     pending: VecDeque<Due>,
-    /// Field in which the last cycle began.
+    /// Field in which the last cycle (round of updates of display memories) began.
     began: Option<PeriodNumber>,
 }
 
