@@ -42,7 +42,7 @@ impl Queue {
     /// remain.
     ///
     /// If `begins_right` is true and a right copy exists, the first copy goes to the right frame buffer. Otherwise the
-    /// first copy goes to the same frame buffer as the first copy of the given order.
+    /// first copy goes to the same frame buffer as the first copy of the original order.
     pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];

@@ -9,13 +9,15 @@ use std::collections::BTreeMap;
 /// The stages add up to the total. All means are NaN (null in JSON) if no picture was measured.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Budget {
-    /// Time from the measurement of the pose until its report reaches the host: tracker, cable and kernel of the host.
+    /// Time from the measurement of the pose until its report reaches the host: tracker, cable and operating system of
+    /// the host.
     #[serde(deserialize_with = "number_or_nan")]
     pub tracking_ms: f64,
     /// Time from the arrival of the tracker's report until the pipeline uses the report.
     #[serde(deserialize_with = "number_or_nan")]
     pub waiting_ms: f64,
-    /// Time from the use of the report to the start of TRANSFORM: link of the host, EDIT, and the wait for TRANSFORM.
+    /// Time from the use of the report to the start of TRANSFORM: transfer from the host, EDIT, and the wait for
+    /// TRANSFORM.
     #[serde(deserialize_with = "number_or_nan")]
     pub sending_ms: f64,
     /// Time from the start of TRANSFORM until the frame buffer holds the picture: TRANSFORM, RENDER and COPY.

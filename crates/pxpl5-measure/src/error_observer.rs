@@ -238,7 +238,8 @@ impl Evaluation {
         }
     }
 
-    /// Returns the error of a pixel. For a pixel without an error, increments the counter that states the reason.
+    /// Returns the error of a pixel. If the pixel cannot be evaluated, returns `None` and increments the counter for
+    /// the reason.
     fn error(&self, pixel: Pixel, seen: Seen, collected: &mut Collected) -> Option<Misregistration> {
         let errors = &mut collected.errors;
         // Each reason has its own counter.
@@ -265,8 +266,8 @@ impl Evaluation {
         self.evaluator.error(place, drawn, evaluated_at)
     }
 
-    /// Returns the error of a pixel that a device moves to the newest pose. For a pixel without an error, increments a
-    /// counter that states the reason.
+    /// Returns the error of a pixel that a device moves to the newest pose. If the pixel cannot be evaluated, returns
+    /// `None` and increments the counter for the reason.
     fn moved_error(
         &self,
         run: &FinalResults<'_>,
@@ -374,8 +375,8 @@ struct Collected {
     eye: EyeSum,
 }
 
-/// Number of pixel errors that are kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for
-/// degrees.
+/// Number of pixel errors that are kept, divided by the number of fields that are kept. For
+/// [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields, the kept errors take 4 MiB in pixels and 4 MiB in degrees.
 const KEPT_OF_GRID: usize = 8;
 
 impl Collected {

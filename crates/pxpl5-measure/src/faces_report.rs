@@ -67,7 +67,7 @@ impl FacesReport {
     /// Name and version of the layout of this report.
     pub const SCHEMA: &'static str = "pxpl5-arp/1";
 
-    /// Returns the report of a run, or `None` if its display is not an address recalculation pipeline.
+    /// Returns the report of a run, or `None` if the run's display is not an address recalculation display.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         let display: &AddressRecalculationPipeline = outcome.record().display_of_kind()?;

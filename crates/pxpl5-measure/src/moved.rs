@@ -91,7 +91,7 @@ fn source(
     Some((evaluator.content(drawn, source), source))
 }
 
-/// Returns the pixel at a position, in the nearest row that its field lights.
+/// Returns the pixel at the position `place`, in the nearest row that the field lights.
 fn pixel_at(view: &HmdView, place: DVec2, rows: Rows) -> [u32; 2] {
     let last = view.centre_px() * 2.0 - DVec2::ONE;
     let inside = place.floor().clamp(DVec2::ZERO, last);

@@ -45,7 +45,7 @@ impl Evaluator {
     }
 
     /// Returns the nearest scene point at a picture position over several display memories. If two memories have
-    /// content at the same distance, the lower memory is used.
+    /// content at the same distance, the memory with the lower index is used.
     ///
     /// If no memory has content there, the result is a point at `distance_m`.
     fn nearest(&self, faces: &FacesSeen, place: DVec2) -> Content {
@@ -124,7 +124,7 @@ pub(crate) enum Warped {
     Hidden,
 }
 
-/// Smallest relative difference in depth at which one content hides another.
+/// Smallest relative difference in depth at which near content hides far content.
 const NEARER: f64 = 1e-4;
 
 impl Evaluator {

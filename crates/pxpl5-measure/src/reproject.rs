@@ -46,7 +46,7 @@ impl Move {
     }
 }
 
-/// Writes some pixels of a row. Each pixel is copied from a position of the source picture.
+/// Writes some pixels of a row. Each pixel is copied from the position in the source picture that `place` returns.
 ///
 /// Pixels without a source become black. Returns the number of these pixels.
 pub(crate) fn fill_row(

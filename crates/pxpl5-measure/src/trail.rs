@@ -315,8 +315,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Returns the index of the last drawn region for a target, among the regions whose copy command had started by
-    /// `by`.
+    /// Returns the index in the list `drawn` of the region that was drawn last for `target`. Only regions whose copy
+    /// command had started by the instant `by` are considered.
     fn drawn_for(&self, target: &CopyTarget, by: Time) -> Option<usize> {
         self.of_target.get(target)?.iter().copied().rfind(|place| self.drawn[*place].1.copy_at <= by)
     }

@@ -174,7 +174,7 @@ impl<M: Motion> Reports<M> {
         Some(config.host.seen_ps(complete_ps, self.poll_phase_ps))
     }
 
-    /// Schedules the crash of a host with a patched kernel. The delay counts from the arrival of the first report.
+    /// Schedules the crash of a host with a patched Unix kernel. The delay counts from the arrival of the first report.
     fn schedule_crash(&mut self, arrives_ps: u64) {
         if let Some(after_ps) = self.model.config().crashes_patched_host_after_ps.filter(|_| self.crashes) {
             self.silent_from_ps = self.silent_from_ps.min(arrives_ps.saturating_add(after_ps));
