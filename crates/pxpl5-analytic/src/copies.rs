@@ -14,7 +14,8 @@ macro_rules! lanes {
     }};
 }
 
-/// Largest number of renderers in the analytic model. A field has 20 regions, so further renderers would have no work.
+/// Largest number of renderers in the analytic model. A field has 20 regions, so more than 20 renderers would not be
+/// faster.
 pub(super) const MAX_RENDERERS: usize = 20;
 
 /// Copies that a renderer has to make, with two bits for each copy. The first copy is in the lowest bits.

@@ -91,7 +91,7 @@ struct History {
 struct Renderers {
     /// Time from which the master can assign the next region to each renderer.
     idle_ns: Vec<f64>,
-    /// Time from which each renderer's array can execute further commands.
+    /// Time at which each renderer's pixel processors have executed all their commands so far.
     free_ns: Vec<f64>,
     /// For each renderer, the times at which its regions had been copied to the frame buffer.
     sent_ns: Vec<Vec<f64>>,

@@ -207,7 +207,7 @@ struct Sender<'a> {
     /// Messages of the current clump (group of primitives) to which the ring has not granted a channel yet. Empty after
     /// the last clump.
     messages: VecDeque<Message>,
-    /// Time at which the next message became the first in the queue of its sender.
+    /// Time since which the next message of this sender is the first message in the queue.
     since_ns: f64,
     /// Time from which each channel of the port is free.
     channels_ns: Vec<f64>,

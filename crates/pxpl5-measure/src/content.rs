@@ -70,8 +70,8 @@ impl Contents {
         self.nearest(origin, direction, objects_at, |_| true).map(|(_, content)| content)
     }
 
-    /// Returns the nearest hit, and its depth, among the structures whose flag in `structures` is true (same index as
-    /// in the scene).
+    /// Returns the nearest hit, and its depth, among some structures of the scene. A structure takes part if its entry
+    /// in `structures` is true.
     pub(crate) fn hit_among(
         &self,
         origin: DVec3,

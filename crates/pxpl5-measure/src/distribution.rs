@@ -60,7 +60,7 @@ impl Distribution {
         }
     }
 
-    /// Returns the middle of the bin that holds the number with the given rank. The smallest number has rank 1.
+    /// Returns the middle of the bin that holds the number with the rank `rank`. The smallest number has rank 1.
     fn ranked(&self, rank: u64) -> f64 {
         let mut counted = 0;
         let is_it = |(_, n): &(&u64, &u64)| {

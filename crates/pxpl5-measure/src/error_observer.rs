@@ -31,7 +31,8 @@ pub(crate) struct ErrorSum {
 }
 
 impl ErrorSum {
-    /// Creates a sum for a given display mode. If `without` is set, this cause of error is turned off.
+    /// Creates an empty sum for the display mode `showing`. If `without` is set, the cause of error `without` is turned
+    /// off.
     pub(crate) fn of(showing: Showing, without: Option<Cause>) -> Self {
         Self { showing: Some(showing), without, ..Self::default() }
     }

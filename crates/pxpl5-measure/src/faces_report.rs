@@ -53,8 +53,8 @@ pub struct MemoryReport {
     pub translation_latency_ms: Option<Statistics>,
     /// Means of the parts of the translation latency, in milliseconds. The parts add up to the mean of the latency.
     ///
-    /// The parts are: measurement until the display memory became due, due until shown, age of the shown update, and
-    /// scan-out.
+    /// The parts are the time from the measurement until the display memory became due, the time until the update was
+    /// shown, the age of the shown update, and the scan-out.
     pub translation_latency_parts_ms: Vec<(&'static str, f64)>,
     /// Total delay of late updates in milliseconds. The delay of an update lasts from the first missed retrace to the
     /// retrace that showed the update.

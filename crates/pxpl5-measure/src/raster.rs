@@ -139,7 +139,8 @@ impl<'a> RasterOffsets<'a> {
         }
     }
 
-    /// Returns the source pixel that the shift moves to a given position. The pixel comes from a row of the same field.
+    /// Returns the pixel of the drawn picture that the shift moves to the position (`x`, `y`). The pixel comes from a
+    /// row of the same field.
     fn shifted_pixel(
         &self,
         screen: &RgbImage,

@@ -91,7 +91,8 @@ impl Evaluator {
         self.error_of(place, &self.content(drawn, place), at)
     }
 
-    /// Returns the error of content displayed at a screen position. `None` if the correct position is behind the eye.
+    /// Returns the error of the content `content`, which is displayed at the screen position `place`. Returns `None` if
+    /// the content is behind the eye.
     pub(crate) fn error_of(&self, place: DVec2, content: &Content, at: Time) -> Option<Misregistration> {
         self.error_between(place, content, at, at)
     }

@@ -49,7 +49,8 @@ const SLACK: u64 = 4;
 /// Number of earlier arrivals among which the cause of a wait is searched: several pictures of 40 regions (assumed).
 const ARRIVALS_SEARCHED: usize = 512;
 
-/// Largest number of steps for one picture. Time beyond these steps belongs to [`Resource::Other`].
+/// Largest number of steps that are followed for one picture. The part of the latency before these steps is assigned to
+/// [`Resource::Other`].
 const MOST_STEPS: usize = 20_000;
 
 /// The work of a run, sorted by end time. The list begins with the earliest work that the followed pictures can have

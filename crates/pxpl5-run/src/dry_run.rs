@@ -29,7 +29,8 @@ impl SeenTimes {
     }
 }
 
-/// Results of a dry run that a predictor needs. Every predictor gets the same results.
+/// The results of a dry run (a run without prediction), which every predictor needs. All predictors use the same
+/// results.
 #[derive(Clone, Debug)]
 pub struct DryRun {
     /// Instants at which views are seen.

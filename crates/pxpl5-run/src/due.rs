@@ -2,10 +2,10 @@
 //!
 //! | word | meaning |
 //! |---|---|
-//! | due | a period of the display in which a new picture should be seen, by the pipeline's own rate |
+//! | due | in this period of the display, a new picture should be seen at the rate of the pipeline |
 //! | shown | the picture was complete and in time |
 //! | late | the picture was complete before its period ended, but after its deadline |
-//! | incomplete | the picture was begun, and not complete when its period ended |
+//! | incomplete | the picture was begun, but not complete when its period ended |
 //! | missed | the picture was never begun, or left out |
 //!
 //! A picture is evaluated when its period ends, so a longer run does not change the result.
@@ -51,8 +51,8 @@ impl DuePictures {
     /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
     /// that was not over when the run ended.
     ///
-    /// A picture also counts as shown if it comes before its due period, but after the due period of the preceding
-    /// picture.
+    /// A picture that is shown between the due period of the preceding picture and its own due period also counts as
+    /// shown.
     #[must_use]
     pub fn count(
         pictures: impl Iterator<Item = (PeriodNumber, PictureResult)>,

@@ -26,7 +26,8 @@ pub enum Cause {
     ScanOut,
     /// Noise and bias of the tracker. Without this cause, reports contain the true pose.
     Noise,
-    /// Error of the predictor. Without this cause, the newest report is extrapolated by the true motion.
+    /// Error of the predictor. Without this cause, the pose of the newest report moves along the true motion of the
+    /// head.
     Prediction,
     /// Intervals at which the tracker measures and the host polls. Without this cause, a measurement arrives at the
     /// exact instant at which it is needed.

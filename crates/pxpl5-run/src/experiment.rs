@@ -203,7 +203,8 @@ impl Experiment {
         self
     }
 
-    /// Sets a head with a tracker. Without a head, the pipeline follows the scene's own motion without any delay.
+    /// Sets a head whose pose a tracker reports. Without such a head, the pipeline follows the scene's own motion
+    /// without any delay.
     ///
     /// If the head's pose is predicted, the experiment runs twice. The first run is a dry run without prediction, which
     /// finds the time at which each view is seen.
@@ -215,8 +216,8 @@ impl Experiment {
 
     /// Makes the host begin a frame only when the tracker reports a pose, so that frames do not queue in the pipeline.
     ///
-    /// A latency measurement from outside the machine works in the same way. The setting has no effect without a head,
-    /// or if the pipeline's host does not begin frames.
+    /// The measurement of latency with a pendulum outside the machine uses this setting. The setting has no effect
+    /// without a head, or if the pipeline's host does not begin frames.
     #[must_use]
     pub const fn on_demand(mut self) -> Self {
         self.on_demand = true;
@@ -246,7 +247,7 @@ impl Experiment {
         self
     }
 
-    /// Returns all records of a run of this experiment that remain in memory, without pictures.
+    /// Returns the results of a run of this experiment with all records in memory. The list of pictures is empty.
     pub(crate) fn final_results<'a>(
         &'a self,
         record: &'a Record,

@@ -67,7 +67,7 @@ pub struct Head {
     place: HeadPlace,
     reports: Option<Arc<[TrackerReport]>>,
     unsupported_parameters: Vec<Parameter>,
-    /// Cache of tuned predictors that other heads use too.
+    /// Cache of tuned predictors, which several heads share.
     tunings: Option<Arc<Tunings>>,
 }
 
@@ -112,7 +112,7 @@ impl Head {
         Ok(Self { numbers: Numbers::ToBeTuned, ..Self::predicted_by(motion, tracker, predictor, seed)? })
     }
 
-    /// Creates a head whose predictor has the given parameters and is not tuned.
+    /// Creates a head whose predictor has the parameters in `predictor` and is not tuned.
     ///
     /// # Errors
     ///

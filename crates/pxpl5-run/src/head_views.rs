@@ -55,7 +55,8 @@ pub(crate) struct Follower {
 }
 
 impl Follower {
-    /// Creates a predictor that receives the given reports.
+    /// Creates a follower, which passes tracker reports to `predictor` when they have arrived. `arrivals` has the times
+    /// and `contents` the contents of the same reports.
     pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
         Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
     }

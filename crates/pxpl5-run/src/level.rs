@@ -2,7 +2,7 @@
 //!
 //! | level | graphics processors | ring | renderers |
 //! |---|---|---|---|
-//! | [`Level::Analytic`] | formulas for the times of the stages | time of copies and of clumps | a constant per command |
+//! | [`Level::Analytic`] | formulas for the times of the stages | formulas for the times of copies and of clumps | a constant time per command |
 //! | [`Level::Transaction`] | timing table per primitive | an event per message | timing table per command: the clocks of its program in Rendering Control's layout |
 //! | [`Level::Cycle`] | clocks of the i860 code that runs for every triangle, over the board's memory | as the transaction level | the clocks of every instruction of a command's program in the pipeline's own layout |
 //!

@@ -78,7 +78,7 @@ pub struct Setup {
 pub struct PictureTimes {
     /// Number of the picture, as counted by the pipeline.
     pub picture: PictureNumber,
-    /// View that the picture shows. If the picture shows several views, this is the view at its middle.
+    /// View that the picture shows. If the picture shows several views, this is the view at the middle of the picture.
     pub view: ViewNumber,
     /// Time at which the head's pose for the picture was sampled.
     pub sampled_at: Option<Time>,
@@ -197,8 +197,8 @@ pub trait PictureRules {
 
     /// Returns true if [`PictureRules::pictures`] and [`PictureRules::late_regions`] need no old records.
     ///
-    /// After [`Machine::discard_before`], both functions must give the same results for later times. Only then can a
-    /// long run discard records.
+    /// After [`Machine::discard_before`], both methods must give the same results for times after the discarded
+    /// records. Only then can a long run discard records.
     fn can_discard_records(&self) -> bool {
         false
     }
@@ -224,7 +224,8 @@ pub trait PictureRules {
     /// pictures, the sentence gives the reason.
     fn due_definition(&self) -> &'static str;
 
-    /// Returns the number of entries of [`PictureRules::pictures`] that make up one whole picture.
+    /// Returns the number of entries in the list of [`PictureRules::pictures`] that together make one whole picture.
+    /// The number is 1 unless the pipeline draws a picture in several updates.
     fn updates_per_picture(&self, _record: &Record) -> f64 {
         1.0
     }

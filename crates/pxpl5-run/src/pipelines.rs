@@ -73,7 +73,7 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Setti
 /// Methods of shading with their names. The first method is the default.
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
-/// Setting of pipelines that support both methods of shading.
+/// The key `shading` of pipelines that support both Phong and Gouraud shading.
 const SHADING: Key = Key {
     name: "shading",
     about: "phong or gouraud",

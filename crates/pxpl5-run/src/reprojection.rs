@@ -15,8 +15,8 @@ pub enum Warp {
     /// The picture is rotated about the eye by a homography, as in timewarp, the method of current headsets. The result
     /// is exact for rotations of the head. Translations remain uncorrected.
     Rotation,
-    /// Each pixel is moved by its depth. The result is exact for rotations and translations, except where the picture
-    /// lacks the content.
+    /// Each pixel is moved according to its depth. The result is exact for rotations and translations, except where the
+    /// picture lacks the content.
     Depth,
 }
 

@@ -43,8 +43,8 @@ impl Experiment {
         })
     }
 
-    /// Runs the experiment and calls `at` at the beginning of each field in `stops`, and at further fields for progress
-    /// reports.
+    /// Runs the experiment and calls `at` at the beginning of each field in `stops`, at every 60th field for progress
+    /// reports, and at the last field.
     ///
     /// `at` receives the field and the machine before any event of this field. An error from `at` ends the run.
     ///

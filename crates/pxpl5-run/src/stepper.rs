@@ -23,7 +23,7 @@ use std::collections::BTreeSet;
 /// Reason for which a step of a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Pause {
-    /// The run reached the given instant, or the awaited event happened.
+    /// The step ended as requested: the requested instant was reached, or the awaited event happened.
     Reached,
     /// Executed code reached one or more breakpoints. The list has one entry for each breakpoint.
     Breakpoints(Vec<BreakpointHit>),
@@ -125,7 +125,7 @@ impl Stepper {
         self.run_until(self.end(), |_, _| true)
     }
 
-    /// Handles events until an event of the given board has been handled.
+    /// Handles events until an event of the board `board` has been handled.
     pub fn step_board(&mut self, board: Board) -> Pause {
         self.run_until(self.end(), |_, happening| happening.board == board)
     }

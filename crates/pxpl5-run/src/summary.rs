@@ -11,7 +11,7 @@ pub struct Summary {
     pub latencies_ms: Samples,
     /// Duration of a display period, in milliseconds. For NTSC, a period is a field.
     pub field_ms: f64,
-    /// Number of complete pictures shown per second, over the window of `due`. `None` if fewer than two pictures were
+    /// Number of complete pictures shown per second, over the result window. `None` if fewer than two pictures were
     /// shown.
     pub updates_hz: Option<f64>,
     /// Numbers of due pictures, by result. `None` if no picture was due.

@@ -24,7 +24,7 @@ const LEAST_RECORDS: usize = 32_768;
 const PICTURES_HELD: usize = 32;
 const PERIODS_HELD: u64 = 32;
 
-/// The sums of a run's results so far, and the state of discarding: which records are still needed.
+/// The sums of a run's results so far, and the limits that separate needed records from records to discard.
 ///
 /// A picture is final (its results can no longer change) after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`]
 /// display periods. Records are discarded if they are at least [`PERIODS_HELD`] periods older than the first picture

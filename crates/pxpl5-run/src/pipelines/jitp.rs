@@ -42,7 +42,8 @@ impl Jitp {
         Self { viewpoint, racing, strip_rows }
     }
 
-    /// Returns all viewpoints, each without and with beam racing.
+    /// Returns the pipelines of all viewpoints, each without and with beam racing. A viewpoint defines the instants for
+    /// which the parts of a picture are computed.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let viewpoints = [
@@ -138,8 +139,8 @@ fn due(video: &Video, target: &CopyTarget) -> Time {
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions. Two numbers count the regions that arrived before the field's end, and before the
-/// beam reached them. The time is the arrival time of the middle strip.
+/// Arrivals of a field's regions: the number of regions that arrived before the field's end, the number of regions that
+/// arrived before the beam, and the arrival time of the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,

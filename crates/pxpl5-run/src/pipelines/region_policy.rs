@@ -126,7 +126,7 @@ impl PolicyPipeline {
     }
 }
 
-/// Everything that the firmware needs to draw a frame.
+/// Data that the graphics processor's program needs to draw a frame.
 struct Drawing {
     ports: Ports,
     list: Arc<DisplayList>,

@@ -82,7 +82,7 @@ impl RenderingControl {
         Self { mono: true, ..Self::stereo() }
     }
 
-    /// Returns the properties of an eye's picture on a display with the given surfaces.
+    /// Returns the properties of an eye's picture on a display whose surfaces are `surfaces`.
     fn drawn(self, surfaces: &[Surface], pixels: bool) -> Result<Picture, SettingError> {
         let grid = surfaces.first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
         let viewport = Viewport::new(grid, Lines::Frame)?;

@@ -353,12 +353,12 @@ const BINNINGS: [(&str, RegionBinning); 2] = RegionBinning::ALL;
 const LIGHTINGS: [(&str, SlatsLighting); 2] = SlatsLighting::ALL;
 const CODES: [(&str, Code); 3] = Code::ALL;
 
-/// Returns the name of a value in a list of choices.
+/// Returns the name of the value `value` in the list `choices`.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> KeyValue {
     KeyValue::Name(choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name))
 }
 
-/// Returns the value that has a given name in a list of choices.
+/// Returns the value with the name `name` in the list `choices`.
 fn chosen<T: Copy>(choices: &[(&'static str, T)], name: Option<&str>) -> Option<T> {
     choices.iter().find(|(choice, _)| Some(*choice) == name).map(|(_, value)| *value)
 }

@@ -81,7 +81,8 @@ pub struct RecordingFormat {
 pub struct Recording {
     samples: Vec<Sample>,
     end: End,
-    /// Gaps in the order of time. Each gap is given by the times (ps) of the samples before and after it.
+    /// Gaps in the order of time. A gap is stored as the times (ps) of the last sample before the gap and of the first
+    /// sample after the gap.
     gaps: Vec<(u64, u64)>,
     warnings: Vec<String>,
 }
@@ -106,8 +107,8 @@ impl Recording {
         Self::read_as(input, &RecordingFormat::default())
     }
 
-    /// Reads a file of poses with given columns and axes. If the format maps columns, the file may have further
-    /// columns, and time counts from the first line. Commas, semicolons, tabs or blanks separate the columns.
+    /// Reads a file of poses with given columns and axes. If the format maps columns, the file may have other columns
+    /// too, and time counts from the first line. Commas, semicolons, tabs or blanks separate the columns.
     ///
     /// # Errors
     ///

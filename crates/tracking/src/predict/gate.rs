@@ -19,8 +19,8 @@ pub struct ReportCounts {
     pub untimely: u64,
     /// Number of reports that were rejected because the head would have to move or turn faster than a head can.
     pub jumps: u64,
-    /// Number of accepted reports that restarted the filters. These are the first report, the first report after a gap,
-    /// and a report that confirmed a jump.
+    /// Number of accepted reports that restarted the filters. A filter restarts at the first report, at the first
+    /// report after a gap, and at a report that confirms a jump of the pose.
     pub restarts: u64,
 }
 

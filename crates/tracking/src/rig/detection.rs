@@ -28,8 +28,8 @@ impl Detection {
     }
 }
 
-/// A detector of the pendulum's low points in a sequence of reports. After each low point the detector ignores further
-/// low points for a quarter of a swing.
+/// A detector of the pendulum's low points in a sequence of reports. For a quarter of a swing after each detected low
+/// point, the detector detects no other low point.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,

@@ -116,8 +116,8 @@ impl<M: Motion> Reports<M> {
         filtered
     }
 
-    /// Returns true if a fault causes the loss of this measurement. All measurements within a dropout interval are
-    /// skipped in one step.
+    /// Returns true if an injected fault causes the loss of measurement `solution`. All measurements within a dropout
+    /// interval are skipped in one step.
     fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {

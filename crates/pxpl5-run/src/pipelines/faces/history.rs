@@ -67,7 +67,8 @@ impl FaceHistory {
     }
 }
 
-/// Returns the updates of a display memory whose swaps are recorded. Each swap shows the next update of the memory.
+/// Returns the updates that a display memory has shown, from the recorded swaps of this memory. Each swap shows the
+/// next update.
 fn shown(record: &Record, notes: &RequestedUpdates, memory: usize, port: NodeId) -> Vec<ShownUpdate> {
     let of_memory = notes.of_memory(memory);
     let swaps = record.observation().swaps.iter().filter(|swap| swap.port == port);

@@ -61,8 +61,8 @@ impl OrientationTiming {
 
     /// Returns the first time after an instant at which a new orientation is in the register.
     ///
-    /// The first orientation arrives when the machine starts. Later orientations follow each report, or the schedule of
-    /// lines or pixels. `reports` returns the first report after an instant.
+    /// The first orientation arrives when the machine starts. Each later orientation comes from a report, or from the
+    /// schedule for latching by line or pixel. `reports` returns the arrival time of the first report after an instant.
     pub(crate) fn next(&self, after: Time, reports: impl Fn(Time) -> Option<Time>) -> Option<Time> {
         let first = self.loaded(Time::ZERO);
         if after < first {

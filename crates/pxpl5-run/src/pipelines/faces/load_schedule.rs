@@ -67,8 +67,8 @@ impl LoadSchedule {
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which an orientation is in the display's register. The display latches the orientation
-    /// for its first pixel at most one pixel's time later.
+    /// Returns the instant at which an orientation is in the display's register. At most one pixel's time later, the
+    /// display latches this orientation for the first pixel that uses the orientation.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))

@@ -94,7 +94,7 @@ pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
 }
 
-/// A plan with a single display memory. Each update redraws all structures. The next update begins when the previous
+/// A plan for a single display memory. Each update redraws all structures. The next update begins when the previous
 /// update ends.
 pub(super) struct Full {
     updates: Updates,

@@ -21,7 +21,7 @@ pub struct Columns {
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Field {
     name: &'static str,
-    /// Index of the quantity in this list: time, x, y, z, qw, qx, qy, qz.
+    /// Index of the quantity in the list (time, x, y, z, qw, qx, qy, qz), counted from 0.
     slot: usize,
     /// Number of decimal places of the unit: the unit is 10^-`places` seconds or metres.
     places: i32,

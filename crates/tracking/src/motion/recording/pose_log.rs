@@ -18,8 +18,8 @@ const NAMES: [&str; 8] = [
     "orientation_z",
 ];
 
-/// Units of a time by the suffix of its name, each as a number of decimal places of a second. A name without suffix is
-/// in nanoseconds, as an `XrTime` of OpenXR.
+/// Suffixes of the names of time columns, with the units that the suffixes stand for. A unit is a number of decimal
+/// places of a second. A time column without suffix is in nanoseconds, as an `XrTime` of OpenXR.
 const UNITS: [(&str, i32); 4] = [("_ns", 9), ("_us", 6), ("_ms", 3), ("_s", 0)];
 
 const NANOSECONDS: i32 = 9;
