@@ -99,8 +99,8 @@ struct Renderers {
     stored_until_ns: Vec<Vec<f64>>,
     /// Number of words sent to each renderer.
     words: Vec<f64>,
-    /// Three values for each of a renderer's latest regions: words sent before the region, start of the first command,
-    /// and cost of all commands.
+    /// For the latest regions of each renderer: the number of words sent before the region, the start of the region's
+    /// first command, and the cost of all commands of the region.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }
@@ -252,9 +252,9 @@ impl StereoModel {
     /// Returns the time from the first slave that finishes all tokens of a picture to the last slave that finishes
     /// them.
     ///
-    /// Each token starts at one slave and moves to the next as fast as renderers accept commands. If there are fewer
-    /// renderers than slaves, a slave can finish early. The first slave finishes when the number of slaves that each
-    /// token has visited equals the number of renderers.
+    /// Each token starts at one slave and moves from slave to slave as fast as renderers accept commands. If there are
+    /// fewer renderers than slaves, a slave can finish early. The first slave finishes when the number of slaves that
+    /// each token has visited equals the number of renderers.
     fn first_free_ns(&self, load: &Load) -> f64 {
         let drawing_ns = load.entries() / load.bins.len().max(1) as f64 * self.triangle.ns;
         drawing_ns * (1.0 - self.renderers as f64 / self.slaves).max(0.0)
@@ -392,7 +392,8 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
     Ok(loads)
 }
 
-/// Closed form of Rendering Control: it computes the summary of an experiment, and two estimates, without simulation.
+/// Closed form of Rendering Control. Its functions compute the summary of an experiment, and two estimates, without
+/// simulation.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 

@@ -131,7 +131,7 @@ fn copy<const N: usize>(
     copies::make(arrays, queues, Times::each(|i| models[i].region_ns))
 }
 
-/// Closed form of Slats: it computes the summary of an experiment, and two estimates, without simulation.
+/// Closed form of Slats. Its functions compute the summary of an experiment, and two estimates, without simulation.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 

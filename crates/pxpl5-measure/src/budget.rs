@@ -81,8 +81,8 @@ pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
     Some(tracking_ms + rendering_ms).filter(|sum| sum.is_finite())
 }
 
-/// Sums of the time of each latency stage, in milliseconds. The sums cover the complete pictures in the result window
-/// that have a measured pose.
+/// Sums of the time of each latency stage, in milliseconds. The sums cover the pictures in the result window that are
+/// complete and have a measured pose.
 #[derive(Debug, Default)]
 pub(crate) struct BudgetSum {
     /// First period of the result window. `None` while the window is unknown.
@@ -95,8 +95,8 @@ pub(crate) struct BudgetSum {
     poses: Poses,
 }
 
-/// Number of poses that are kept from before the newest picture. They are needed because a slow display memory shows
-/// older views than a fast display memory.
+/// Number of poses that are kept in addition to the pose of the newest picture. These older poses are needed because a
+/// slow display memory shows older views than a fast display memory.
 const OLDER_POSES: usize = 64;
 
 /// Poses of the head that a pipeline requested, by the numbers of their views.

@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use tracking::view::{Misregistration, RasterOffset};
 
-/// Sums of the pixel errors of a run's pictures in the way in which the display shows the pictures.
+/// Sums of the pixel errors of a run's pictures, for one display mode (the way in which a display shows pictures).
 #[derive(Debug, Default)]
 pub(crate) struct ErrorSum {
     /// Display mode of the pictures. `None` uses the mode of the head's display.
@@ -159,8 +159,8 @@ impl Evaluation {
         fields
     }
 
-    /// Replaces the poses of all visible views. The new poses are those that the run would have had without one cause
-    /// of error.
+    /// Replaces the poses of all visible views. The new poses are the poses that the run would have had without one
+    /// cause of error.
     fn replace_poses(
         &mut self,
         run: &FinalResults<'_>,

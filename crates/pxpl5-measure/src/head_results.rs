@@ -87,8 +87,8 @@ pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
 }
 
 impl Budget {
-    /// Returns the mean time of each stage of the latency, over the complete pictures in the result window whose pose
-    /// was measured.
+    /// Returns the mean time of each stage of the latency. The mean covers the pictures in the result window that are
+    /// complete and have a measured pose.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         if let Some(said) = HeadResults::from_observer(outcome) {

@@ -1,4 +1,5 @@
-//! Raster offset of VDRT: the display shifts the picture during scan-out to correct the drawn head pose.
+//! Raster offset of VDRT: the display shifts the picture during scan-out. The shift corrects the error of the head pose
+//! for which the picture was drawn.
 
 use crate::picture_mover::PictureMover;
 use crate::rows::Rows;

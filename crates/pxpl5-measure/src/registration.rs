@@ -11,7 +11,7 @@ use std::sync::Arc;
 use tracking::Pose;
 use tracking::view::{HmdView, Misregistration, dual_list};
 
-/// Computes pixel errors by casting rays and projecting the hit points.
+/// An evaluator of pixel errors, which casts rays into the scene and projects the hit points onto the screen.
 #[derive(Debug)]
 pub(crate) struct Evaluator {
     pub(crate) view: HmdView,
@@ -198,7 +198,7 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// Computes the pixel error of single pixels of a run.
+/// An evaluator that computes the pixel error of any single pixel of a run.
 #[derive(Debug)]
 pub struct Registration<'a> {
     run: FinalResults<'a>,

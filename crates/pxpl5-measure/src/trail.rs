@@ -361,8 +361,8 @@ impl<'a> Trail<'a> {
         self.to_transform(way, picture, surface)
     }
 
-    /// Continues at the work that kept the renderer's controller busy before: the previous region's commands, or a copy
-    /// that waited for room.
+    /// Continues at the earlier work for which the region's commands had to wait on the renderer. This work is the
+    /// commands of the previous region, or a copy that waited for room.
     fn before_next_region(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let held = Span(way.cursor.0.saturating_sub(region.copy_at.0));

@@ -71,7 +71,7 @@ pub enum ExperimentError {
         /// Time at which the run ends.
         run: Time,
     },
-    /// The analytic level has no events, so no run at this level is possible.
+    /// A run at the analytic level was requested. This level has no events, so it cannot be run.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
     Level,
     /// The scene has no primitives, or too many moving structures.

@@ -35,10 +35,10 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// All causes, in the order of the rows in tables.
+    /// All causes of error, in the order in which tables list the causes.
     pub const ALL: [Self; 5] = [Self::Latency, Self::ScanOut, Self::Noise, Self::Prediction, Self::Sampling];
 
-    /// Returns the name of the cause in tables and files.
+    /// Returns the name of the cause of error in tables and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

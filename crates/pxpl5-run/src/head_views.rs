@@ -264,7 +264,7 @@ impl HeadViews {
         all
     }
 
-    /// Creates a second predictor that receives the same reports, beginning with the first report.
+    /// Creates another predictor with the same settings, which receives the same reports from the first report on.
     pub(crate) fn follower(&self) -> Follower {
         Follower::of_head(&self.head, self.until)
     }

@@ -13,9 +13,9 @@ use pxpl5_wire::{PictureNumber, SurfaceId};
 /// Definition of one part of the time from the sample of the head's pose until the picture is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartDefinition {
-    /// Name of the part in tables, files and timelines.
+    /// Name of this part of the latency in tables, files and timelines.
     pub name: &'static str,
-    /// Text that defines the start and the end of the part.
+    /// Sentence that defines the start and the end of this part of the latency.
     pub definition: &'static str,
     /// True if the latency stated in the papers includes this part.
     pub published: bool,

@@ -88,8 +88,8 @@ pub struct PictureTimes {
     pub copied_at: Option<Time>,
     /// Time of the retrace at which the display begins to show the picture.
     ///
-    /// Without a swap, this is the time at which the beam reaches a certain part of the picture, which the pipeline
-    /// selects.
+    /// If pictures are shown without a swap, this is the time at which the beam reaches a part of the picture. The
+    /// pipeline selects this part, for example the middle line.
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
     pub end: PictureResult,
@@ -103,8 +103,8 @@ impl PictureTimes {
     }
 }
 
-/// A program for a whole machine, which defines how the machine draws. [`PictureRules`] defines the times and contents
-/// of the pictures.
+/// A set of programs for all boards of a machine, which define how the machine draws. [`PictureRules`] defines the
+/// times and contents of the pictures.
 pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns the name of the pipeline on the command line.
     fn name(&self) -> &'static str;
@@ -133,7 +133,8 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         CodeUse::Pphigs
     }
 
-    /// Returns the machine as this variant of the pipeline needs it, for example with the times of other code.
+    /// Returns the configuration of the machine with the changes that this variant of the pipeline needs, for example
+    /// the times of other code.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         config
     }

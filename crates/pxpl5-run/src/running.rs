@@ -44,7 +44,7 @@ impl Experiment {
     }
 
     /// Runs the experiment and calls `at` at the beginning of each field in `stops`, at every 60th field for progress
-    /// reports, and at the last field.
+    /// reports, and at the end of the run.
     ///
     /// `at` receives the field and the machine before any event of this field. An error from `at` ends the run.
     ///

@@ -70,8 +70,8 @@ impl Summary {
 /// duration of a display period in milliseconds.
 #[must_use]
 pub fn retraces(latency_ms: f64, field_ms: f64) -> f64 {
-    /// Tolerance for the rounding of the quotient, in display periods. A latency of a whole number of periods must give
-    /// exactly this number.
+    /// Tolerance for rounding errors of the quotient (latency divided by duration of a period), in display periods. A
+    /// latency of a whole number of periods must give exactly this number.
     const ROUNDING: f64 = 1e-9;
     (latency_ms / field_ms - ROUNDING).ceil()
 }

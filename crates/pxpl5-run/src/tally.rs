@@ -31,8 +31,8 @@ pub struct Tally {
     pub complete: u64,
     /// Number of complete pictures since the last picture that was incomplete or late.
     pub shown_in_a_row: u64,
-    /// Latencies in milliseconds, by the pipeline's definition. Usually from the start of TRANSFORM until the picture
-    /// is shown.
+    /// Latencies in milliseconds, by the pipeline's definition. The latency usually lasts from the start of TRANSFORM
+    /// until the picture is shown.
     pub latency_ms: Samples,
     /// Durations of each latency part in milliseconds, in the order of [`LATENCY_PARTS`].
     pub parts_ms: Vec<Samples>,

@@ -87,8 +87,8 @@ impl Window {
         self.next_look = LEAST_RECORDS.max(2 * run.records());
     }
 
-    /// Adds pictures whose results can no longer change to the sums of the run. Returns the earliest instant whose
-    /// records other pictures still need.
+    /// Adds pictures whose results can no longer change to the sums of the run. Returns the instant from which records
+    /// are still needed for all other pictures.
     fn take_final(&mut self, experiment: &Experiment, run: &Assembled, now: Time) -> Option<Time> {
         let record = run.machine.record();
         let fresh = self.fresh(experiment.pipeline.as_ref(), record, now);

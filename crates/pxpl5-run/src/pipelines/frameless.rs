@@ -89,7 +89,7 @@ impl Default for Frameless {
 /// Smallest number of blocks in a batch (assumed). With fewer blocks, the master would limit the rate, because each of
 /// its orders to a slave takes 24 us.
 ///
-/// With more blocks than [`MOST_BATCH`], a view would be in use for too long (assumed).
+/// The largest number is [`MOST_BATCH`] (assumed). With more blocks, the same view would be used for too long.
 const LEAST_BATCH: u64 = 4;
 const MOST_BATCH: u64 = 64;
 

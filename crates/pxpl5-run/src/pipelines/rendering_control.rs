@@ -209,7 +209,8 @@ impl PictureRules for RenderingControl {
     }
 }
 
-/// Returns the transfer time of a surface's pixels at its busiest port.
+/// Returns the time in which all pixels of a surface are transferred: the transfer time at the port that receives the
+/// most pixels.
 ///
 /// Regions are assigned to the ports in turn. Messages have at most [`MAX_MESSAGE_WORDS`] words.
 fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {

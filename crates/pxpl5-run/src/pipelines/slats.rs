@@ -267,7 +267,8 @@ impl PictureRules for Slats {
         Some(1)
     }
 
-    /// Returns the time span in which one field is lit. Each field is scanned once. The next field has the other lines.
+    /// Returns the time span in which one field is lit. Each field is scanned once, because the next field consists of
+    /// the lines between the lines of this field.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
     }

@@ -22,7 +22,7 @@ pub(super) struct ByCells {
     cells: Arc<[Vec<Cell>]>,
     falloff: Falloff,
     length_m: f64,
-    /// Eye position from which each display memory was last drawn.
+    /// For each display memory, the position of the eye in the last update of the memory.
     drawn_from: Vec<DVec3>,
     /// For each display memory, true if its last update contained any structure.
     held: Vec<bool>,

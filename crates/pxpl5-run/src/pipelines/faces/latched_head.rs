@@ -150,7 +150,7 @@ pub struct RotationLatency {
     ///
     /// For latching by line or pixel, the host waits for this time before it predicts from the report.
     pub wait_for_latch: Span,
-    /// Time of a pixel through the stages of the display's pipeline.
+    /// Time that a pixel takes through the stages of the display's pipeline.
     pub pipeline: Span,
     /// Time from the lighting of the first pixel with the latched orientation to the lighting of this pixel.
     pub scan: Span,

@@ -16,7 +16,7 @@ pub(crate) struct LoadSchedule {
     scan: FaceScan,
     /// Delay of a pixel through all stages of the display's pipeline.
     depth: Span,
-    /// Time from one load of the display's orientation register to the next load within a line.
+    /// Time between two successive loads of the display's orientation register within a line.
     link: Span,
     /// Number of lines of a field that use the same load of the display's orientation register.
     lines: u32,
