@@ -104,9 +104,9 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// Times of the clumps (groups of triangles) that are being sent.
+/// Times up to which the sending of clumps (groups of triangles) has been computed.
 struct Chain<const N: usize> {
-    /// Time at which the processor has finished its latest work.
+    /// Time at which the graphics processor has finished its latest work.
     cpu: Times<N>,
     /// Time at which the last message of the latest clump (group of triangles) was accepted by the FIFO of a renderer.
     accepted: Times<N>,

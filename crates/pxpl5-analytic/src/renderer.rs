@@ -90,7 +90,7 @@ impl<const N: usize> Mul for Times<N> {
     }
 }
 
-/// Depth of the renderers' FIFOs in words, and time of a word on the ring, in several configurations.
+/// Depth of the renderers' FIFOs in words, and time that a word takes on the ring, for several machine configurations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fifos<const N: usize> {
     pub(super) depth_words: Times<N>,

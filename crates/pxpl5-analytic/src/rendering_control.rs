@@ -43,7 +43,8 @@ pub struct StereoModel {
     /// Number of finished regions that a renderer can store while their frame buffer is not available.
     regions_stored: usize,
     field_ns: f64,
-    /// Time of each region's messages at a frame-buffer port, in nanoseconds.
+    /// For each region, the time for which the messages with the region's pixels occupy a frame-buffer port, in
+    /// nanoseconds.
     copy_ns: Vec<f64>,
 }
 

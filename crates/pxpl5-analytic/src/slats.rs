@@ -160,8 +160,8 @@ fn fields_needed(experiment: &Experiment) -> Option<u64> {
 
 /// Returns the model of an experiment and the times of a field in the steady state.
 ///
-/// If all clumps (groups of primitives) of a graphics processor are equal, the field's times follow exactly from their
-/// mean. Otherwise each clump is computed for the first view.
+/// If all clumps (groups of primitives) of a graphics processor are equal, the times of the field follow exactly from
+/// the mean clump. Otherwise each clump is computed for the first view.
 fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), ExperimentError> {
     let pipeline: Slats = pipeline_of(experiment)?;
     let scene = experiment.scene();

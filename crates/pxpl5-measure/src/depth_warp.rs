@@ -1,4 +1,5 @@
-//! Moves a picture with depth to another pose. The picture's pixels are a mesh, whose cells are drawn from the new pose.
+//! Moves a picture with depth to another pose. The picture's pixels form a mesh in space. The cells of this mesh are
+//! drawn as seen from the new pose.
 //!
 //! No crate for warping images is used. `imageproc` maps pictures by one homography, and supports neither depth nor the
 //! rows of a field.
@@ -41,8 +42,9 @@ impl DepthPicture {
 }
 
 /// Largest ratio of the depths of two neighbouring pixels that belong to the same surface of an object. At a larger
-/// ratio, a near surface ends between the two pixels and hides content of a far surface. Assumed, 1.02 to 1.2: the
-/// depth of a floor that is seen at a grazing angle of 5 degrees changes by a factor of 1.03 from row to row.
+/// ratio, a near surface ends between the two pixels and hides content of a far surface. The ratio is assumed, with a
+/// range of 1.02 to 1.2: the depth of a floor that is seen at a grazing angle of 5 degrees changes by a factor of 1.03
+/// from row to row.
 const SAME_SURFACE: f32 = 1.1;
 
 /// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that vector
@@ -340,8 +342,8 @@ impl Target {
     }
 }
 
-/// Returns the first whole number at or after a position, clamped to the range from `least` to `greatest`. Neither
-/// limit is negative.
+/// Returns the smallest whole number that is at least `position`, clamped to the range from `least` to `greatest`.
+/// Neither limit is negative.
 ///
 /// The function `ceil` of the standard library is not used, because `ceil` is a function call on processors without SSE
 /// 4.1.

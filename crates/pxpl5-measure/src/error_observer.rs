@@ -88,8 +88,8 @@ struct Evaluation {
 #[derive(Debug)]
 enum Content {
     Plain,
-    /// The display shifts the raster. The second value is the raster offset of the current field, if the field has an
-    /// offset.
+    /// The display shifts the raster. The first value estimates poses. The second value is the raster offset of the
+    /// current field, if the field has an offset.
     ShiftedRaster(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
     /// A device moves pictures to the newest pose of the head.

@@ -18,7 +18,7 @@ use tracking::view::HmdView;
 pub(crate) enum Moved {
     /// The pixel shows content of a picture, with the pose for which the picture was drawn.
     Shows(Content, Drawn),
-    /// No content, because this position of the picture shows nothing or no complete picture.
+    /// No content, because the screen shows no picture there that can be evaluated, for example an incomplete picture.
     NotComplete(Seen),
     /// No content, because the position lies beyond the edge of the picture.
     Beyond,

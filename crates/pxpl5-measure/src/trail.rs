@@ -221,7 +221,7 @@ impl<'a> Trail<'a> {
         way.charge(Resource::Retrace, Some(Board::Display(0)), from, || "retrace".to_owned());
     }
 
-    /// Returns the number of regions that had arrived at displays by an instant.
+    /// Returns the number of regions that had arrived at displays by the instant `at`.
     fn arrivals_by(&self, at: Time) -> usize {
         self.arrivals.partition_point(|arrival| arrival.last_part_at <= at)
     }
@@ -282,7 +282,7 @@ impl<'a> Trail<'a> {
         self.to_arrival(way, arrived)
     }
 
-    /// Continues at an earlier arrival of a region. The time between the two positions is assigned to
+    /// Continues at an earlier arrival of a region. The time from this arrival to the current position is assigned to
     /// [`Resource::Messages`].
     fn to_arrival(&self, way: &mut Way, place: Option<usize>) -> At {
         let Some(place) = place else { return At::Begin };

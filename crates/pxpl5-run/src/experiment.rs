@@ -53,8 +53,8 @@ pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Para
 
 /// Returns a warning if an experiment at the cycle level contains work without i860 code.
 ///
-/// Work without code takes its times from the table (`gp.*`). Returns `None` if all work has code, or if the level is
-/// not [`Level::Cycle`].
+/// The times of work without code come from the parameters `gp.*` of the timing table. Returns `None` if all work has
+/// code, or if the level is not [`Level::Cycle`].
 #[must_use]
 pub fn warning_without_code(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
     let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
@@ -229,7 +229,8 @@ impl Experiment {
     /// The message about a run that is too short can then recommend a number of fields. The message about a scene that
     /// is too large can recommend a number of triangles.
     ///
-    /// This method is hidden, because the estimates change error messages only. Plans of experiment files set them.
+    /// This method is hidden, because the estimates change error messages only. The code that runs experiment files
+    /// sets these functions.
     #[doc(hidden)]
     #[must_use]
     pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {

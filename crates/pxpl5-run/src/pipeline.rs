@@ -158,7 +158,7 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns a short description of the graphics processors' work that has no i860 code. Returns `None` if all work
     /// has code.
     ///
-    /// At the cycle level, work without code takes its times from the timing table.
+    /// At the cycle level, the times of work without code come from the timing table.
     fn without_code(&self, _config: &MachineConfig) -> Option<&'static str> {
         Some("all work of its firmware except messages")
     }

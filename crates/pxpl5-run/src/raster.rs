@@ -13,7 +13,8 @@ pub enum Raster {
     /// No correction: each pixel is displayed at the position where it was drawn.
     #[default]
     Plain,
-    /// The picture is shifted during the scan, by the error of the pose for which it was drawn (VDRT, Breglia 1981).
+    /// The picture is shifted during the scan, by the error of the pose for which the picture was drawn (VDRT, Breglia
+    /// 1981).
     Vdrt,
     /// A device moves the picture to the newest pose.
     Reprojected(Reprojection),

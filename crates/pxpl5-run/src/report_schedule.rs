@@ -59,7 +59,7 @@ impl ReportSchedule {
         self.known.get(there.checked_sub(1)?).copied()
     }
 
-    /// Discards reports that are not needed for this instant or later instants.
+    /// Discards reports that are not needed for `instant` or later instants.
     ///
     /// The last report before the instant stays, and so do reports that arrived at the same time.
     pub(crate) fn discard_before(&mut self, instant: Time) {

@@ -39,7 +39,8 @@ pub struct Reprojection {
     pub by: Warp,
     /// The part of a scan that is moved by the same pose. The device takes the newest pose for each part.
     pub every: Every,
-    /// Time from taking a pose until the first pixel moved to this pose is lit, in microseconds.
+    /// Time from the instant at which the device takes a pose until the first pixel that is moved to this pose is lit,
+    /// in microseconds.
     pub latency_us: u64,
 }
 

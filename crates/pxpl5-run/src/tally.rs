@@ -91,8 +91,8 @@ pub struct SurfaceLatency<'a> {
     pub ms: &'a Samples,
 }
 
-/// Times of the first and the last word of a copy. A copy is one eye under Rendering Control, and half a field under
-/// Slats.
+/// Times of the first and the last word of a copy. A copy transfers the regions of one eye under Rendering Control, and
+/// of half a field under Slats.
 struct CopySpan {
     begin: Time,
     end: Time,

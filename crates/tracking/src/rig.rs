@@ -80,7 +80,8 @@ impl PendulumRig {
         }
     }
 
-    /// Returns the first `n` passes (at least 1) that the host detects in the reports of a tracker on the pendulum.
+    /// Returns the first `n` passes of the pendulum (at least 1) that the host detects in the reports of a tracker on
+    /// the pendulum.
     ///
     /// # Errors
     ///

@@ -23,13 +23,13 @@ use crate::time::span_s;
 /// Latest time stamp of a recording: 10^7 s (115 days). Simulated time ends after 213 days.
 const LATEST_S: f64 = 1e7;
 
-/// Greatest absolute coordinate in a recording, m. Assumed, with a range of 1e6 to 1e12. Map coordinates, which count
-/// from the equator, reach 1e7. The square of this limit still fits into single precision.
+/// Greatest absolute coordinate in a recording, m. The value is assumed, with a range of 1e6 to 1e12. Map coordinates,
+/// which count from the equator, reach 1e7. The square of this limit still fits into single precision.
 const FARTHEST_M: f64 = 1e8;
 
-/// Fastest movement (m/s) and fastest turn (rad/s) between two samples. Assumed, with a range of 1e3 to 1e9. A head
-/// never moves so fast. The limit is high because a recorded position can jump within a millisecond, after the tracker
-/// has lost and found the head.
+/// Fastest movement (m/s) and fastest turn (rad/s) between two samples. The value is assumed, with a range of 1e3 to
+/// 1e9. A head never moves so fast. The limit is high because a recorded position can jump within a millisecond, after
+/// the tracker has lost and found the head.
 const FASTEST: f64 = 1e6;
 
 /// Least length of a gap, as a multiple of the median time between two samples. A gap must also be longer than `GAP_S`

@@ -118,8 +118,8 @@ const fn default_gate() -> table::Gate {
 }
 
 impl PredictorConfig {
-    /// Returns settings of a predictor for this tracker. The predictor assumes the same noise that the tracker model
-    /// adds.
+    /// Returns settings of a predictor for the tracker `tracker`. The predictor assumes the same noise that the tracker
+    /// model adds.
     pub fn for_tracker(kind: PredictorKind, tracker: &TrackerConfig) -> Self {
         Self::for_tracker_by(&table::Tables::PAPERS, kind, tracker)
     }

@@ -20,7 +20,8 @@ pub struct ExactPredictor<M> {
 }
 
 impl<M: Motion> ExactPredictor<M> {
-    /// Creates a predictor for this true motion. `gate` has the limits by which reports are accepted or rejected.
+    /// Creates a predictor for the true motion `motion`. `gate` has the limits by which reports are accepted or
+    /// rejected.
     pub fn new(motion: M, gate: table::Gate) -> Self {
         Self { motion, gate: Gate::new(gate), newest: None }
     }

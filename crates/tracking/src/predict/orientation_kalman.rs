@@ -144,7 +144,7 @@ impl Channel<DQuat> for OrientationKalman {
     }
 }
 
-/// Returns the covariance of three independent axes that all have this variance.
+/// Returns the covariance matrix of three independent axes with the variance `variance`.
 fn isotropic(variance: f64) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(variance))
 }

@@ -170,8 +170,8 @@ impl TrackerConfig {
         }
     }
 
-    /// Returns the same tracker with this latency for both position and orientation. The time from the sync signal to
-    /// the first character becomes equal to the latency.
+    /// Returns the same tracker with the latency `latency_ps` for both position and orientation. The time from the sync
+    /// signal to the first character becomes equal to the latency.
     pub fn with_latency_ps(self, latency_ps: u64) -> Self {
         Self {
             sync_to_output_ps: latency_ps,

@@ -63,7 +63,8 @@ impl ByCells {
         })
     }
 
-    /// Returns the display memories to draw in this cycle. A memory that was empty and remains empty is left out.
+    /// Returns the display memories to draw in this cycle. A memory that contained no structure and still contains none
+    /// is left out.
     fn drawn(&mut self, due: &[bool], of_memories: &[Arc<[bool]>]) -> Vec<usize> {
         let mut drawn = Vec::new();
         for (memory, structures) in of_memories.iter().enumerate().filter(|(memory, _)| due[*memory]) {

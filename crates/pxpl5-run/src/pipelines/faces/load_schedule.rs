@@ -120,8 +120,8 @@ impl LoadSchedule {
         }
     }
 
-    /// Returns the load of the display's orientation register that is complete at exactly this instant, or else the
-    /// first load after this instant.
+    /// Returns the load of the display's orientation register that is complete at exactly the instant `loaded`. If
+    /// there is no such load, returns the first later load.
     pub(crate) fn at(&self, loaded: Time) -> Load {
         self.next(Time(loaded.0.saturating_sub(1)))
     }

@@ -62,7 +62,8 @@ impl Updates {
         }
     }
 
-    /// Returns the view of an eye at the same position but without rotation, along the world's axes.
+    /// Returns the view of an eye at the position of the eye in `view`. The axes of the returned view are the world's
+    /// axes, without rotation.
     ///
     /// Structures attached to the head are drawn for the newest direction of the head. Until the next update, these
     /// structures turn with the faces.

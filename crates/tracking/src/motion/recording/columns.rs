@@ -105,8 +105,8 @@ impl Columns {
         self.given.iter().all(|(_, column)| number(column).is_some())
     }
 
-    /// Returns the columns of a file with this header, in the order time, x, y, z, qw, qx, qy, qz. An empty `header`
-    /// means that the file has no header.
+    /// Returns the mapped columns of a file with the header `header`, in the order time, x, y, z, qw, qx, qy, qz. An
+    /// empty `header` means that the file has no header.
     pub(super) fn in_header(&self, line: u64, header: &[&str]) -> Result<[Column; 8], FileError> {
         // Find each mapped column by its name in the header, or by its number.
         let mut found: [Option<Column>; 8] = Default::default();

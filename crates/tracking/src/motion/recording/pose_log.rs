@@ -78,7 +78,7 @@ pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], FileErr
     Ok(found.map(|column| column.expect("none is missing")))
 }
 
-/// Returns true if a file has one JSON object per line. The first line of the file decides.
+/// Returns true if a file has one JSON object per line. Only the first line of the file is checked.
 pub(super) fn is_json(first_line: &str) -> bool {
     first_line.starts_with('{')
 }
