@@ -122,7 +122,7 @@ impl StereoModel {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the machine has no slaves, or if it has no closed form.
+    /// Returns a [`SettingError`] if the machine has no slaves, or if the closed form does not cover the machine.
     pub fn new(config: &MachineConfig, program: RenderingControl) -> Result<Self, SettingError> {
         if config.n_gps < 2 {
             return Err(SettingError::limits(
@@ -250,8 +250,8 @@ impl StereoModel {
         self.entries(load) * BIN_ENTRY_BYTES as f64
     }
 
-    /// Returns the time from the first slave that finishes all tokens of a picture to the last slave that finishes
-    /// them.
+    /// Returns the time from the instant at which the first slave has finished all tokens of a picture to the instant
+    /// at which the last slave has.
     ///
     /// Each token starts at one slave and moves from slave to slave as fast as renderers accept commands. If there are
     /// fewer renderers than slaves, a slave can finish early. The first slave finishes when the number of slaves that
@@ -358,8 +358,8 @@ impl StereoModel {
 
     /// Returns the time at which the FIFO has room for the last word sent.
     ///
-    /// The FIFO has room when it has released the word that is one FIFO depth before the last word. The FIFO releases
-    /// this word when the command that contains the word starts.
+    /// The FIFO has room after the FIFO has released an earlier word: the word that is one FIFO depth before the last
+    /// word. The FIFO releases this word when the command that contains the word starts.
     fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
         let word = all.words[r] - 1.0 - self.fifo_words;
         let started = &mut all.started[r];

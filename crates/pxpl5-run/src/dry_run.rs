@@ -10,7 +10,7 @@ use pxpl5_wire::ViewNumber;
 pub struct SeenTimes {
     /// Instant for which each shown view is drawn, by view number.
     aimed_at: Instants,
-    /// Mean time from the sample of a view to the instant for which it is drawn, in picoseconds.
+    /// Mean time from the sample of a view to the instant for which the view is drawn, in picoseconds.
     mean_lead_ps: u64,
 }
 

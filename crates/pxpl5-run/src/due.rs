@@ -47,9 +47,9 @@ pub struct DuePictures {
 impl DuePictures {
     /// Counts the due pictures of a run by result. Returns `None` if no complete picture was due.
     ///
-    /// `pictures` gives each begun picture's result and the period in which it should be seen, in order of periods.
-    /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
-    /// that was not over when the run ended.
+    /// `pictures` gives the result of each picture that was begun, and the period in which the picture should be seen,
+    /// in order of periods. `periods_a_picture` is the number of periods from one due picture to the next. `reached` is
+    /// the first period that was not over when the run ended.
     ///
     /// A picture that is shown between the due period of the preceding picture and its own due period also counts as
     /// shown.

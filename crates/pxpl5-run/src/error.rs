@@ -71,7 +71,8 @@ pub enum ExperimentError {
         /// Time at which the run ends.
         run: Time,
     },
-    /// A run at the analytic level was requested. This level has no events, so it cannot be run.
+    /// A run at the analytic level was requested. The analytic level has no simulated events, so there is nothing to
+    /// run.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
     Level,
     /// The scene has no primitives, or too many moving structures.

@@ -18,19 +18,19 @@ use tracking::tracker::{TrackerConfig, TrackerModel};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// Age of tracker reports when they arrive, and of pictures when they are shown. Without this cause, the host has
-    /// all measurements up to the instant for which a picture is drawn.
+    /// Age of tracker reports at their arrival, and age of pictures at the time when the pictures are shown. Without
+    /// this cause, the host has all measurements up to the instant for which a picture is drawn.
     Latency,
     /// Duration of the scan: a picture is drawn for one instant but is lit over a time span. Without this cause, the
-    /// whole picture is evaluated at the instant for which it was drawn.
+    /// whole picture is evaluated at the instant for which the picture was drawn.
     ScanOut,
     /// Noise and bias of the tracker. Without this cause, reports contain the true pose.
     Noise,
     /// Error of the predictor. Without this cause, the pose of the newest report moves along the true motion of the
     /// head.
     Prediction,
-    /// Intervals at which the tracker measures and the host polls. Without this cause, a measurement arrives at the
-    /// exact instant at which it is needed.
+    /// Intervals at which the tracker measures and the host polls. Without this cause, each prediction uses a
+    /// measurement that arrives exactly at the instant of the prediction.
     Sampling,
 }
 

@@ -22,7 +22,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pixels {
-    /// No pixel is computed. The firmware counts commands instead of storing them in bins.
+    /// No pixel is computed. The firmware counts commands, but does not store the commands in bins.
     Off,
     /// A pixel is computed when it is read.
     Lazy,
@@ -42,8 +42,8 @@ pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
 /// Returns the parameters whose values no source supports.
 ///
-/// An unsupported value lies outside the range that the sources give for its parameter. It also differs from the value
-/// that the machine's preset or the pipeline sets.
+/// An unsupported value lies outside the range that the sources give for the parameter. The value also differs from the
+/// values that the machine's preset and the pipeline set.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());

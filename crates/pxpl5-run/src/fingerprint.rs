@@ -102,8 +102,8 @@ impl Fingerprint {
         self.add(colour);
     }
 
-    /// Adds a structure to the hash. The name of the structure is left out, because it affects neither pictures nor
-    /// times.
+    /// Adds a structure to the hash. The name of the structure is left out, because the name affects neither pictures
+    /// nor times.
     fn structure(&mut self, structure: &Structure) {
         // The pattern lists all fields, so a new field cannot be forgotten.
         let Structure { name: _, vertices, triangles, spheres, frame, hinge, culls_back_faces } = structure;

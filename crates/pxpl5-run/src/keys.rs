@@ -44,7 +44,7 @@ pub enum KeyValues {
 }
 
 impl KeyValues {
-    /// Checks the text of a lens and returns it as a value.
+    /// Checks that `text` describes a lens, and returns the lens as the value of a key.
     ///
     /// # Errors
     ///

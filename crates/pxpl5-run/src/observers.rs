@@ -74,8 +74,8 @@ impl FinalResults<'_> {
 
 /// A streaming observer of a run.
 ///
-/// The observer receives every record once, in order. The observer must store the data that it needs later, because the
-/// run discards old records.
+/// The observer receives every record once, in order. The observer must store all data for later use, because the run
+/// discards old records.
 pub trait StreamingObserver: Debug + Send {
     /// Processes results that can no longer change.
     fn take(&mut self, results: &FinalResults<'_>);

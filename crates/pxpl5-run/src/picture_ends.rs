@@ -33,8 +33,8 @@ impl PictureResult {
 /// Results of the pictures of each display period. A period takes one byte, so 10^7 fields take 10 MB.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PictureResults {
-    /// One code for each period: 0 if it has no picture, otherwise 1 plus the index of the period's best result in the
-    /// list `PictureResult::ALL`.
+    /// One code for each period: 0 if the period has no picture, otherwise 1 plus the index of the period's best result
+    /// in the list `PictureResult::ALL`.
     of_periods: Vec<u8>,
     begun: usize,
     steady_from: Option<PeriodNumber>,

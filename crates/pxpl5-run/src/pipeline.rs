@@ -221,8 +221,8 @@ pub trait PictureRules {
     /// Returns one sentence that defines latency for this pipeline.
     fn latency_definition(&self) -> &'static str;
 
-    /// Returns a sentence that defines when a picture is due and when it is in time. For pipelines without due
-    /// pictures, the sentence gives the reason.
+    /// Returns a sentence that defines the time at which a picture is due, and the time up to which the picture is in
+    /// time. For pipelines without due pictures, the sentence gives the reason.
     fn due_definition(&self) -> &'static str;
 
     /// Returns the number of entries in the list of [`PictureRules::pictures`] that together make one whole picture.
@@ -249,7 +249,8 @@ pub trait PictureRules {
         views.get(&target.picture).copied().map(Source::View)
     }
 
-    /// Returns the time span in which a picture is shown: until the next picture replaces it, or until the run ends.
+    /// Returns the time span in which a picture is shown. The span ends when the next picture replaces the shown
+    /// picture, or when the run ends.
     fn shown(&self, record: &Record, times: &PictureTimes, next: Option<&PictureTimes>) -> LightTimes {
         let first = record.display().period_at(times.shown_at);
         let next = next.map(|next| record.display().period_at(next.shown_at));

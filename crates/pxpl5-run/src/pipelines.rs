@@ -1,5 +1,5 @@
-//! The pipelines of the papers. To add a pipeline, write it in a new file here or in a separate crate, and add a line
-//! to `entries`.
+//! The pipelines of the papers. A new pipeline needs a new file in this module or in a separate crate, and a line in
+//! the function `entries`.
 
 pub(crate) mod faces;
 mod frameless;

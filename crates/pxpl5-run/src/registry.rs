@@ -91,9 +91,10 @@ pub struct PipelineEntry {
     pub build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
     /// Function that returns the criterion for the largest scene, given the settings.
     pub limit: fn(&PipelineSettings) -> LimitCriterion,
-    /// Timing tables of the firmware. The name of a table, such as `jitp`, begins the paths of its parameters.
+    /// Timing tables of the firmware. The name of a table, such as `jitp`, is the first part of the paths of the
+    /// table's parameters.
     pub tables: &'static [NamedTable],
-    /// Closed form of the pipeline, or `None` if it has none.
+    /// Closed form of the pipeline, or `None` if the pipeline has no closed form.
     pub closed_form: Option<ClosedForm>,
     /// True if the command `compare` has a row for the pipeline.
     pub compared: bool,

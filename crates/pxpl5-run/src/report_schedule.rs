@@ -1,5 +1,5 @@
-//! Arrival times of a tracker's reports at the host. The times do not depend on the contents of the reports, so they
-//! are known in advance even for an interactive head.
+//! Arrival times of a tracker's reports at the host. The times do not depend on the contents of the reports, so the
+//! times are known in advance even for an interactive head.
 
 use pxpl5_sim::Time;
 use std::collections::VecDeque;

@@ -32,8 +32,8 @@ impl PredictionDeviation {
 }
 
 /// Computes the errors of a predictor for each prediction interval. Only reports whose orientation was measured at or
-/// after `from` and before `until` are evaluated. A prediction interval begins when the orientation of the last report
-/// was measured.
+/// after `from_ps` and before `until_ps` are evaluated. A prediction interval begins when the orientation of the last
+/// report was measured.
 ///
 /// # Errors
 ///

@@ -10,8 +10,8 @@ use crate::tracker::TrackerReport;
 /// A predictor that has access to the true motion. The predictor moves the newest reported pose along the true motion
 /// and keeps the error of the report.
 ///
-/// No real machine has access to the true motion. The predictor is a reference for all others: the errors of its poses
-/// come only from the tracker, not from the prediction.
+/// No real machine has access to the true motion. The predictor is a reference for all real predictors: the errors of
+/// its poses come only from the tracker, not from the prediction.
 #[derive(Clone, Debug)]
 pub struct ExactPredictor<M> {
     motion: M,

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::channel::{Channel, VectorDifference};
 use crate::time::span_s;
 
-/// The order of an extrapolation: the highest derivative that it uses.
+/// The order of an extrapolation, which is the highest derivative that the extrapolation uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
     /// No derivative: the prediction is the last value.

@@ -7,7 +7,7 @@ use crate::tracker::TrackerReport;
 /// rejected.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// Numbers of reports that a predictor has received, by its decision to accept or reject them.
+/// Numbers of reports that a predictor has received: accepted reports, and rejected reports by the reason of rejection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReportCounts {
     /// Number of accepted reports, which the filters used.

@@ -38,8 +38,8 @@ const LONGEST_BASELINE: u32 = 16;
 pub struct Training {
     /// Time from the instant at which a reported pose was true to the predicted instant, ps.
     pub interval_ps: u64,
-    /// True if the filter was tuned on another random motion of the same kind, false if it was tuned on the evaluated
-    /// motion.
+    /// True if the filter was tuned on another random motion of the same kind, false if the filter was tuned on the
+    /// evaluated motion.
     pub sibling: bool,
     /// Length of the motion on which the filter was tuned, seconds. Up to one second at its start is not evaluated.
     pub seconds: f64,

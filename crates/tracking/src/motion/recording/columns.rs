@@ -124,7 +124,7 @@ impl Columns {
     }
 }
 
-/// Returns the error of a line, counted from 1, whose form is wrong.
+/// Returns the error for a line with a wrong form. `line` is the number of the line, counted from 1.
 pub(super) fn of_line(line: u64, expected: impl Display, found: impl Display) -> FileError {
     FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("line {line}"))
 }

@@ -58,8 +58,8 @@ pub(super) fn is_header(header: &[&str]) -> bool {
     has("predicted") || (has("position") && has("orientation"))
 }
 
-/// Returns the eight columns of a pose log in the order of [`NAMES`]. The header can contain them in any order, among
-/// other columns.
+/// Returns the eight columns of a pose log in the order of [`NAMES`]. The header can contain these columns in any
+/// order, among other columns.
 pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], FileError> {
     let mut found: [Option<Column>; 8] = Default::default();
     for (index, name) in header.iter().enumerate() {

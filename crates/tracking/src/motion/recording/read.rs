@@ -68,11 +68,11 @@ fn bare(field: &str) -> &str {
 /// The samples of a recorded file, and warnings about the file.
 pub(super) struct Samples {
     pub(super) samples: Vec<Sample>,
-    /// Warning about samples that were left out because they have the same time stamp as the preceding sample.
+    /// Warning about samples that were left out because their time stamps equal the time stamp of the preceding sample.
     pub(super) repeated: Option<String>,
 }
 
-/// Reads the samples of a recorded file and converts them to this crate's axes.
+/// Reads the samples of a recorded file and converts the samples to this crate's axes.
 pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, FileError> {
     // Number the lines from 1, and drop a byte order mark and empty lines.
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
@@ -125,7 +125,7 @@ fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, FileError>
     collect(&lines, &layout, axes)
 }
 
-/// Parses lines as samples and converts them to this crate's axes.
+/// Parses lines as samples and converts the samples to this crate's axes.
 fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Samples, FileError> {
     let axes = axes.unwrap_or(layout.axes);
     let mut first_ps = None;
