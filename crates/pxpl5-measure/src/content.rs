@@ -22,7 +22,7 @@ impl Content {
 
 /// The primitives that rays can hit: all structures of the scene in the world's frame.
 ///
-/// Structures fixed to the head are left out, because they are always displayed at the right position.
+/// Structures fixed to the head are left out, because such structures are always displayed at the right position.
 #[derive(Debug, Default)]
 pub(crate) struct Contents {
     bodies: Vec<Body>,

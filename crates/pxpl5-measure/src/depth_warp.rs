@@ -74,7 +74,7 @@ impl SeenRow {
 }
 
 /// Depths and new positions of all pairs of pixels in two neighbouring rows of the picture. A pair is a pixel and the
-/// pixel below it. For each pair, the lists have the smaller and the larger depth, column and row.
+/// pixel directly below. For each pair, the lists have the smaller and the larger depth, column and row.
 #[derive(Debug, Default)]
 struct Pairs {
     near: Vec<f32>,
@@ -295,8 +295,8 @@ impl Target {
         }
     }
 
-    /// Draws the pixel in column `x` of the row `row` of the picture at its new position on the screen, rounded to the
-    /// nearest pixel of the screen.
+    /// Draws the pixel in column `x` of the row `row` of the picture at the new position of the pixel on the screen,
+    /// rounded to the nearest pixel of the screen.
     fn draw_pixel(&mut self, seen: &SeenRow, row: u32, x: usize) {
         if seen.old_depth[x] == f32::INFINITY {
             return;
@@ -355,7 +355,8 @@ fn next(position: f32, least: f32, greatest: f32) -> i32 {
     before + i32::from((before as f32) < inside)
 }
 
-/// Moves a whole picture from the pose for which it was drawn to another pose, by the depths of its pixels.
+/// Moves a whole picture from the pose for which the picture was drawn to another pose, by the depths of the picture's
+/// pixels.
 ///
 /// Each pixel of the result shows the nearest content that falls on this pixel. A pixel is black if its content lies
 /// beyond the edge of the picture, or was hidden by nearer objects. Returns the result and the number of black pixels,

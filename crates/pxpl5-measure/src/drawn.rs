@@ -32,7 +32,7 @@ pub(crate) enum Drawn {
         part: f64,
         on_screen: bool,
     },
-    /// A picture that the display shifts while scanning it out (raster offset).
+    /// A picture that the display shifts during scan-out (raster offset).
     ShiftedRaster(Moment, DVec2),
     /// Faces of a cube around the eye, read in the latched (sampled and held) direction of the head. The nearest scene
     /// point in all display memories is visible.

@@ -77,8 +77,8 @@ struct Evaluation {
     shown: Shown,
     content: Content,
     head: Arc<HeadViews>,
-    /// True if the error is evaluated at the instant for which the pixel was drawn, instead of the instant when it is
-    /// lit.
+    /// True if the error is evaluated at the instant for which the pixel was drawn, instead of the instant at which the
+    /// pixel is lit.
     at_one_instant: bool,
     /// First display period whose pixels are not evaluated yet.
     next: PeriodNumber,
@@ -357,7 +357,8 @@ impl Evaluation {
     }
 }
 
-/// A pixel of a field: its position, the time when it begins to shine, and the middle of the time for which it shines.
+/// A pixel of a field: the position of the pixel, the start of the time for which the pixel is lit, and the middle of
+/// this time.
 #[derive(Clone, Copy, Debug)]
 struct Pixel {
     place: [u32; 2],

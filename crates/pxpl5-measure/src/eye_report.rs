@@ -37,7 +37,8 @@ pub struct ReprojectionReport {
     pub disoccluded_share: Option<f64>,
 }
 
-/// A device that moves pictures: its setting, and the pixels and poses per second that it needs on the display.
+/// A device that moves pictures: the setting of the device, and the numbers of pixels and poses per second that the
+/// device needs on the display.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Device {
     pub(crate) setting: Reprojection,

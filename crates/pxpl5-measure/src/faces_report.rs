@@ -15,7 +15,8 @@ pub struct FacesReport {
     pub face_texels: u64,
     /// The moment at which the display latches (samples and holds) the orientation of the head.
     pub latch: Latch,
-    /// Time from the latching of an orientation until the first pixel that uses it is lit, in nanoseconds.
+    /// Time from the latching of an orientation until the first pixel that uses this orientation is lit, in
+    /// nanoseconds.
     pub pipeline_ns: f64,
     /// Number of head orientations that the display accepted.
     pub matrix_loads: u64,

@@ -1,4 +1,4 @@
-//! Pictures after a device has moved them to the newest pose.
+//! Pictures after a device has moved the pictures to the newest pose.
 
 use crate::depth_warp::{DepthPicture, Drawing};
 use crate::registration::{Evaluator, Warped, middle};

@@ -14,7 +14,7 @@ use std::rc::Rc;
 use tracking::view::{HmdView, RasterOffset};
 use tracking::{Pose, rotation};
 
-/// A raster that is shifted while it is scanned out (Breglia 1981).
+/// A raster that the display shifts during scan-out (Breglia 1981).
 ///
 /// At the retrace, the newest tracker data predict the head's pose for the first line of the field. The picture is
 /// shifted by the difference in yaw and pitch between the drawn pose and this prediction. During the field, the shift
@@ -85,7 +85,8 @@ enum MovedBy<'a> {
 impl<'a> RasterOffsets<'a> {
     /// Returns the corrections for a run's pictures, or `None` if the head's display shows pictures as drawn.
     ///
-    /// Under VDRT a field has no offset if it shows nothing, or if its picture was not drawn for a single pose.
+    /// Under VDRT a field has no offset if the field shows no picture, or if the picture was not drawn for a single
+    /// pose.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let head = outcome.head()?;

@@ -47,7 +47,7 @@ impl Evaluator {
     /// Returns the nearest scene point at a picture position over several display memories. If two memories have
     /// content at the same distance, the memory with the lower index is used.
     ///
-    /// If no memory has content there, the result is a point at `distance_m`.
+    /// If no memory has content at `place`, the result is a point at the distance `distance_m`.
     fn nearest(&self, faces: &FacesSeen, place: DVec2) -> Content {
         let direction = self.direction(place);
         let met = faces.memories.iter().filter_map(|(moment, structures)| {

@@ -30,15 +30,15 @@ pub(crate) enum Seen {
 pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    /// Pictures that were complete in time, each with the first period that showed it. `None` for pictures during the
-    /// warm-up.
+    /// Pictures that were complete in time, with the first period that showed each picture. `None` for pictures during
+    /// the warm-up.
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
     /// Number of pictures of the run that were added so far.
     pictures: usize,
     /// The result window. The pixels of pictures outside the result window are not evaluated.
     ///
-    /// `None` for pipelines without due pictures. All their pictures are evaluated, each until the next picture covers
-    /// it.
+    /// `None` for pipelines without due pictures. All pictures of such a pipeline are evaluated, until the next picture
+    /// covers them.
     window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
     /// Display memories and latched directions of an address recalculation display.

@@ -1,4 +1,4 @@
-//! Follows a picture backwards in time through the work that it waited for.
+//! Follows a picture backwards in time, through the work for which the picture waited.
 
 use crate::resource::Resource;
 use pxpl5_gp::{Stage, StageEdge};
@@ -80,7 +80,7 @@ enum At {
     Arrival(usize),
     /// At the end of a region's commands on a renderer.
     Drawn(usize),
-    /// At the end of a stage on a board, or within it.
+    /// At the end of a stage on a board, or within the stage.
     Stage(usize),
     /// At the start of the latency, where the path ends.
     Begin,

@@ -131,7 +131,7 @@ pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
     plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1
 }
 
-/// Returns a description of a processor's programs and of the messages that wait for them.
+/// Returns a description of a processor's programs and of the messages that wait for these programs.
 fn processor_line(look: &GpSnapshot) -> String {
     let mut parts: Vec<String> = look.programs.iter().map(program).collect();
     if parts.is_empty() {

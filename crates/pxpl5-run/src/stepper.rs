@@ -309,9 +309,9 @@ impl Stepper {
 
     /// Returns true if a machine at the end of the run may be in a deadlock.
     ///
-    /// A pipeline that waits for a swap has no pending work until the next display period begins, although it is not in
-    /// a deadlock. In a long run, the machine itself detects a deadlock. A deadlock can remain undetected only in a
-    /// short run, or if the last periods of a run had no work.
+    /// A pipeline that waits for a swap has no pending work until the next display period begins, although the pipeline
+    /// is not in a deadlock. In a long run, the machine itself detects a deadlock. A deadlock can remain undetected
+    /// only in a short run, or if the last periods of a run had no work.
     fn may_be_deadlocked(&self) -> bool {
         let is_long = self.experiment.fields > SHORT_RUN && self.run.machine.idle_ticks() < IDLE_TICKS;
         self.run.machine.is_at_rest() && !is_long

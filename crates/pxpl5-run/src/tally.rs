@@ -1,7 +1,7 @@
 //! Sums of a run's results, updated during the run.
 //!
-//! Pictures are processed once, in the order in which they are shown, after all their records are complete. With a
-//! limit on samples, memory stays constant except for one byte per period ([`PictureResults`]).
+//! Pictures are processed once, in the order in which the pictures are shown, after all records of a picture are
+//! complete. With a limit on samples, memory stays constant except for one byte per period ([`PictureResults`]).
 
 use crate::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
 use crate::observers::FinalResults;

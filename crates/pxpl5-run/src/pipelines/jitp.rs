@@ -26,8 +26,8 @@ pub use jitp::{Interpolation, Viewpoint};
 pub struct Jitp {
     /// The instants for which the parts of a picture are computed.
     pub viewpoint: Viewpoint,
-    /// True if strips arrive at the frame buffer just before the display's beam scans them. False if strips arrive one
-    /// field earlier.
+    /// True if strips arrive at the frame buffer just before the display's beam scans the strips. False if strips
+    /// arrive one field earlier.
     pub racing: bool,
     /// Number of lines in a strip, 1 to 128.
     pub strip_rows: u32,

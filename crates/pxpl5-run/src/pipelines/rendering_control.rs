@@ -24,11 +24,11 @@ pub struct RenderingControl {
     pub mono: bool,
     /// Method of shading.
     pub shading: Shading,
-    /// Action of a renderer with a finished region whose frame buffer is not available yet.
+    /// Action of a renderer that has finished a region before the frame buffer of this region is available.
     pub finished: FinishedRegions,
 }
 
-/// Action of a renderer with a finished region whose frame buffer is not available yet.
+/// Action of a renderer that has finished a region before the frame buffer of this region is available.
 ///
 /// TR94 says that the last slave returns the token, and that the master assigns the renderer to the next region. The
 /// copy command comes later if the frame buffer was not available. TR94 does not say if the renderer gets the next
@@ -43,8 +43,8 @@ pub enum FinishedRegions {
 }
 
 impl FinishedRegions {
-    /// All actions of a renderer with a finished region whose frame buffer is not available. The first action is the
-    /// default.
+    /// All actions of a renderer that has finished a region before the frame buffer of this region is available. The
+    /// first action is the default.
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
     /// Returns the name of the action in experiment files.

@@ -9,7 +9,7 @@ use pxpl5_machine::Record;
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
 
-/// An update of a display memory, with the period from which the memory shows it.
+/// An update of a display memory, with the first period in which the memory shows the update.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownUpdate {
     /// Update that is shown.

@@ -1,4 +1,5 @@
-//! Cube faces that an ideal renderer draws without delay, and the host's connection that carries them to the display.
+//! Cube faces that an ideal renderer draws without delay, and the host's connection that carries the faces to the
+//! display.
 
 use super::plan::{Due, DuePolicy, Plan, Updates};
 use crate::pipeline::Setup;

@@ -74,8 +74,8 @@ impl OrientationTiming {
         }
     }
 
-    /// Returns the instant at which the host sent an orientation, and the instant for which it was predicted. `loaded`
-    /// is the time at which this orientation is in the register.
+    /// Returns the instant at which the host sent an orientation, and the instant for which the orientation was
+    /// predicted. `loaded` is the time at which this orientation is in the register.
     pub(crate) fn predicted(&self, loaded: Time) -> (Time, Time) {
         let aimed = match self.schedule {
             Some(schedule) => schedule.aimed(schedule.at(loaded)),

@@ -7,10 +7,10 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 
 /// A schedule of the orientations that a host predicts for parts of a field.
 ///
-/// Each orientation is in the display's register when the first pixel that uses it is latched. With latching by line, a
-/// line has one orientation. With latching by pixel, a line has as many orientations as the host's connection can
-/// carry. After the last orientation of a line, the connection is idle until the next line. If the transfer of an
-/// orientation takes longer than a line, the orientation serves several lines.
+/// Each orientation is in the display's register when the display latches the orientation for the first pixel that uses
+/// this orientation. With latching by line, a line has one orientation. With latching by pixel, a line has as many
+/// orientations as the host's connection can carry. After the last orientation of a line, the connection is idle until
+/// the next line. If the transfer of an orientation takes longer than a line, the orientation serves several lines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
     scan: FaceScan,
@@ -36,7 +36,7 @@ pub(crate) struct Load {
 impl LoadSchedule {
     /// Creates a schedule. Returns `None` for a display that latches one orientation per field.
     ///
-    /// The host of such a display sends each orientation as soon as it is known.
+    /// The host of such a display sends each orientation as soon as the orientation is known.
     pub(crate) fn new(scan: FaceScan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
         let line = scan.lights(0, 2, PeriodNumber::FIRST)?.since(scan.lights(0, 0, PeriodNumber::FIRST)?);
         let lines = link.0.div_ceil(line.0.max(1)).max(1) as u32;

@@ -304,8 +304,8 @@ impl Pipeline for FacePipeline {
         true
     }
 
-    /// Adapts the display to this variant: it must accept cube faces and use the variant's latch mode and lens. The
-    /// policy `Full` uses one display memory.
+    /// Adapts the display to this variant. The adapted display accepts cube faces, and uses the variant's latch mode
+    /// and lens. The policy `Full` uses one display memory.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
         // Replace a display that takes no faces.
