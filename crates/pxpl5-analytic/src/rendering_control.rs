@@ -100,8 +100,8 @@ struct Renderers {
     stored_until_ns: Vec<Vec<f64>>,
     /// Number of words sent to each renderer.
     words: Vec<f64>,
-    /// For the latest regions of each renderer: the number of words sent before the region, the start of the region's
-    /// first command, and the cost of all commands of the region.
+    /// Three values for each of the latest regions of a renderer. They are the number of words sent before the region,
+    /// the start of the region's first command, and the cost of all commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }

@@ -43,8 +43,8 @@ impl DepthPicture {
 
 /// Largest ratio of the depths of two neighbouring pixels that belong to the same surface of an object. At a larger
 /// ratio, a near surface ends between the two pixels and hides content of a far surface. The ratio is assumed, with a
-/// range of 1.02 to 1.2: the depth of a floor that is seen at a grazing angle of 5 degrees changes by a factor of 1.03
-/// from row to row.
+/// range of 1.02 to 1.2. For comparison, the depth of a floor that is seen at an angle of 5 degrees changes by a factor
+/// of 1.03 from row to row.
 const SAME_SURFACE: f32 = 1.1;
 
 /// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that vector
@@ -295,7 +295,7 @@ impl Target {
         }
     }
 
-    /// Draws the pixel in column `x` of the row `row` of the picture at the new position of the pixel on the screen,
+    /// Draws a pixel of the picture, in column `x` and row `row`, at its new position on the screen. The position is
     /// rounded to the nearest pixel of the screen.
     fn draw_pixel(&mut self, seen: &SeenRow, row: u32, x: usize) {
         if seen.old_depth[x] == f32::INFINITY {

@@ -22,7 +22,8 @@ impl SeenTimes {
     }
 
     /// Returns the instant for which a view is drawn. For a view that the dry run did not show, the result is
-    /// `sampled_at` plus the mean time from the sample of a view to the instant for which the view is drawn.
+    /// estimated. The estimate is `sampled_at` plus the mean time from a view's sample to the instant for which the
+    /// view is drawn.
     pub(crate) fn aimed_at(&self, number: ViewNumber, sampled_at: Time) -> Time {
         let expected = Time(sampled_at.0 + self.mean_lead_ps);
         self.aimed_at.of(number.0).filter(|at| *at >= sampled_at).unwrap_or(expected)

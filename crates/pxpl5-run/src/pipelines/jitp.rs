@@ -139,8 +139,8 @@ fn due(video: &Video, target: &CopyTarget) -> Time {
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions: the number of regions that arrived before the field's end, the number of regions that
-/// arrived before the beam, and the arrival time of the middle strip.
+/// Arrivals of a field's regions. The type counts the regions that arrived before the field's end, and the regions that
+/// arrived before the beam. The time is the arrival time of the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,

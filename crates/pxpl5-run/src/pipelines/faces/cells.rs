@@ -50,8 +50,8 @@ impl ByCells {
         cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)
     }
 
-    /// Returns the displacement of vertices with which the image of a display memory meets the image of the memory with
-    /// the next lower update rate, at the border of the two images.
+    /// Returns the displacement of vertices for a display memory. The displaced image meets the image of the memory
+    /// with the next lower update rate at their border.
     fn warp(&self, memory: usize) -> Option<FaceWarp> {
         let slower_from = *self.drawn_from.get(memory + 1).filter(|_| self.falloff != Falloff::None)?;
         Some(FaceWarp {
