@@ -1,4 +1,4 @@
-//! TRANSFORM and RENDER of Slats on one GP, computed for several machine configurations together.
+//! TRANSFORM and RENDER of Slats on one graphics processor, computed for several machine configurations together.
 
 use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
@@ -6,8 +6,8 @@ use slats::CLUMP;
 
 /// Computes TRANSFORM and RENDER of all clumps (groups of triangles) of a field.
 ///
-/// Returns two times of the last clump: when the clump was accepted, and when the processor had handed the clump over
-/// for sending.
+/// Returns two times of the last clump: when the renderers had accepted the clump, and when the graphics processor had
+/// handed the clump over for sending.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],
@@ -104,11 +104,11 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// Times of the clumps (groups of triangles) that are being sent.
+/// Times up to which the sending of clumps (groups of triangles) has been computed.
 struct Chain<const N: usize> {
-    /// Time at which the processor has finished its latest work.
+    /// Time at which the graphics processor has finished its latest work.
     cpu: Times<N>,
-    /// Time at which the last message of the latest clump (group of triangles) was accepted.
+    /// Time at which the last message of the latest clump (group of triangles) was accepted by the FIFO of a renderer.
     accepted: Times<N>,
     /// Time at which every renderer has accepted its first message of the latest clump (group of triangles).
     draining: Times<N>,
@@ -119,7 +119,8 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// Sends the messages of one clump (group of triangles). The GP's port sends on several channels at a time.
+    /// Sends the messages of one clump (group of triangles). The graphics processor's port sends on several channels at
+    /// a time.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &MessageCosts<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);

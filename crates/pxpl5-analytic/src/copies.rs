@@ -14,7 +14,8 @@ macro_rules! lanes {
     }};
 }
 
-/// Largest number of renderers in the analytic model. A field has 20 regions, so further renderers would have no work.
+/// Largest number of renderers in the analytic model. A field has 20 regions, so more than 20 renderers would not be
+/// faster.
 pub(super) const MAX_RENDERERS: usize = 20;
 
 /// Copies that a renderer has to make, with two bits for each copy. The first copy is in the lowest bits.
@@ -42,7 +43,7 @@ impl Queue {
     /// remain.
     ///
     /// If `begins_right` is true and a right copy exists, the first copy goes to the right frame buffer. Otherwise the
-    /// first copy goes to the same frame buffer as the first copy of the given order.
+    /// first copy goes to the same frame buffer as the first copy of the original order.
     pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];

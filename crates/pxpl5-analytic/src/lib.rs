@@ -10,20 +10,21 @@
 //! sweep over many thousand configurations takes seconds. The formulas follow these rules of the boards:
 //!
 //! - The messages of a clump leave in order. A renderer's full input FIFO delays a message.
-//! - A renderer executes commands in order. While a renderer copies a region, it executes no other command.
+//! - A renderer executes commands in order. While a renderer copies a region, the renderer executes no other command.
 //! - A frame-buffer port receives one region at a time, in order of arrival.
 //!
-//! For Slats on several GPs, the model processes each message in the order in which the ring grants channels
-//! (`senders`). Other pipelines, displays other than NTSC, and heads with a tracker are errors.
+//! For Slats on several graphics processors, the model processes each message in the order in which the ring grants
+//! channels (`senders`). The functions return an error for other pipelines, for displays other than NTSC, and for heads
+//! with a tracker.
 //!
 //! Times are nanoseconds in f64. Rounding errors are far below 1 ns, and differences that matter are much larger.
 //!
 //! # Not modelled
 //!
 //! - Ring channels that messages with pixels occupy.
-//! - Interrupts of a GP by messages of other boards.
+//! - Interrupts of a graphics processor by messages of other boards.
 //! - Words of a clump's last message, except the words of primitives.
-//! - The host's own messages. A mean rate replaces them.
+//! - The host's own messages. A mean rate of messages replaces these messages.
 //! - Views after the first view (Slats).
 //! - Memory.
 

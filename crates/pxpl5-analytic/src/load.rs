@@ -12,9 +12,9 @@ use std::sync::Arc;
 /// The primitives and bins of one eye's picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Load {
-    /// Number of triangles, summed over all GPs.
+    /// Number of triangles, summed over all graphics processors.
     pub triangles: f64,
-    /// Number of spheres, summed over all GPs.
+    /// Number of spheres, summed over all graphics processors.
     pub spheres: f64,
     /// Number of triangles that the clipper cuts.
     pub clipped: f64,

@@ -72,7 +72,7 @@ pub struct FieldTimes {
     pub in_time: bool,
 }
 
-/// Mean numbers that one triangle causes, for one eye.
+/// Mean effects of one triangle on the picture of one eye: bin entries and clipping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerTriangle {
     /// Number of entries in all bins together.

@@ -90,7 +90,7 @@ impl<const N: usize> Mul for Times<N> {
     }
 }
 
-/// Depth of the renderers' FIFOs in words, and time of a word on the ring, in several configurations.
+/// Depth of the renderers' FIFOs in words, and time that a word takes on the ring, for several machine configurations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fifos<const N: usize> {
     pub(super) depth_words: Times<N>,
@@ -119,8 +119,8 @@ impl<const N: usize> Add for Costs<N> {
     }
 }
 
-/// A message of equal commands after a header of other commands. The type holds all times that do not depend on the
-/// arrival of the message.
+/// A message to a renderer: a header of a few commands, followed by many commands of one kind. The type holds all times
+/// that do not depend on the arrival of the message.
 ///
 /// All other times follow from the arrival of the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b +
 /// c)` exactly, even with rounding. Sums are therefore computed before maxima, which shortens the chain of dependent
@@ -132,19 +132,20 @@ pub(super) struct Commands<const N: usize> {
     head_wire: Times<N>,
     /// Execution time of the message's header.
     head: Times<N>,
-    /// Time from the last word of the message's header to the start of the first equal command, if the pixel array is
-    /// free.
+    /// Time from the last word of the message's header to the start of the first command after the header, if the pixel
+    /// array is free.
     lead: Times<N>,
-    /// Number of commands.
+    /// Number of commands after the header.
     count: f64,
-    /// Execution time of one command.
+    /// Execution time of one command after the header.
     each: Times<N>,
     /// Time that the whole message takes on the channel.
     wire: Times<N>,
-    /// Time from the start of the first equal command to the end of the last command. Either the execution of commands
-    /// or the arrival of words determines this time.
+    /// Time from the start of the first command after the header to the end of the last command. Either the execution
+    /// of commands or the arrival of words determines this time.
     drawing: Times<N>,
-    /// Time until the FIFO has room for the last word, counted from the start of this message's first equal command.
+    /// Time until the FIFO has room for the last word, counted from the start of this message's first command after the
+    /// header.
     ///
     /// The FIFO has room when a certain command has started: the command that contains the word one FIFO depth before
     /// the last word. The value is `f64::MIN` if this command belongs to the previous message.
@@ -156,7 +157,7 @@ pub(super) struct Commands<const N: usize> {
 }
 
 impl<const N: usize> Commands<N> {
-    /// Creates a message of a header and `count` equal commands.
+    /// Creates a message with the header `head` and `count` commands that each have the cost `each`.
     #[inline(always)]
     pub(super) fn new(fifos: &Fifos<N>, head: &Costs<N>, count: f64, each: &Costs<N>) -> Self {
         let (word_ns, counts) = (fifos.word_ns, Times::all(count));

@@ -43,7 +43,8 @@ pub struct StereoModel {
     /// Number of finished regions that a renderer can store while their frame buffer is not available.
     regions_stored: usize,
     field_ns: f64,
-    /// Time of each region's messages at a frame-buffer port, in nanoseconds.
+    /// For each region, the time for which the messages with the region's pixels occupy a frame-buffer port, in
+    /// nanoseconds.
     copy_ns: Vec<f64>,
 }
 
@@ -91,7 +92,7 @@ struct History {
 struct Renderers {
     /// Time from which the master can assign the next region to each renderer.
     idle_ns: Vec<f64>,
-    /// Time from which each renderer's array can execute further commands.
+    /// Time at which each renderer's pixel processors have executed all their commands so far.
     free_ns: Vec<f64>,
     /// For each renderer, the times at which its regions had been copied to the frame buffer.
     sent_ns: Vec<Vec<f64>>,
@@ -99,8 +100,8 @@ struct Renderers {
     stored_until_ns: Vec<Vec<f64>>,
     /// Number of words sent to each renderer.
     words: Vec<f64>,
-    /// Three values for each of a renderer's latest regions: words sent before the region, start of the first command,
-    /// and cost of all commands.
+    /// Three values for each of the latest regions of a renderer. They are the number of words sent before the region,
+    /// the start of the region's first command, and the cost of all commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }
@@ -121,7 +122,7 @@ impl StereoModel {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the machine has no slaves, or if it has no closed form.
+    /// Returns a [`SettingError`] if the machine has no slaves, or if the closed form does not cover the machine.
     pub fn new(config: &MachineConfig, program: RenderingControl) -> Result<Self, SettingError> {
         if config.n_gps < 2 {
             return Err(SettingError::limits(
@@ -249,12 +250,12 @@ impl StereoModel {
         self.entries(load) * BIN_ENTRY_BYTES as f64
     }
 
-    /// Returns the time from the first slave that finishes all tokens of a picture to the last slave that finishes
-    /// them.
+    /// Returns the time from the instant at which the first slave has finished all tokens of a picture to the instant
+    /// at which the last slave has.
     ///
-    /// Each token starts at one slave and moves to the next as fast as renderers accept commands. If there are fewer
-    /// renderers than slaves, a slave can finish early. The first slave finishes when the number of slaves that each
-    /// token has visited equals the number of renderers.
+    /// Each token starts at one slave and moves from slave to slave as fast as renderers accept commands. If there are
+    /// fewer renderers than slaves, a slave can finish early. The first slave finishes when the number of slaves that
+    /// each token has visited equals the number of renderers.
     fn first_free_ns(&self, load: &Load) -> f64 {
         let drawing_ns = load.entries() / load.bins.len().max(1) as f64 * self.triangle.ns;
         drawing_ns * (1.0 - self.renderers as f64 / self.slaves).max(0.0)
@@ -357,8 +358,8 @@ impl StereoModel {
 
     /// Returns the time at which the FIFO has room for the last word sent.
     ///
-    /// The FIFO has room when it has released the word that is one FIFO depth before the last word. The FIFO releases
-    /// this word when the command that contains the word starts.
+    /// The FIFO has room after the FIFO has released an earlier word: the word that is one FIFO depth before the last
+    /// word. The FIFO releases this word when the command that contains the word starts.
     fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
         let word = all.words[r] - 1.0 - self.fifo_words;
         let started = &mut all.started[r];
@@ -392,7 +393,8 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
     Ok(loads)
 }
 
-/// Closed form of Rendering Control: it computes the summary of an experiment, and two estimates, without simulation.
+/// Closed form of Rendering Control. Its functions compute the summary of an experiment, and two estimates, without
+/// simulation.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 

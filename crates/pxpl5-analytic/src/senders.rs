@@ -1,5 +1,5 @@
-//! TRANSFORM and RENDER of Slats on any number of GPs. Messages are processed in the order in which the ring grants
-//! them channels.
+//! TRANSFORM and RENDER of Slats on any number of graphics processors (GPs). Messages are processed in the order in
+//! which the ring grants them channels.
 //!
 //! ```text
 //!   clumps of GP 0 --chain--+
@@ -39,8 +39,8 @@ struct Clump {
     bins: [[f64; 2]; REGIONS],
 }
 
-/// The clumps (groups of primitives) of every GP, and the number of words of the view that the first GP sends to the
-/// other GPs.
+/// The clumps (groups of primitives) of every graphics processor (GP), and the number of words of the view that the
+/// first GP sends to the other GPs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Clumps {
     of_gps: Vec<Vec<Clump>>,
@@ -52,7 +52,7 @@ pub(super) struct Clumps {
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
-    /// Creates clumps (groups) of equal triangles, distributed evenly over the GPs and the regions.
+    /// Creates clumps (groups) of equal triangles, distributed evenly over the graphics processors and the regions.
     pub(super) fn uniform(model: &SlatsModel, triangles: f64, each: PerTriangle) -> Self {
         let all = triangles.round() as usize;
         // Distribute the triangles evenly over the GPs.
@@ -122,8 +122,8 @@ const COLUMNS: usize = REGIONS / 4;
 /// Sends all clumps (groups of primitives) to the renderers. `arrays` holds the state of the renderers, before and
 /// after the call.
 ///
-/// Returns two times. At the first time, the last clump is accepted. At the second time, the first GP has received the
-/// reports of all other GPs about their last clumps, and is free.
+/// Returns two times. At the first time, the last clump is accepted. At the second time, the first graphics processor
+/// is free again, after all other graphics processors have reported the end of their last clumps.
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
@@ -207,7 +207,7 @@ struct Sender<'a> {
     /// Messages of the current clump (group of primitives) to which the ring has not granted a channel yet. Empty after
     /// the last clump.
     messages: VecDeque<Message>,
-    /// Time at which the next message became the first in the queue of its sender.
+    /// Time since which the next message of this sender is the first message in the queue.
     since_ns: f64,
     /// Time from which each channel of the port is free.
     channels_ns: Vec<f64>,
@@ -248,8 +248,8 @@ impl<'a> Ring<'a> {
 
     /// Returns the senders, each with the messages of its first clump.
     ///
-    /// A single GP clears regions with its first clump. With several GPs, the first GP clears all regions with separate
-    /// messages, and then sends the view to the other GPs.
+    /// A single graphics processor (GP) clears regions with its first clump. With several GPs, the first GP clears all
+    /// regions with separate messages, and then sends the view to the other GPs.
     fn begin<'c>(&mut self, clumps: &'c Clumps) -> Vec<Sender<'c>> {
         let model = self.model;
         let mut begin_ns = vec![0.0; model.gps];
@@ -357,8 +357,8 @@ impl<'a> Ring<'a> {
         messages
     }
 
-    /// Returns two times for a sender's next message. At the first time, the ring can grant channels to the message.
-    /// The message has waited since the second time.
+    /// Returns two times for a sender's next message: the time from which the ring can grant channels to the message,
+    /// and the time since which the message has waited.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
         let region = sender.messages.front().map_or(0, |message| message.region);
         let port = &self.renderers[region % self.renderers.len()];
@@ -422,7 +422,8 @@ impl<'a> Ring<'a> {
         entered
     }
 
-    /// Returns the time at which the first GP has been notified that all clumps (groups of primitives) were accepted.
+    /// Returns the time at which the first graphics processor (GP) has been notified that all clumps (groups of
+    /// primitives) were accepted.
     ///
     /// Each of the other GPs reports to the first GP by a message. Each message takes processor time of the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {

@@ -24,7 +24,7 @@ impl SlatsModel {
         times
     }
 
-    /// Returns the times of a field in the steady state, for the given clumps (groups of triangles).
+    /// Returns the times of a field in the steady state, for the clumps (groups of primitives) `clumps`.
     fn field_of(&self, clumps: &Clumps) -> FieldTimes {
         let models = std::array::from_ref(self);
         let mut arrays = [Array::idle(); MAX_RENDERERS];
@@ -38,8 +38,8 @@ impl SlatsModel {
     /// Returns the times of a field for many machines, in their order. The times are identical to the results of
     /// [`field`](Self::field).
     ///
-    /// Sixteen consecutive machines are computed together, which is faster, if each has one GP. The machines must also
-    /// have equal numbers of renderers and channels, and the same program.
+    /// Sixteen consecutive machines are computed together, which is faster, if each machine has one graphics processor.
+    /// The machines must also have equal numbers of renderers and channels, and the same program.
     #[must_use]
     pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
         let mut all = Vec::with_capacity(models.len());
@@ -67,7 +67,7 @@ fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTri
     fields_at_once(models, triangles, each)
 }
 
-/// Computes the times of a field on each of `N` machines. All machines have one GP and equal values of
+/// Computes the times of a field on each of `N` machines. All machines have one graphics processor and equal values of
 /// [`SlatsModel::structure`].
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
@@ -89,7 +89,7 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
 }
 
 /// Computes the copies of a field. `rendered` is the time at which the last clump (group of triangles) was accepted,
-/// and `cpu` the time at which the first GP is free.
+/// and `cpu` the time at which the first graphics processor is free.
 #[inline(always)]
 fn end<const N: usize>(
     models: &[SlatsModel; N],
@@ -131,7 +131,7 @@ fn copy<const N: usize>(
     copies::make(arrays, queues, Times::each(|i| models[i].region_ns))
 }
 
-/// Closed form of Slats: it computes the summary of an experiment, and two estimates, without simulation.
+/// Closed form of Slats. Its functions compute the summary of an experiment, and two estimates, without simulation.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 
@@ -160,8 +160,8 @@ fn fields_needed(experiment: &Experiment) -> Option<u64> {
 
 /// Returns the model of an experiment and the times of a field in the steady state.
 ///
-/// If all clumps of a GP are equal, the field's times follow exactly from their mean. Otherwise each clump is computed
-/// for the first view.
+/// If all clumps (groups of primitives) of a graphics processor are equal, the times of the field follow exactly from
+/// the mean clump. Otherwise each clump is computed for the first view.
 fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), ExperimentError> {
     let pipeline: Slats = pipeline_of(experiment)?;
     let scene = experiment.scene();

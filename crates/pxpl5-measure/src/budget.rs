@@ -9,13 +9,15 @@ use std::collections::BTreeMap;
 /// The stages add up to the total. All means are NaN (null in JSON) if no picture was measured.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Budget {
-    /// Time from the measurement of the pose until its report reaches the host: tracker, cable and kernel of the host.
+    /// Time from the measurement of the pose until its report reaches the host: tracker, cable and operating system of
+    /// the host.
     #[serde(deserialize_with = "number_or_nan")]
     pub tracking_ms: f64,
     /// Time from the arrival of the tracker's report until the pipeline uses the report.
     #[serde(deserialize_with = "number_or_nan")]
     pub waiting_ms: f64,
-    /// Time from the use of the report to the start of TRANSFORM: link of the host, EDIT, and the wait for TRANSFORM.
+    /// Time from the use of the report to the start of TRANSFORM: transfer from the host, EDIT, and the wait for
+    /// TRANSFORM.
     #[serde(deserialize_with = "number_or_nan")]
     pub sending_ms: f64,
     /// Time from the start of TRANSFORM until the frame buffer holds the picture: TRANSFORM, RENDER and COPY.
@@ -79,8 +81,8 @@ pub fn tracking_and_rendering_ms(outcome: &Outcome) -> Option<f64> {
     Some(tracking_ms + rendering_ms).filter(|sum| sum.is_finite())
 }
 
-/// Sums of the time of each latency stage, in milliseconds. The sums cover the complete pictures in the result window
-/// that have a measured pose.
+/// Sums of the time of each latency stage, in milliseconds. The sums cover the pictures in the result window that are
+/// complete and have a measured pose.
 #[derive(Debug, Default)]
 pub(crate) struct BudgetSum {
     /// First period of the result window. `None` while the window is unknown.
@@ -93,8 +95,8 @@ pub(crate) struct BudgetSum {
     poses: Poses,
 }
 
-/// Number of poses that are kept from before the newest picture. They are needed because a slow display memory shows
-/// older views than a fast display memory.
+/// Number of poses that are kept in addition to the pose of the newest picture. These older poses are needed because a
+/// slow display memory shows older views than a fast display memory.
 const OLDER_POSES: usize = 64;
 
 /// Poses of the head that a pipeline requested, by the numbers of their views.

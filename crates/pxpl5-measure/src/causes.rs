@@ -13,7 +13,7 @@ use serde::Serialize;
 /// A contribution can be negative. For example, a filter lags even without the noise that it should smooth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ErrorCauses {
-    /// Mean error over the grid and all evaluated fields, in pixels.
+    /// Mean error over the grid of evaluated pixels and over all evaluated fields, in pixels.
     pub whole_px: f64,
     /// Contribution of each cause in pixels, in the order of [`Cause::ALL`].
     pub parts_px: Vec<ErrorPart>,

@@ -22,7 +22,7 @@ impl Content {
 
 /// The primitives that rays can hit: all structures of the scene in the world's frame.
 ///
-/// Structures fixed to the head are left out, because they are always displayed at the right position.
+/// Structures fixed to the head are left out, because such structures are always displayed at the right position.
 #[derive(Debug, Default)]
 pub(crate) struct Contents {
     bodies: Vec<Body>,
@@ -70,8 +70,8 @@ impl Contents {
         self.nearest(origin, direction, objects_at, |_| true).map(|(_, content)| content)
     }
 
-    /// Returns the nearest hit, and its depth, among the structures whose flag in `structures` is true (same index as
-    /// in the scene).
+    /// Returns the nearest hit, and its depth, among some structures of the scene. A structure takes part if its entry
+    /// in `structures` is true.
     pub(crate) fn hit_among(
         &self,
         origin: DVec3,

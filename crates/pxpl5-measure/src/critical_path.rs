@@ -40,7 +40,7 @@ pub struct CriticalPath {
     pub parts: Vec<PathPart>,
     /// The wait with the largest share, as a sentence.
     pub limited_by: String,
-    /// The waits of the last picture as text, from the screen backwards.
+    /// Waits of the last followed picture as text. The first wait ends at the screen, and each other wait is earlier.
     pub chain: Vec<String>,
 }
 
@@ -119,8 +119,8 @@ fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPar
     })
 }
 
-/// Least share of the wait for a resource at which the text names the board that causes the wait. The value affects
-/// only the printed text.
+/// If one board causes at least this share of the wait for a resource, the text names the board. The value affects only
+/// the printed text.
 const NAMED_ALONE: f64 = 0.75;
 
 impl fmt::Display for PathPart {

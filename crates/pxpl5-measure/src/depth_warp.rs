@@ -1,4 +1,5 @@
-//! Moves a picture with depth to another pose. The picture's pixels are a mesh, whose cells are drawn from the new pose.
+//! Moves a picture with depth to another pose. The picture's pixels form a mesh in space. The cells of this mesh are
+//! drawn as seen from the new pose.
 //!
 //! No crate for warping images is used. `imageproc` maps pictures by one homography, and supports neither depth nor the
 //! rows of a field.
@@ -40,9 +41,10 @@ impl DepthPicture {
     }
 }
 
-/// Largest ratio of the depths of two neighbours that belong to one surface. Between other neighbours, the surface has
-/// an edge, and the nearer surface hides content of the farther surface. Assumed, 1.02 to 1.2: the depth of a floor
-/// that is seen at a grazing angle of 5 degrees changes by a factor of 1.03 from row to row.
+/// Largest ratio of the depths of two neighbouring pixels that belong to the same surface of an object. At a larger
+/// ratio, a near surface ends between the two pixels and hides content of a far surface. The ratio is assumed, with a
+/// range of 1.02 to 1.2. For comparison, the depth of a floor that is seen at an angle of 5 degrees changes by a factor
+/// of 1.03 from row to row.
 const SAME_SURFACE: f32 = 1.1;
 
 /// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that vector
@@ -71,8 +73,8 @@ impl SeenRow {
     }
 }
 
-/// Ranges of depths, columns and rows between two neighbouring rows of pixels. Each list has one number for each pixel
-/// of a row.
+/// Depths and new positions of all pairs of pixels in two neighbouring rows of the picture. A pair is a pixel and the
+/// pixel directly below. For each pair, the lists have the smaller and the larger depth, column and row.
 #[derive(Debug, Default)]
 struct Pairs {
     near: Vec<f32>,
@@ -82,8 +84,7 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Computes these ranges for each pair of pixels, one above the other: the smaller and the larger of their two
-    /// numbers.
+    /// Computes the lists for the pairs of pixels in the rows `above` and `below`.
     fn join(&mut self, above: &SeenRow, below: &SeenRow) {
         smaller(&mut self.near, &above.old_depth, &below.old_depth);
         larger(&mut self.far, &above.old_depth, &below.old_depth);
@@ -146,7 +147,7 @@ impl Drawing<'_> {
         &self.depths.depths[begin..begin + self.picture.width() as usize]
     }
 
-    /// Computes where the pixels of a row of the field lie, seen from the new pose.
+    /// Computes the positions at which the pixels of a row of the field are seen from the new pose `now`.
     fn see_row(&self, now: &Pose, row: u32, target: &Target, out: &mut SeenRow) {
         let to_new = now.orientation.conjugate();
         let turn = to_new * self.drawn_for.orientation;
@@ -238,7 +239,7 @@ impl Target {
         Self { width, rows, depths: vec![f32::INFINITY; size], sources: vec![NOTHING; size] }
     }
 
-    /// Draws the cells of the mesh between the row `upper_row` of the picture and the next lower row.
+    /// Draws the cells of the mesh between the row `upper_row` of the picture and the row below `upper_row`.
     fn draw_cells(&mut self, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
         let count = pairs.near.len();
         let first = upper_row * self.width;
@@ -294,7 +295,8 @@ impl Target {
         }
     }
 
-    /// Draws the pixel that is nearest to the new position of a pixel of the picture.
+    /// Draws a pixel of the picture, in column `x` and row `row`, at its new position on the screen. The position is
+    /// rounded to the nearest pixel of the screen.
     fn draw_pixel(&mut self, seen: &SeenRow, row: u32, x: usize) {
         if seen.old_depth[x] == f32::INFINITY {
             return;
@@ -340,8 +342,8 @@ impl Target {
     }
 }
 
-/// Returns the first whole number at or after a position, clamped to the range from `least` to `greatest`. Neither
-/// limit is negative.
+/// Returns the smallest whole number that is at least `position`, clamped to the range from `least` to `greatest`.
+/// Neither limit is negative.
 ///
 /// The function `ceil` of the standard library is not used, because `ceil` is a function call on processors without SSE
 /// 4.1.
@@ -353,7 +355,8 @@ fn next(position: f32, least: f32, greatest: f32) -> i32 {
     before + i32::from((before as f32) < inside)
 }
 
-/// Moves a whole picture from the pose for which it was drawn to another pose, by the depths of its pixels.
+/// Moves a whole picture from the pose for which the picture was drawn to another pose, by the depths of the picture's
+/// pixels.
 ///
 /// Each pixel of the result shows the nearest content that falls on this pixel. A pixel is black if its content lies
 /// beyond the edge of the picture, or was hidden by nearer objects. Returns the result and the number of black pixels,

@@ -4,16 +4,16 @@ use crate::percentiles::Percentiles;
 use pxpl5_run::Samples;
 use std::collections::BTreeMap;
 
-/// Number of fraction bits of a value that select the bin of the value. The width of a bin is at most 1/1024 of the
-/// values in it.
+/// Number of leading fraction bits of a number that select the bin in which the number is counted. A bin is an interval
+/// of numbers. The width of a bin is at most 1/1024 of the numbers in the bin.
 const FRACTION_BITS: u32 = 10;
 const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 
 /// A distribution of non-negative numbers that computes percentiles in limited memory.
 ///
-/// Up to `limit` numbers are kept, and percentiles are exact. Beyond `limit` the numbers are counted in bins. A
-/// percentile is then the middle of a bin, with a relative error of at most 1/2048. Count, mean and maximum are always
-/// exact.
+/// Up to `limit` numbers are kept, and percentiles are exact. Beyond `limit` the numbers are counted in bins, which are
+/// intervals of numbers. A percentile is then the middle of a bin, with a relative error of at most 1/2048. Count, mean
+/// and maximum are always exact.
 #[derive(Clone, Debug)]
 pub(crate) struct Distribution {
     samples: Samples,
@@ -60,7 +60,7 @@ impl Distribution {
         }
     }
 
-    /// Returns the middle of the bin that holds the number with the given rank. The smallest number has rank 1.
+    /// Returns the middle of the bin that holds the number with the rank `rank`. The smallest number has rank 1.
     fn ranked(&self, rank: u64) -> f64 {
         let mut counted = 0;
         let is_it = |(_, n): &(&u64, &u64)| {

@@ -16,7 +16,7 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    /// Returns true if views drawn for two moments are the same picture.
+    /// Returns true if two views, drawn for the moments `self` and `other`, give the same picture.
     pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
         self.pose == other.pose && self.objects_at == other.objects_at
     }
@@ -32,7 +32,7 @@ pub(crate) enum Drawn {
         part: f64,
         on_screen: bool,
     },
-    /// A picture that the display shifts while scanning it out (raster offset).
+    /// A picture that the display shifts during scan-out (raster offset).
     ShiftedRaster(Moment, DVec2),
     /// Faces of a cube around the eye, read in the latched (sampled and held) direction of the head. The nearest scene
     /// point in all display memories is visible.

@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use tracking::view::{Misregistration, RasterOffset};
 
-/// Sums of the pixel errors of a run's pictures in the way in which the display shows the pictures.
+/// Sums of the pixel errors of a run's pictures, for one display mode (the way in which a display shows pictures).
 #[derive(Debug, Default)]
 pub(crate) struct ErrorSum {
     /// Display mode of the pictures. `None` uses the mode of the head's display.
@@ -31,7 +31,8 @@ pub(crate) struct ErrorSum {
 }
 
 impl ErrorSum {
-    /// Creates a sum for a given display mode. If `without` is set, this cause of error is turned off.
+    /// Creates an empty sum for the display mode `showing`. If `without` is set, the cause of error `without` is turned
+    /// off.
     pub(crate) fn of(showing: Showing, without: Option<Cause>) -> Self {
         Self { showing: Some(showing), without, ..Self::default() }
     }
@@ -76,8 +77,8 @@ struct Evaluation {
     shown: Shown,
     content: Content,
     head: Arc<HeadViews>,
-    /// True if the error is evaluated at the instant for which the pixel was drawn, instead of the instant when it is
-    /// lit.
+    /// True if the error is evaluated at the instant for which the pixel was drawn, instead of the instant at which the
+    /// pixel is lit.
     at_one_instant: bool,
     /// First display period whose pixels are not evaluated yet.
     next: PeriodNumber,
@@ -87,8 +88,8 @@ struct Evaluation {
 #[derive(Debug)]
 enum Content {
     Plain,
-    /// The display shifts the raster. The second value is the raster offset of the current field, if the field has an
-    /// offset.
+    /// The display shifts the raster. The first value estimates poses. The second value is the raster offset of the
+    /// current field, if the field has an offset.
     ShiftedRaster(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
     /// A device moves pictures to the newest pose of the head.
@@ -158,8 +159,8 @@ impl Evaluation {
         fields
     }
 
-    /// Replaces the poses of all visible views. The new poses are those that the run would have had without one cause
-    /// of error.
+    /// Replaces the poses of all visible views. The new poses are the poses that the run would have had without one
+    /// cause of error.
     fn replace_poses(
         &mut self,
         run: &FinalResults<'_>,
@@ -238,7 +239,8 @@ impl Evaluation {
         }
     }
 
-    /// Returns the error of a pixel. For a pixel without an error, increments the counter that states the reason.
+    /// Returns the error of a pixel. If the pixel cannot be evaluated, returns `None` and increments the counter for
+    /// the reason.
     fn error(&self, pixel: Pixel, seen: Seen, collected: &mut Collected) -> Option<Misregistration> {
         let errors = &mut collected.errors;
         // Each reason has its own counter.
@@ -265,8 +267,8 @@ impl Evaluation {
         self.evaluator.error(place, drawn, evaluated_at)
     }
 
-    /// Returns the error of a pixel that a device moves to the newest pose. For a pixel without an error, increments a
-    /// counter that states the reason.
+    /// Returns the error of a pixel that a device moves to the newest pose. If the pixel cannot be evaluated, returns
+    /// `None` and increments the counter for the reason.
     fn moved_error(
         &self,
         run: &FinalResults<'_>,
@@ -355,7 +357,8 @@ impl Evaluation {
     }
 }
 
-/// A pixel of a field: its position, the time when it begins to shine, and the middle of the time for which it shines.
+/// A pixel of a field: the position of the pixel, the start of the time for which the pixel is lit, and the middle of
+/// this time.
 #[derive(Clone, Copy, Debug)]
 struct Pixel {
     place: [u32; 2],
@@ -374,8 +377,8 @@ struct Collected {
     eye: EyeSum,
 }
 
-/// Number of pixel errors that are kept for each kept field. The limit corresponds to 4 MiB for pixels and 4 MiB for
-/// degrees.
+/// Number of pixel errors that are kept, divided by the number of fields that are kept. For
+/// [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields, the kept errors take 4 MiB in pixels and 4 MiB in degrees.
 const KEPT_OF_GRID: usize = 8;
 
 impl Collected {

@@ -80,7 +80,8 @@ const GRID: u32 = 5;
 /// Index of the middle pixel in the grid of evaluated pixels.
 pub(crate) const CENTRE: usize = (GRID * GRID / 2) as usize;
 
-/// Returns the evaluated pixels of a display period in scan order, each with the time at which it is lit.
+/// Returns the evaluated pixels of a display period in the order of the scan, with the times at which the pixels are
+/// lit.
 pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
     let mut pixels = spread(display, period, (GRID, GRID));
     // Some scans do not begin at the top. The middle pixel stays in the middle of the list.
@@ -91,12 +92,13 @@ pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32
 /// Numbers of columns and rows of the positions that are checked against the edge of the picture.
 const LATTICE: (u32, u32) = (16, 12);
 
-/// Returns the pixels of [`LATTICE`] in a display period, each with the time at which it is lit.
+/// Returns the pixels of [`LATTICE`] in a display period, with the times at which the pixels are lit.
 pub(crate) fn lattice(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
     spread(display, period, LATTICE)
 }
 
-/// Returns pixels that are spread evenly over columns and rows of a picture, each with the time at which it is lit.
+/// Returns pixels that are spread evenly over columns and rows of a picture, with the times at which the pixels are
+/// lit.
 fn spread(display: &dyn Display, period: PeriodNumber, (columns, rows): (u32, u32)) -> Vec<(u32, u32, Time)> {
     let Some(surface) = display.surfaces().first() else { return Vec::new() };
     let lit = Rows::lit(display, period);
@@ -110,9 +112,9 @@ fn spread(display: &dyn Display, period: PeriodNumber, (columns, rows): (u32, u3
 /// The way in which a display shows the pictures of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Showing {
-    /// Each picture is shown as it was drawn.
+    /// Each picture is shown as drawn, without any correction.
     Plain,
-    /// The raster is shifted while it is scanned out (VDRT).
+    /// The raster is shifted during scan-out (VDRT).
     RasterOffset,
     /// An ideal reference that uses no picture: each pixel shows the view predicted for the time at which it is lit.
     ///

@@ -6,8 +6,8 @@ use pxpl5_run::{KEPT_SAMPLES, Reprojection};
 use pxpl5_sim::Time;
 use serde::Serialize;
 
-/// Results in addition to the pixel errors. These results exist if pixels shine for some time, or if a device moves
-/// pictures.
+/// Results in addition to the pixel errors. These results exist if pixels are lit for more than an instant, or if a
+/// device moves pictures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EyeReport {
     /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels
@@ -37,7 +37,8 @@ pub struct ReprojectionReport {
     pub disoccluded_share: Option<f64>,
 }
 
-/// A device that moves pictures: its setting, and the pixels and poses per second that it needs on the display.
+/// A device that moves pictures: the setting of the device, and the numbers of pixels and poses per second that the
+/// device needs on the display.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Device {
     pub(crate) setting: Reprojection,

@@ -15,7 +15,8 @@ pub struct FacesReport {
     pub face_texels: u64,
     /// The moment at which the display latches (samples and holds) the orientation of the head.
     pub latch: Latch,
-    /// Time from the latching of an orientation until the first pixel that uses it is lit, in nanoseconds.
+    /// Time from the latching of an orientation until the first pixel that uses this orientation is lit, in
+    /// nanoseconds.
     pub pipeline_ns: f64,
     /// Number of head orientations that the display accepted.
     pub matrix_loads: u64,
@@ -53,8 +54,8 @@ pub struct MemoryReport {
     pub translation_latency_ms: Option<Statistics>,
     /// Means of the parts of the translation latency, in milliseconds. The parts add up to the mean of the latency.
     ///
-    /// The parts are: measurement until the display memory became due, due until shown, age of the shown update, and
-    /// scan-out.
+    /// The parts are the time from the measurement until the display memory became due, the time until the update was
+    /// shown, the age of the shown update, and the scan-out.
     pub translation_latency_parts_ms: Vec<(&'static str, f64)>,
     /// Total delay of late updates in milliseconds. The delay of an update lasts from the first missed retrace to the
     /// retrace that showed the update.
@@ -67,7 +68,7 @@ impl FacesReport {
     /// Name and version of the layout of this report.
     pub const SCHEMA: &'static str = "pxpl5-arp/1";
 
-    /// Returns the report of a run, or `None` if its display is not an address recalculation pipeline.
+    /// Returns the report of a run, or `None` if the run's display is not an address recalculation display.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
         let display: &AddressRecalculationPipeline = outcome.record().display_of_kind()?;

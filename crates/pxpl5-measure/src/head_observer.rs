@@ -12,7 +12,7 @@ use std::any::Any;
 /// A streaming observer for runs that keep only statistics.
 ///
 /// The observer collects the latency from the head's pose until pixels are lit, rotation latencies of address
-/// recalculation displays, and errors in pixels. Enable it with
+/// recalculation displays, and errors in pixels. A run uses the observer after
 /// `experiment.keep(Keep::Statistics).observed_by(Some(HeadSum::begin))`.
 #[derive(Debug, Default)]
 pub struct HeadSum {

@@ -11,7 +11,7 @@ use crate::turn_observer::{RotationLatencySum, Turns};
 use pxpl5_run::{Cause, Outcome};
 
 impl HeadResults {
-    /// Returns the results of the streaming observer, if the run had one.
+    /// Returns the results of the run's [`HeadSum`](crate::HeadSum), or `None` if no such observer observed the run.
     fn from_observer(outcome: &Outcome) -> Option<&Self> {
         outcome.observed()
     }
@@ -28,7 +28,8 @@ const MISSING_RESULTS: &str = "latencies from the head to light and errors in pi
     streaming observer (Experiment::observed_by; or keep all records with Keep::Everything)";
 
 impl PixelErrors {
-    /// Returns the errors of a run whose pictures are shown as drawn. The result is empty for a run without a head.
+    /// Returns the errors that the pictures of a run have if a display shows the pictures as drawn, without any
+    /// correction. The result is empty for a run without a head.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         Self::shown(outcome, Showing::Plain)
@@ -71,8 +72,8 @@ impl EyeReport {
     }
 }
 
-/// Returns the pixel errors in the display mode of the head's display, and the [`EyeReport`] if there is one. Returns
-/// `None` for a run without a head.
+/// Returns the pixel errors in the display mode of the head's display, and the [`EyeReport`] if pixels are lit for more
+/// than an instant or a device moves pictures. Returns `None` for a run without a head.
 pub(crate) fn errors_and_eye(outcome: &Outcome) -> Option<(PixelErrors, Option<EyeReport>)> {
     let showing = outcome.head()?.head().raster().into();
     let said = HeadResults::from_observer(outcome).map(|said| (said.error.clone(), said.eye.clone()));
@@ -86,8 +87,8 @@ pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
 }
 
 impl Budget {
-    /// Returns the mean time of each stage of the latency, over the complete pictures in the result window whose pose
-    /// was measured.
+    /// Returns the mean time of each stage of the latency. The mean covers the pictures in the result window that are
+    /// complete and have a measured pose.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         if let Some(said) = HeadResults::from_observer(outcome) {

@@ -3,8 +3,8 @@
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
 use std::fmt;
 
-/// Returns the latency parts of each complete picture in the result window whose records are in memory
-/// ([`pxpl5_run::Keep`]).
+/// Returns the latency parts of the complete pictures in the result window. Pictures without records in memory
+/// ([`pxpl5_run::Keep`]) are left out.
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     outcome.latency_parts()

@@ -6,7 +6,7 @@
 //! | How many pixels is the content displaced, and why? | [`PixelErrors`], [`Registration`], [`ErrorCauses`] |
 //! | How large is the error that a latency alone causes? | [`LatencyCurve`] |
 //! | What does the viewer see? | [`picture`], [`side_by_side`], [`RasterOffsets`] |
-//! | What does a device do that moves pictures to the newest pose? | [`EyeReport`], [`reproject`], [`reproject_with_depth`] |
+//! | What pictures result from a device that moves pictures to the newest pose? | [`EyeReport`], [`reproject`], [`reproject_with_depth`] |
 //! | How busy was each board, and what does the latency wait for? | [`Utilisation`], [`CriticalPath`] |
 //! | All results as numbers with units | [`Report`], [`Measure`] |
 //!

@@ -18,7 +18,7 @@ use tracking::view::HmdView;
 pub(crate) enum Moved {
     /// The pixel shows content of a picture, with the pose for which the picture was drawn.
     Shows(Content, Drawn),
-    /// No content, because this position of the picture shows nothing or no complete picture.
+    /// No content, because the screen shows no picture there that can be evaluated, for example an incomplete picture.
     NotComplete(Seen),
     /// No content, because the position lies beyond the edge of the picture.
     Beyond,
@@ -91,7 +91,7 @@ fn source(
     Some((evaluator.content(drawn, source), source))
 }
 
-/// Returns the pixel at a position, in the nearest row that its field lights.
+/// Returns the pixel at the position `place`, in the nearest row that the field lights.
 fn pixel_at(view: &HmdView, place: DVec2, rows: Rows) -> [u32; 2] {
     let last = view.centre_px() * 2.0 - DVec2::ONE;
     let inside = place.floor().clamp(DVec2::ZERO, last);

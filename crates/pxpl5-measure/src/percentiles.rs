@@ -3,7 +3,8 @@
 use pxpl5_run::number_or_nan;
 use serde::{Deserialize, Serialize};
 
-/// Count, mean, percentiles and maximum of a set of numbers. All but the count are NaN (null in JSON) for an empty set.
+/// Count, mean, percentiles and maximum of a set of numbers. For an empty set, all numbers except the count are NaN
+/// (null in JSON).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Percentiles {
     /// Number of values.

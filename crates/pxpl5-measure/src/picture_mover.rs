@@ -1,4 +1,4 @@
-//! Pictures after a device has moved them to the newest pose.
+//! Pictures after a device has moved the pictures to the newest pose.
 
 use crate::depth_warp::{DepthPicture, Drawing};
 use crate::registration::{Evaluator, Warped, middle};
@@ -47,7 +47,7 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns the newest poses of the head for all parts of a field that one pose can move.
+    /// Returns the newest pose of the head for each part of a field. All pixels of a part are moved to the same pose.
     fn reprojector(&self, screen: &RgbImage, field: PeriodNumber) -> Reprojector {
         let display = self.run.record.display();
         let mut reprojector = Reprojector::new(&self.head, self.setting, None);

@@ -2,8 +2,8 @@
 //!
 //! | picture | size (NTSC) |
 //! |---|---|
-//! | [`Display::seen`] | 640 x 480, a field and the one before it |
-//! | [`Display::seen_at`] | 640 x 480, with the beam at a given instant |
+//! | [`Display::seen`] | 640 x 480, a field and the preceding field |
+//! | [`Display::seen_at`] | 640 x 480, as seen at an instant during the scan of a field |
 //! | [`Display::shown`] | 640 x 480, the buffer that is shown |
 //! | [`side_by_side`] | twice as wide, left eye on the left |
 
@@ -43,7 +43,8 @@ pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbIm
     }
 }
 
-/// Returns the picture that a viewer sees at the end of a display period, with the rows shifted by `offsets` if given.
+/// Returns the picture that a viewer sees at the end of a display period. If `offsets` is set, the rows are shifted by
+/// these offsets.
 ///
 /// Returns a black picture for a surface that does not exist.
 #[must_use]

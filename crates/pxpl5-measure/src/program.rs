@@ -1,4 +1,4 @@
-//! Identity of the running program, for the origin of its outputs.
+//! Version and commit of the running program, which each output of the program states as its origin.
 //!
 //! A library has no access to the commit from which it was built. Instead, a program states its own commit once, before
 //! the first report. All outputs of the process then contain this commit.

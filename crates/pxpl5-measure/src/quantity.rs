@@ -240,8 +240,7 @@ impl Measure {
         self.0.definition
     }
 
-    /// Returns the value of this quantity in the given results, or `None` if they have no finite value for this
-    /// quantity.
+    /// Returns the value of this quantity in `results`, or `None` if `results` has no finite value for this quantity.
     #[must_use]
     pub fn of(&self, results: &Results) -> Option<f64> {
         let value = match self.0.value {

@@ -1,4 +1,5 @@
-//! Raster offset of VDRT: the display shifts the picture during scan-out to correct the drawn head pose.
+//! Raster offset of VDRT: the display shifts the picture during scan-out. The shift corrects the error of the head pose
+//! for which the picture was drawn.
 
 use crate::picture_mover::PictureMover;
 use crate::rows::Rows;
@@ -13,7 +14,7 @@ use std::rc::Rc;
 use tracking::view::{HmdView, RasterOffset};
 use tracking::{Pose, rotation};
 
-/// A raster that is shifted while it is scanned out (Breglia 1981).
+/// A raster that the display shifts during scan-out (Breglia 1981).
 ///
 /// At the retrace, the newest tracker data predict the head's pose for the first line of the field. The picture is
 /// shifted by the difference in yaw and pitch between the drawn pose and this prediction. During the field, the shift
@@ -84,7 +85,8 @@ enum MovedBy<'a> {
 impl<'a> RasterOffsets<'a> {
     /// Returns the corrections for a run's pictures, or `None` if the head's display shows pictures as drawn.
     ///
-    /// Under VDRT a field has no offset if it shows nothing, or if its picture was not drawn for a single pose.
+    /// Under VDRT a field has no offset if the field shows no picture, or if the picture was not drawn for a single
+    /// pose.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let head = outcome.head()?;
@@ -139,7 +141,8 @@ impl<'a> RasterOffsets<'a> {
         }
     }
 
-    /// Returns the source pixel that the shift moves to a given position. The pixel comes from a row of the same field.
+    /// Returns the pixel of the drawn picture that the shift moves to the position (`x`, `y`). The pixel comes from a
+    /// row of the same field.
     fn shifted_pixel(
         &self,
         screen: &RgbImage,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use tracking::Pose;
 use tracking::view::{HmdView, Misregistration, dual_list};
 
-/// Computes pixel errors by casting rays and projecting the hit points.
+/// An evaluator of pixel errors, which casts rays into the scene and projects the hit points onto the screen.
 #[derive(Debug)]
 pub(crate) struct Evaluator {
     pub(crate) view: HmdView,
@@ -45,9 +45,9 @@ impl Evaluator {
     }
 
     /// Returns the nearest scene point at a picture position over several display memories. If two memories have
-    /// content at the same distance, the lower memory is used.
+    /// content at the same distance, the memory with the lower index is used.
     ///
-    /// If no memory has content there, the result is a point at `distance_m`.
+    /// If no memory has content at `place`, the result is a point at the distance `distance_m`.
     fn nearest(&self, faces: &FacesSeen, place: DVec2) -> Content {
         let direction = self.direction(place);
         let met = faces.memories.iter().filter_map(|(moment, structures)| {
@@ -91,7 +91,8 @@ impl Evaluator {
         self.error_of(place, &self.content(drawn, place), at)
     }
 
-    /// Returns the error of content displayed at a screen position. `None` if the correct position is behind the eye.
+    /// Returns the error of the content `content`, which is displayed at the screen position `place`. Returns `None` if
+    /// the content is behind the eye.
     pub(crate) fn error_of(&self, place: DVec2, content: &Content, at: Time) -> Option<Misregistration> {
         self.error_between(place, content, at, at)
     }
@@ -124,7 +125,7 @@ pub(crate) enum Warped {
     Hidden,
 }
 
-/// Smallest relative difference in depth at which one content hides another.
+/// Smallest relative difference in depth at which near content hides far content.
 const NEARER: f64 = 1e-4;
 
 impl Evaluator {
@@ -197,7 +198,7 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// Computes the pixel error of single pixels of a run.
+/// An evaluator that computes the pixel error of any single pixel of a run.
 #[derive(Debug)]
 pub struct Registration<'a> {
     run: FinalResults<'a>,

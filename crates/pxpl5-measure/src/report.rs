@@ -89,8 +89,8 @@ pub struct Report {
     /// Number of pictures that were due in the result window, counted by result (shown, late, incomplete or missed).
     /// `None` if no picture was due.
     pub due: Option<DuePictures>,
-    /// Definition of a picture due: the time when it is due, the time by which it must be shown, and the pictures that
-    /// count.
+    /// Definition of the pictures due: the time at which a picture is due, the time by which the picture must be shown,
+    /// and the pictures that count.
     pub due_definition: String,
     /// Number of pictures due that were not shown: late, incomplete or missed.
     pub missed_retraces: Option<u64>,
@@ -152,7 +152,8 @@ pub struct HeadReport {
     pub fingerprint: String,
     /// Fixed distance at which errors are evaluated, in metres. `None` if errors are evaluated at the scene's content.
     pub evaluated_at_m: Option<f64>,
-    /// Raster of the head-mounted display: plain or shifted.
+    /// Correction that the head-mounted display applies to pictures: none, the raster offset of VDRT, or a device that
+    /// moves pictures.
     pub display: Raster,
     /// Latency from the measurement of the head's pose until the picture is lit, by stage, in milliseconds.
     pub end_to_end: Budget,
@@ -188,7 +189,7 @@ fn hmd_of(outcome: &Outcome) -> HmdConfig {
 
 impl Report {
     /// Returns the number of region lines that were overwritten before the display showed them. `None` if the display
-    /// does not count them.
+    /// does not count such lines.
     #[must_use]
     pub fn lines_never_shown(&self) -> Option<u64> {
         let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);
@@ -302,8 +303,8 @@ impl Report {
     }
 }
 
-/// Computes the hash of a text, as the trace hash of one record at time zero with the fact number 9 and the text's
-/// bytes.
+/// Computes the hash of a text in the same way as the trace hash of one event. The event has the time zero, the number
+/// 9 as its kind, and the bytes of the text.
 ///
 /// The text is not stored, because the text of a long run would be large.
 struct HashedText(u64);

@@ -17,7 +17,7 @@ pub(crate) fn direction(view: &HmdView, place: DVec2) -> DVec3 {
 /// The mapping from screen positions to positions in a picture that was drawn for another pose. Depth is ignored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Move {
-    /// The whole picture is shifted by this offset, in pixels.
+    /// The whole picture is shifted by the offset, in pixels.
     Shift(DVec2),
     /// The view is rotated. The rotation converts directions from the head's newest axes to the head's axes for which
     /// the picture was drawn.
@@ -36,8 +36,8 @@ impl Move {
         }
     }
 
-    /// Returns the picture position that is seen at a screen position. `None` if this position lies behind the eye for
-    /// which the picture was drawn.
+    /// Returns the position in the drawn picture that is seen at the screen position `place`. Returns `None` if the
+    /// position lies behind the eye for which the picture was drawn.
     pub(crate) fn source(&self, view: &HmdView, place: DVec2) -> Option<DVec2> {
         match self {
             Self::Shift(shift) => Some(place - *shift),
@@ -46,7 +46,7 @@ impl Move {
     }
 }
 
-/// Writes some pixels of a row. Each pixel is copied from a position of the source picture.
+/// Writes some pixels of a row. Each pixel is copied from the position in the source picture that `place` returns.
 ///
 /// Pixels without a source become black. Returns the number of these pixels.
 pub(crate) fn fill_row(

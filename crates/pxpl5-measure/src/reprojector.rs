@@ -61,8 +61,8 @@ impl Reprojector {
         }
     }
 
-    /// Returns the newest pose of the part that contains a pixel. `None` unless `begin` was given a pixel of the same
-    /// part.
+    /// Returns the newest pose of the part that contains a pixel. Returns `None` if no pixel of this part was among the
+    /// pixels of the last call of `begin`.
     pub(crate) fn newest(&self, display: &dyn Display, place: [u32; 2]) -> Option<&NewestPose> {
         self.poses.get(&part(display, self.setting.every, place))
     }

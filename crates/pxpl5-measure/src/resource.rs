@@ -14,7 +14,7 @@ pub enum Resource {
     Ring,
     /// Renderers execute commands.
     Renderers,
-    /// Renderers move a region to their backing store, or wait for room there.
+    /// Renderers move a region to their backing store, or wait for room in the backing store.
     BackingStore,
     /// EDIT and TRANSFORM on the graphics processors.
     Transform,

@@ -30,18 +30,19 @@ impl Rows {
         height.saturating_sub(self.first).div_ceil(self.distance)
     }
 
-    /// Returns the row of the picture that has the given number among the lit rows.
+    /// Returns the row of the picture that is lit row number `number`, counted from 0.
     pub(crate) const fn row(self, number: u32) -> u32 {
         self.first + number * self.distance
     }
 
-    /// Returns the lit row that belongs to the same pair or group of rows as the given row.
+    /// Returns the lit row of the group of rows that contains `row`. In an interlaced picture, a group is an even row
+    /// and the odd row below it.
     pub(crate) const fn beside(self, row: u32) -> u32 {
         row / self.distance * self.distance + self.first
     }
 
-    /// Returns the number, among the lit rows, of a vertical position in pixels. The middle of a lit row gives a whole
-    /// number.
+    /// Converts the vertical position `y` in pixels to a position among the lit rows, counted from 0. The middle of a
+    /// lit row gives a whole number.
     pub(crate) fn number_at(self, y: f64) -> f64 {
         (y - 0.5 - f64::from(self.first)) / f64::from(self.distance)
     }

@@ -9,7 +9,8 @@ use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, Reg
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
-    /// Each swap: the period from which the other buffer is shown, and the number of swaps before this swap.
+    /// The swaps of the two buffers. Each entry has the period from which the newly swapped buffer is shown, and the
+    /// number of earlier swaps.
     swaps: Vec<(PeriodNumber, u64)>,
 }
 

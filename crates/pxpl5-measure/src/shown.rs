@@ -30,15 +30,15 @@ pub(crate) enum Seen {
 pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    /// Pictures that were complete in time, each with the first period that showed it. `None` for pictures during the
-    /// warm-up.
+    /// Pictures that were complete in time, with the first period that showed each picture. `None` for pictures during
+    /// the warm-up.
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
     /// Number of pictures of the run that were added so far.
     pictures: usize,
     /// The result window. The pixels of pictures outside the result window are not evaluated.
     ///
-    /// `None` for pipelines without due pictures. All their pictures are evaluated, each until the next picture covers
-    /// it.
+    /// `None` for pipelines without due pictures. All pictures of such a pipeline are evaluated, until the next picture
+    /// covers them.
     window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
     /// Display memories and latched directions of an address recalculation display.
@@ -92,7 +92,7 @@ impl Shown {
         self.faces.iter_mut().for_each(|faces| faces.take(run));
     }
 
-    /// Discards all data that later periods cannot show.
+    /// Discards the data of pictures that no later period can show.
     ///
     /// Views that use later reports are kept, because their pictures may still arrive.
     pub(crate) fn forget(&mut self, run: &FinalResults<'_>) {
@@ -115,7 +115,7 @@ impl Shown {
 
     /// Returns the views before the newest view that are visible at `instant` or may become visible later.
     ///
-    /// For display memories, these views are all views that no later view covers.
+    /// For an address recalculation display, the result has the views of all updates whose records are in memory.
     fn still_seen(&self, run: &FinalResults<'_>, instant: Time) -> BTreeSet<ViewNumber> {
         if self.faces.is_some() {
             return run.notes.all().iter().map(|note| note.view).collect();
@@ -142,8 +142,8 @@ impl Shown {
         self.drawn(run, [x, y], field, at).map_or(Seen::Nothing, Seen::Complete)
     }
 
-    /// Replaces the poses of the views `of` by the poses without one cause of error. All other views show nothing
-    /// afterwards.
+    /// Replaces the poses of the views `of` by the poses that the run would have had without the cause of error
+    /// `without`. All other views show nothing afterwards.
     pub(crate) fn replace_poses(&mut self, head: &Arc<HeadViews>, of: &BTreeSet<ViewNumber>, without: Cause) {
         let mut estimator = Estimator::new(head, Some(without));
         let mut sampled: Vec<SampledPose> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
@@ -177,8 +177,8 @@ impl Shown {
         run.pipeline.source(run.record, target, &self.views, run.aim)
     }
 
-    /// Returns the view or views from which a pixel was drawn that is lit at `at`. Returns `None` before the first
-    /// region has arrived.
+    /// Returns the view or views from which the pixel (`x`, `y`) was drawn. The pixel is lit at the instant `at`.
+    /// Returns `None` before the first region has arrived.
     pub(crate) fn drawn(
         &self,
         run: &FinalResults<'_>,

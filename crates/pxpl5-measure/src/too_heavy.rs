@@ -14,8 +14,8 @@ pub struct TooHeavy {
     pub not_shown: u64,
     /// Number of triangles and spheres in the scene.
     pub triangles: u64,
-    /// Number of primitives to which the scene must be decimated so that the pipeline shows it in time. The pipeline's
-    /// closed form gives this number.
+    /// Number of primitives to which the scene must be decimated so that the pipeline shows the scene in time. The
+    /// pipeline's closed form gives this number.
     ///
     /// `None` if the pipeline has no closed form, or if the closed form predicts that the whole scene is in time.
     pub triangles_in_time: Option<u64>,

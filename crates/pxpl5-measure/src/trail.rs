@@ -1,4 +1,4 @@
-//! Follows a picture backwards in time through the work that it waited for.
+//! Follows a picture backwards in time, through the work for which the picture waited.
 
 use crate::resource::Resource;
 use pxpl5_gp::{Stage, StageEdge};
@@ -49,7 +49,8 @@ const SLACK: u64 = 4;
 /// Number of earlier arrivals among which the cause of a wait is searched: several pictures of 40 regions (assumed).
 const ARRIVALS_SEARCHED: usize = 512;
 
-/// Largest number of steps for one picture. Time beyond these steps belongs to [`Resource::Other`].
+/// Largest number of steps that are followed for one picture. The part of the latency before these steps is assigned to
+/// [`Resource::Other`].
 const MOST_STEPS: usize = 20_000;
 
 /// The work of a run, sorted by end time. The list begins with the earliest work that the followed pictures can have
@@ -79,7 +80,7 @@ enum At {
     Arrival(usize),
     /// At the end of a region's commands on a renderer.
     Drawn(usize),
-    /// At the end of a stage on a board, or within it.
+    /// At the end of a stage on a board, or within the stage.
     Stage(usize),
     /// At the start of the latency, where the path ends.
     Begin,
@@ -220,7 +221,7 @@ impl<'a> Trail<'a> {
         way.charge(Resource::Retrace, Some(Board::Display(0)), from, || "retrace".to_owned());
     }
 
-    /// Returns the number of regions that had arrived at displays by an instant.
+    /// Returns the number of regions that had arrived at displays by the instant `at`.
     fn arrivals_by(&self, at: Time) -> usize {
         self.arrivals.partition_point(|arrival| arrival.last_part_at <= at)
     }
@@ -281,7 +282,7 @@ impl<'a> Trail<'a> {
         self.to_arrival(way, arrived)
     }
 
-    /// Continues at an earlier arrival of a region. The time between the two positions is assigned to
+    /// Continues at an earlier arrival of a region. The time from this arrival to the current position is assigned to
     /// [`Resource::Messages`].
     fn to_arrival(&self, way: &mut Way, place: Option<usize>) -> At {
         let Some(place) = place else { return At::Begin };
@@ -315,8 +316,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Returns the index of the last drawn region for a target, among the regions whose copy command had started by
-    /// `by`.
+    /// Returns the index in the list `drawn` of the region that was drawn last for `target`. Only regions whose copy
+    /// command had started by the instant `by` are considered.
     fn drawn_for(&self, target: &CopyTarget, by: Time) -> Option<usize> {
         self.of_target.get(target)?.iter().copied().rfind(|place| self.drawn[*place].1.copy_at <= by)
     }
@@ -360,8 +361,8 @@ impl<'a> Trail<'a> {
         self.to_transform(way, picture, surface)
     }
 
-    /// Continues at the work that kept the renderer's controller busy before: the previous region's commands, or a copy
-    /// that waited for room.
+    /// Continues at the earlier work for which the region's commands had to wait on the renderer. This work is the
+    /// commands of the previous region, or a copy that waited for room.
     fn before_next_region(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let held = Span(way.cursor.0.saturating_sub(region.copy_at.0));

@@ -25,7 +25,7 @@ pub(crate) struct RotationLatencySum {
 }
 
 /// Rotation latencies that a [`RotationLatencySum`] has collected. Empty without a tracker, or if the display is not an
-/// address recalculation pipeline.
+/// address recalculation display.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns {
     pub(crate) latency_ms: Option<Statistics>,

@@ -35,7 +35,7 @@ impl fmt::Debug for LatchedFaces {
 }
 
 impl LatchedFaces {
-    /// Creates the state for a run, or returns `None` if the display is not an address recalculation pipeline.
+    /// Creates the state for a run, or returns `None` if the run's display is not an address recalculation display.
     pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Option<Self> {
         let history = FaceHistory::held(run.record, run.notes)?;
         let latched = OrientationTiming::of_run(run)?;

@@ -38,8 +38,8 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// Returns the shares of `time` for which boards were busy, from the busy span of each board. Returns `None`
-    /// without boards or time.
+    /// Returns the shares of `time` for which boards were busy. `spans` has the busy time of each board. Returns `None`
+    /// if there is no board or if `time` is zero.
     #[must_use]
     pub fn of(spans: impl IntoIterator<Item = Span>, time: Time) -> Option<Self> {
         let shares: Vec<f64> = spans.into_iter().map(|span| share(span, time)).collect();

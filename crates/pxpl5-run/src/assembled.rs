@@ -15,15 +15,16 @@ pub(crate) struct Assembled {
 }
 
 impl Assembled {
-    /// Returns the number of records in memory.
+    /// Returns the number of records of the run in memory: observations of the machine, recorded messages, and records
+    /// of the head.
     pub(crate) fn records(&self) -> usize {
         let observation = self.machine.record().observation();
         let traffic = observation.traffic.as_ref().map_or(0, |traffic| traffic.records());
         observation.records() + traffic + self.head.as_ref().map_or(0, |head| head.records())
     }
 
-    /// Discards observations before `instant`, and records of the head before `of_head`. The caller must ensure that no
-    /// later result needs these records.
+    /// Discards observations of the machine before the time `instant`, and records of the head before the time
+    /// `of_head`. No result that is computed later may need the discarded records.
     pub(crate) fn discard_before(&mut self, instant: Time, of_head: Time) {
         self.machine.discard_before(instant);
         self.head.iter().for_each(|head| head.discard_before(of_head));

@@ -100,8 +100,8 @@ impl Experiment {
     }
 }
 
-/// Returns the function that gives the start time of a frame. A host that is ready begins the frame after the computing
-/// time of its application.
+/// Returns the function that gives the start time of a frame. When the host is ready for a frame, its application
+/// computes for a while, and then the frame starts.
 fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
     Arc::new(move |ready| Some(ready + host.application_span(mix(seed ^ mix(ready.0)))))
 }

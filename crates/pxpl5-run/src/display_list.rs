@@ -52,7 +52,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, ExperimentError> {
     Ok(list.with_vertices_in_order())
 }
 
-/// Returns the scene's primitives as a display list for a pipeline with the given shading.
+/// Returns the scene's primitives as a display list for a pipeline that uses the method of shading `shading`.
 pub(crate) fn display_list_for(scene: &Scene, shading: Shading) -> Result<DisplayList, ExperimentError> {
     let list = display_list(scene)?;
     Ok(if shading == Shading::Precomputed { list.with_precomputed_colours() } else { list })

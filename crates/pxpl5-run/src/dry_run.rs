@@ -10,7 +10,7 @@ use pxpl5_wire::ViewNumber;
 pub struct SeenTimes {
     /// Instant for which each shown view is drawn, by view number.
     aimed_at: Instants,
-    /// Mean time from the sample of a view to the instant for which it is drawn, in picoseconds.
+    /// Mean time from the sample of a view to the instant for which the view is drawn, in picoseconds.
     mean_lead_ps: u64,
 }
 
@@ -21,15 +21,17 @@ impl SeenTimes {
         Self { aimed_at, mean_lead_ps }
     }
 
-    /// Returns the instant for which a view is drawn. For a view that the dry run did not show, the result is the
-    /// sample time plus the mean lead.
+    /// Returns the instant for which a view is drawn. For a view that the dry run did not show, the result is
+    /// estimated. The estimate is `sampled_at` plus the mean time from a view's sample to the instant for which the
+    /// view is drawn.
     pub(crate) fn aimed_at(&self, number: ViewNumber, sampled_at: Time) -> Time {
         let expected = Time(sampled_at.0 + self.mean_lead_ps);
         self.aimed_at.of(number.0).filter(|at| *at >= sampled_at).unwrap_or(expected)
     }
 }
 
-/// Results of a dry run that a predictor needs. Every predictor gets the same results.
+/// The results of a dry run (a run without prediction), which every predictor needs. All predictors use the same
+/// results.
 #[derive(Clone, Debug)]
 pub struct DryRun {
     /// Instants at which views are seen.
@@ -42,8 +44,9 @@ pub struct DryRun {
 impl DryRun {
     /// Returns the head with a tuned predictor. Returns `None` if the dry run found no prediction interval.
     ///
-    /// The parameters for positions are tuned for the interval of pictures. The parameters for orientations are tuned
-    /// for the interval of latched orientations, if the display latches orientations.
+    /// The parameters for positions are tuned for the prediction interval of pictures. If the display latches (samples
+    /// and holds) orientations, the parameters for orientations are tuned for the prediction interval of latched
+    /// orientations.
     pub(crate) fn tuned(&self, head: &Head) -> Option<Head> {
         let of_pictures = self.interval_ps.map(|interval_ps| head.tuned_for(interval_ps));
         match self.turn_interval_ps {

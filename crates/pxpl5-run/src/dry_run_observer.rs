@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 
 /// Streaming observer that collects the times at which views are shown, and the prediction intervals of views and
-/// latched orientations.
+/// latched (sampled and held) orientations.
 #[derive(Debug, Default)]
 pub(crate) struct DryRunObserver {
     pictures: usize,
@@ -137,8 +137,8 @@ impl DryRunObserver {
     }
 
     /// Adds a view that no later picture shows to the results of the dry run. The results get the instant for which the
-    /// view is drawn, and the prediction interval. Firmware that computes the display times of its views needs no such
-    /// instants. This firmware may also show views out of the order of their numbers.
+    /// view is drawn, and the prediction interval. The instant is not needed for firmware that computes the display
+    /// times of its own views. Such firmware may also show views in another order than the order of their numbers.
     fn end_view(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = results.aim.instant(&shown);

@@ -2,10 +2,10 @@
 //!
 //! | word | meaning |
 //! |---|---|
-//! | due | a period of the display in which a new picture should be seen, by the pipeline's own rate |
+//! | due | in this period of the display, a new picture should be seen at the rate of the pipeline |
 //! | shown | the picture was complete and in time |
 //! | late | the picture was complete before its period ended, but after its deadline |
-//! | incomplete | the picture was begun, and not complete when its period ended |
+//! | incomplete | the picture was begun, but not complete when its period ended |
 //! | missed | the picture was never begun, or left out |
 //!
 //! A picture is evaluated when its period ends, so a longer run does not change the result.
@@ -47,12 +47,12 @@ pub struct DuePictures {
 impl DuePictures {
     /// Counts the due pictures of a run by result. Returns `None` if no complete picture was due.
     ///
-    /// `pictures` gives each begun picture's result and the period in which it should be seen, in order of periods.
-    /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
-    /// that was not over when the run ended.
+    /// `pictures` gives the result of each picture that was begun, and the period in which the picture should be seen,
+    /// in order of periods. `periods_a_picture` is the number of periods from one due picture to the next. `reached` is
+    /// the first period that was not over when the run ended.
     ///
-    /// A picture also counts as shown if it comes before its due period, but after the due period of the preceding
-    /// picture.
+    /// A picture that is shown between the due period of the preceding picture and its own due period also counts as
+    /// shown.
     #[must_use]
     pub fn count(
         pictures: impl Iterator<Item = (PeriodNumber, PictureResult)>,
@@ -91,10 +91,10 @@ impl DuePictures {
         self.not_shown() as f64 / self.due as f64
     }
 
-    /// Returns true if the load is too heavy for the pipeline.
+    /// Returns true if the scene is too heavy for the pipeline.
     ///
-    /// In a pipeline with deadlines, some pictures were late or incomplete. In a pipeline without deadlines, fewer than
-    /// half of the due pictures were shown.
+    /// This is the case if any due picture was late or incomplete, or if fewer than half of the due pictures were
+    /// shown.
     #[must_use]
     pub const fn is_too_heavy(&self) -> bool {
         self.late + self.incomplete > 0 || 2 * self.shown < self.due

@@ -36,8 +36,8 @@ pub enum ExperimentError {
         pictures: usize,
         /// Approximate number of fields until a picture after the warm-up is shown. `None` if no picture was shown.
         ///
-        /// The number comes from the pipeline's closed form ([`crate::Experiment::with_estimates`]). Without a closed
-        /// form, the number is extrapolated from the run.
+        /// The number is computed by the pipeline's closed form ([`crate::Experiment::with_estimates`]). Without a
+        /// closed form, the number is extrapolated from the run.
         needed: Option<u64>,
         /// Outcome of the run, with all observations.
         partial: Box<Outcome>,
@@ -71,14 +71,15 @@ pub enum ExperimentError {
         /// Time at which the run ends.
         run: Time,
     },
-    /// The analytic level has no events, so no run at this level is possible.
+    /// A run at the analytic level was requested. The analytic level has no simulated events, so there is nothing to
+    /// run.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
     Level,
     /// The scene has no primitives, or too many moving structures.
     #[error("{0}")]
     Scene(String),
-    /// The function that observes the run ended it ([`crate::Experiment::run_stopping`]), or the host ended it
-    /// ([`crate::Host::is_stopped`]).
+    /// The run was ended early by the function that observes the run ([`crate::Experiment::run_stopping`]), or by the
+    /// host ([`crate::Host::is_stopped`]).
     #[error("{0}")]
     Stopped(String),
     /// The machine failed. All observations before the failure are kept.

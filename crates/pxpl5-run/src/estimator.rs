@@ -18,26 +18,27 @@ use tracking::tracker::{TrackerConfig, TrackerModel};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// Age of tracker reports when they arrive, and of pictures when they are shown. Without this cause, the host has
-    /// all measurements up to the instant for which a picture is drawn.
+    /// Age of tracker reports at their arrival, and age of pictures at the time when the pictures are shown. Without
+    /// this cause, the host has all measurements up to the instant for which a picture is drawn.
     Latency,
     /// Duration of the scan: a picture is drawn for one instant but is lit over a time span. Without this cause, the
-    /// whole picture is evaluated at the instant for which it was drawn.
+    /// whole picture is evaluated at the instant for which the picture was drawn.
     ScanOut,
     /// Noise and bias of the tracker. Without this cause, reports contain the true pose.
     Noise,
-    /// Error of the predictor. Without this cause, the newest report is extrapolated by the true motion.
+    /// Error of the predictor. Without this cause, the pose of the newest report moves along the true motion of the
+    /// head.
     Prediction,
-    /// Intervals at which the tracker measures and the host polls. Without this cause, a measurement arrives at the
-    /// exact instant at which it is needed.
+    /// Intervals at which the tracker measures and the host polls. Without this cause, each prediction uses a
+    /// measurement that arrives exactly at the instant of the prediction.
     Sampling,
 }
 
 impl Cause {
-    /// All causes, in the order of the rows in tables.
+    /// All causes of error, in the order in which tables list the causes.
     pub const ALL: [Self; 5] = [Self::Latency, Self::ScanOut, Self::Noise, Self::Prediction, Self::Sampling];
 
-    /// Returns the name of the cause in tables and files.
+    /// Returns the name of the cause of error in tables and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -56,7 +57,7 @@ pxpl5_sim::parameters::named!(Cause, "cause", Cause::ALL.map(|cause| (cause.name
 /// its own series ([`Cause::Sampling`]).
 const FED_PS: u64 = 2 * PS_PER_S;
 
-/// An estimator of the head's pose from the reports that are known at an instant.
+/// An estimator of the head's pose from the tracker reports that have reached the host by an instant.
 pub struct Estimator {
     views: Arc<HeadViews>,
     way: Way,
@@ -99,8 +100,8 @@ impl Estimator {
         Self { views: Arc::clone(views), way }
     }
 
-    /// Returns the pose in the scene at the instant `at`, from reports that had arrived by `known`. From call to call,
-    /// `known` must not decrease.
+    /// Returns the head's pose at the instant `at` in the scene's coordinates, from tracker reports that had arrived by
+    /// the instant `known`. From call to call, `known` must not decrease.
     pub fn pose(&mut self, known: Time, at: Time) -> Pose {
         let start = self.views.start();
         let tracked = match &mut self.way {
@@ -112,12 +113,12 @@ impl Estimator {
     }
 }
 
-/// Returns a tracker model for a configuration without one cause of error.
+/// Returns a tracker model for the settings `tracker`, from which one cause of error has been removed.
 fn model_of(tracker: TrackerConfig) -> TrackerModel {
     TrackerModel::new(tracker).expect("less of what was checked by Head::new")
 }
 
-/// Returns a predictor with the settings of the run's predictor, which receives the reports of another tracker.
+/// Returns a predictor that has the settings of the run's predictor, but receives the reports of the tracker `tracker`.
 fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     let head = views.head();
     let model = model_of(tracker);

@@ -22,7 +22,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pixels {
-    /// No pixel is computed. The firmware counts commands instead of storing them in bins.
+    /// No pixel is computed. The firmware counts commands, but does not store the commands in bins.
     Off,
     /// A pixel is computed when it is read.
     Lazy,
@@ -42,8 +42,8 @@ pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
 /// Returns the parameters whose values no source supports.
 ///
-/// An unsupported value lies outside the stated range of its parameter, and differs from the values of preset and
-/// pipeline.
+/// An unsupported value lies outside the range that the sources give for the parameter. The value also differs from the
+/// values that the machine's preset and the pipeline set.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
@@ -53,8 +53,8 @@ pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Para
 
 /// Returns a warning if an experiment at the cycle level contains work without i860 code.
 ///
-/// Work without code takes its times from the table (`gp.*`). Returns `None` if all work has code, or if the level is
-/// not [`Level::Cycle`].
+/// The times of work without code come from the parameters `gp.*` of the timing table. Returns `None` if all work has
+/// code, or if the level is not [`Level::Cycle`].
 #[must_use]
 pub fn warning_without_code(level: Level, config: &MachineConfig, pipeline: &dyn Pipeline) -> Option<String> {
     let what = (level == Level::Cycle).then(|| pipeline.without_code(config)).flatten()?;
@@ -203,7 +203,8 @@ impl Experiment {
         self
     }
 
-    /// Sets a head with a tracker. Without a head, the pipeline follows the scene's own motion without any delay.
+    /// Sets a head whose pose a tracker reports. Without such a head, the pipeline follows the scene's own motion
+    /// without any delay.
     ///
     /// If the head's pose is predicted, the experiment runs twice. The first run is a dry run without prediction, which
     /// finds the time at which each view is seen.
@@ -215,8 +216,8 @@ impl Experiment {
 
     /// Makes the host begin a frame only when the tracker reports a pose, so that frames do not queue in the pipeline.
     ///
-    /// A latency measurement from outside the machine works in the same way. The setting has no effect without a head,
-    /// or if the pipeline's host does not begin frames.
+    /// The measurement of latency with a pendulum outside the machine uses this setting. The setting has no effect
+    /// without a head, or if the pipeline's host does not begin frames.
     #[must_use]
     pub const fn on_demand(mut self) -> Self {
         self.on_demand = true;
@@ -228,7 +229,8 @@ impl Experiment {
     /// The message about a run that is too short can then recommend a number of fields. The message about a scene that
     /// is too large can recommend a number of triangles.
     ///
-    /// This method is hidden, because the estimates change error messages only. Plans of experiment files set them.
+    /// This method is hidden, because the estimates change error messages only. The code that runs experiment files
+    /// sets these functions.
     #[doc(hidden)]
     #[must_use]
     pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {
@@ -238,15 +240,15 @@ impl Experiment {
 
     /// Sets the streaming observer of a run with [`Keep::Statistics`].
     ///
-    /// A report about a head needs old records, which such a run discards. An observer must therefore process these
-    /// records during the run. A run with [`Keep::Everything`] needs no observer.
+    /// A run with [`Keep::Statistics`] discards old records, which the results for a tracked head need. The observer
+    /// must therefore process these records during the run. A run with [`Keep::Everything`] needs no observer.
     #[must_use]
     pub const fn observed_by(mut self, sums: Option<ObserverFactory>) -> Self {
         self.sums = sums;
         self
     }
 
-    /// Returns all records of a run of this experiment that remain in memory, without pictures.
+    /// Returns the results of a run of this experiment with all records in memory. The list of pictures is empty.
     pub(crate) fn final_results<'a>(
         &'a self,
         record: &'a Record,
@@ -401,7 +403,8 @@ impl Experiment {
         &self.scene
     }
 
-    /// Returns the configuration of the machine as the caller set it, before the pipeline adapted the configuration.
+    /// Returns the machine's configuration that this experiment received, without the changes that the pipeline makes
+    /// in [`Pipeline::adapt`].
     #[must_use]
     pub const fn config(&self) -> &MachineConfig {
         &self.config

@@ -35,8 +35,9 @@ impl Fingerprint {
     ///
     /// The hash covers neither the scene's name nor the seed of the motion, because an experiment sets the seed.
     ///
-    /// The hash covers the numbers one after the other, with the least significant byte first. A list is its length (64
-    /// bits) and its entries. An enum value is a byte, counted from 0 in the order of declaration.
+    /// The hash covers the numbers one after the other, with the least significant byte first. A list is hashed as its
+    /// length (64 bits), then its entries. The value of an enum is hashed as a byte, counted from 0 in the order of
+    /// declaration.
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
         let mut all = Self::default();
@@ -101,7 +102,8 @@ impl Fingerprint {
         self.add(colour);
     }
 
-    /// Adds a structure without its name, which is for users only.
+    /// Adds a structure to the hash. The name of the structure is left out, because the name affects neither pictures
+    /// nor times.
     fn structure(&mut self, structure: &Structure) {
         // The pattern lists all fields, so a new field cannot be forgotten.
         let Structure { name: _, vertices, triangles, spheres, frame, hinge, culls_back_faces } = structure;

@@ -67,7 +67,7 @@ pub struct Head {
     place: HeadPlace,
     reports: Option<Arc<[TrackerReport]>>,
     unsupported_parameters: Vec<Parameter>,
-    /// Cache of tuned predictors that other heads use too.
+    /// Cache of tuned predictors, which several heads share.
     tunings: Option<Arc<Tunings>>,
 }
 
@@ -93,7 +93,7 @@ impl Head {
     /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the same noise that the tracker
     /// model adds.
     ///
-    /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), whatever its first pose is. After
+    /// The first pose of the motion is placed at the start of the scene's own motion ([`HeadPlace::Scene`]). After
     /// [`Head::placed`] with [`HeadPlace::World`], the poses are coordinates of the scene instead.
     ///
     /// A dry run tunes the predictor's parameters for the motion and for the interval over which the pipeline predicts.
@@ -112,7 +112,7 @@ impl Head {
         Ok(Self { numbers: Numbers::ToBeTuned, ..Self::predicted_by(motion, tracker, predictor, seed)? })
     }
 
-    /// Creates a head whose predictor has the given parameters and is not tuned.
+    /// Creates a head whose predictor has the parameters in `predictor` and is not tuned.
     ///
     /// # Errors
     ///
@@ -161,8 +161,8 @@ impl Head {
         self
     }
 
-    /// Replaces the kind of the predictor and keeps the parameters. If the old predictor is tuned, the new one is tuned
-    /// too.
+    /// Replaces the prediction method and keeps the parameters. If the current predictor is tuned, the predictor with
+    /// the new method is tuned too.
     #[must_use]
     pub const fn predicting(mut self, kind: PredictorKind) -> Self {
         self.predictor.kind = kind;
@@ -232,7 +232,7 @@ impl Head {
         &self.unsupported_parameters
     }
 
-    /// Replaces the tracker's reports by the given reports, which must be sorted by arrival time.
+    /// Replaces the tracker's reports by `reports`, which must be sorted by arrival time.
     #[must_use]
     pub fn reporting(self, reports: Vec<TrackerReport>) -> Self {
         Self { reports: Some(reports.into()), ..self }
@@ -249,8 +249,8 @@ impl Head {
         self.reports_of(Arc::clone(&self.motion))
     }
 
-    /// Returns the tracker's reports about a motion, in order of arrival. If the caller has replaced the reports,
-    /// returns the given reports instead.
+    /// Returns the tracker's reports about a motion, in order of arrival. If [`Head::reporting`] has replaced the
+    /// reports, returns the replacements.
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
@@ -370,7 +370,8 @@ impl Head {
         if let Numbers::Tuned(Some(training), _) = &self.numbers { Some(training) } else { None }
     }
 
-    /// Returns the data from which the parameters for orientations were tuned separately. Returns `None` otherwise.
+    /// Returns the data from which the parameters for orientations were tuned separately. Returns `None` if positions
+    /// and orientations have the same tuning, or if nothing was tuned.
     ///
     /// Only a display that latches orientations needs separate parameters.
     #[must_use]
@@ -405,7 +406,7 @@ impl Head {
     }
 }
 
-/// An iterator over reports that the caller supplied.
+/// An iterator over the reports by which [`Head::reporting`] has replaced the tracker's reports.
 struct GivenReports {
     given: Arc<[TrackerReport]>,
     next: usize,

@@ -55,7 +55,8 @@ pub(crate) struct Follower {
 }
 
 impl Follower {
-    /// Creates a predictor that receives the given reports.
+    /// Creates a follower, which passes tracker reports to `predictor` when they have arrived. `arrivals` has the times
+    /// and `contents` the contents of the same reports.
     pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
         Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
     }
@@ -65,8 +66,8 @@ impl Follower {
         Self::new(head.arrivals(until), head.contents(), head.build_predictor())
     }
 
-    /// Gives the predictor all reports that had arrived by `known`. If `known` is earlier than before, the predictor
-    /// keeps the later reports.
+    /// Gives the predictor all reports that had arrived by `known`. If `known` is earlier than in a previous call, the
+    /// predictor keeps all reports that it has received.
     fn follow(&mut self, known: Time) {
         while self.arrivals.next_if(|coming| coming.arrives <= known).is_some() {
             let Some(report) = self.contents.next() else { return };
@@ -179,8 +180,8 @@ impl HeadViews {
         self.state().1.len() + self.schedule().held()
     }
 
-    /// Discards records of poses that were requested before an instant, and of reports that newer reports had replaced
-    /// by then.
+    /// Discards records of poses that were requested before an instant. Also discards records of reports that a newer
+    /// report had replaced before this instant.
     pub(crate) fn discard_before(&self, instant: Time) {
         self.state().1.retain(|sampled| sampled.known >= instant);
         self.schedule().discard_before(instant);
@@ -263,7 +264,7 @@ impl HeadViews {
         all
     }
 
-    /// Creates a second predictor that receives the same reports, beginning with the first report.
+    /// Creates another predictor with the same settings, which receives the same reports from the first report on.
     pub(crate) fn follower(&self) -> Follower {
         Follower::of_head(&self.head, self.until)
     }

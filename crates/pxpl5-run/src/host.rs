@@ -10,7 +10,7 @@ pub trait Host: Debug + Send + Sync {
         None
     }
 
-    /// Returns true if the caller no longer wants the result of a run.
+    /// Returns true if the result of a run is no longer needed.
     ///
     /// A run, also a dry run, calls this method from time to time. If the method returns true, the run ends with
     /// [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).

@@ -16,11 +16,11 @@ impl Outcome {
     /// Returns the ideal picture of a surface at a time. Returns `None` for a surface that the first display or the
     /// pipeline does not have.
     ///
-    /// An ideal renderer draws all lines, with the shading and the number widths of the pipeline. The head is at its
-    /// true pose, or at the pose of the scene's own motion if no head is tracked.
+    /// An ideal renderer draws all lines, with the pipeline's method of shading and with numbers of the same widths in
+    /// bits. The head is at its true pose, or at the pose of the scene's own motion if no head is tracked.
     ///
     /// For a still scene and a still head, every complete picture of the machine equals the ideal picture, except at
-    /// [ties](IdealPicture::ties).
+    /// pixels where several primitives have exactly the same depth ([`IdealPicture::ties`]).
     #[must_use]
     pub fn ideal_picture(&self, surface: impl Into<SurfaceId>, time: Time) -> Option<IdealPicture> {
         ideal_picture(self.experiment(), self.record(), self.head().map(AsRef::as_ref), surface.into(), time)

@@ -2,11 +2,12 @@
 
 /// The choice of the observations that a run keeps in memory. The choice changes no time and no trace.
 ///
-/// Statistics change only in the last digits of means over more than [`KEPT_SAMPLES`](crate::KEPT_SAMPLES) pictures.
+/// Two runs that differ only in this choice have the same statistics. Only the last digits of means over more than
+/// [`KEPT_SAMPLES`](crate::KEPT_SAMPLES) pictures can differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Keep {
-    /// Keeps all time stamps, arrivals, swaps and pictures, for timelines, traces and lists of pictures. A field takes
-    /// 2 KB (Slats) to 100 KB (frameless).
+    /// Keeps all time stamps, arrivals, swaps and pictures, for timelines, traces and lists of pictures. The
+    /// observations of one field take 2 KB (Slats) to 100 KB (frameless rendering).
     #[default]
     Everything,
     /// Keeps statistics of the whole run, and all observations of its last pictures. Memory, and computing time per

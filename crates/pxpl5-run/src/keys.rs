@@ -11,11 +11,11 @@ use std::sync::Arc;
 pub enum KeyValue {
     /// A choice between true and false.
     Flag(bool),
-    /// A whole number within the range of its key.
+    /// A whole number within the range that the key allows.
     Whole(u64),
     /// One of the names that the key allows.
     Name(&'static str),
-    /// A text in the format of its key.
+    /// A text in the format that the key requires.
     Text(Arc<str>),
 }
 
@@ -44,7 +44,7 @@ pub enum KeyValues {
 }
 
 impl KeyValues {
-    /// Checks the text of a lens and returns it as a value.
+    /// Checks that `text` describes a lens, and returns the lens as the value of a key.
     ///
     /// # Errors
     ///

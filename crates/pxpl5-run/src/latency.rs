@@ -13,9 +13,9 @@ use pxpl5_wire::{PictureNumber, SurfaceId};
 /// Definition of one part of the time from the sample of the head's pose until the picture is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartDefinition {
-    /// Name of the part in tables, files and timelines.
+    /// Name of this part of the latency in tables, files and timelines.
     pub name: &'static str,
-    /// Text that defines the start and the end of the part.
+    /// Sentence that defines the start and the end of this part of the latency.
     pub definition: &'static str,
     /// True if the latency stated in the papers includes this part.
     pub published: bool,
@@ -155,7 +155,8 @@ fn own_times(stages: &[StageSpan], surface: SurfaceId) -> Option<(Time, Time)> {
     Some((transform_at, copied_at))
 }
 
-/// Returns the spans of a stage that belong to one surface or to all surfaces.
+/// Returns the time spans of `stage` that belong to `surface` or to all surfaces together. If `surface` is `None`,
+/// returns the spans of every surface.
 fn spans_of(stages: &[StageSpan], stage: Stage, surface: Option<SurfaceId>) -> impl Iterator<Item = &StageSpan> {
     let concerned = move |span: &StageSpan| span.surface.is_none() || surface.is_none() || span.surface == surface;
     stages.iter().filter(move |span| span.stage == stage && concerned(span))
@@ -174,8 +175,8 @@ fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }
 
-/// Returns true if a SEND stage begins at the sample time of this picture. If so, SEND and the other stages use the
-/// same picture numbers.
+/// Returns true if a SEND stage begins at `sampled_at`, the time at which a picture's pose was sampled. If so, SEND and
+/// the other stages use the same picture numbers.
 fn sent_for_it(stages: &[StageSpan], sampled_at: Option<Time>) -> bool {
     spans_of(stages, Stage::Send, None).any(|span| Some(span.begin) == sampled_at)
 }

@@ -2,7 +2,7 @@
 //!
 //! | level | graphics processors | ring | renderers |
 //! |---|---|---|---|
-//! | [`Level::Analytic`] | formulas for the times of the stages | time of copies and of clumps | a constant per command |
+//! | [`Level::Analytic`] | formulas for the times of the stages | formulas for the times of copies and of clumps | a constant time per command |
 //! | [`Level::Transaction`] | timing table per primitive | an event per message | timing table per command: the clocks of its program in Rendering Control's layout |
 //! | [`Level::Cycle`] | clocks of the i860 code that runs for every triangle, over the board's memory | as the transaction level | the clocks of every instruction of a command's program in the pipeline's own layout |
 //!
@@ -10,9 +10,9 @@
 //! and a word-by-word reference model give the same picosecond for every message.
 //!
 //! This crate has Rendering Control, Slats, just-in-time pixels, frameless rendering and the pipelines with six faces.
-//! In these pipelines, all work of graphics processors is i860 code (docs/gp-timing.md). No time of the cycle level
-//! comes from the table, which `tests/cycle.rs` checks. Other pipelines take the times of the table for work without
-//! code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports state this.
+//! In these pipelines, all work of graphics processors is i860 code (docs/gp-timing.md). At the cycle level no time
+//! comes from the timing table, and `tests/cycle.rs` checks this. Other pipelines take the times of the table for work
+//! without code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports state this.
 //!
 //! The machine selects the code that runs ([`MachineConfig::code`]), independent of its table of times. With the times
 //! of the code in the table ([`MachineConfig::with_times_of_code`]), the transaction level agrees with the cycle level

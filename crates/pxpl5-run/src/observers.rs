@@ -30,7 +30,7 @@ pub struct FinalResults<'a> {
     pub head: Option<&'a Arc<HeadViews>>,
     /// Optics of the head-mounted display.
     pub hmd: HmdConfig,
-    /// Requested updates of display memories that remain in memory.
+    /// Records of the requested updates of display memories, as far as the records are still in memory.
     pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.
     pub arrivals: &'a [Arrival],
@@ -74,8 +74,8 @@ impl FinalResults<'_> {
 
 /// A streaming observer of a run.
 ///
-/// The observer receives every record once, in order. The observer must store the data that it needs later, because the
-/// run discards old records.
+/// The observer receives every record once, in order. The observer must store all data for later use, because the run
+/// discards old records.
 pub trait StreamingObserver: Debug + Send {
     /// Processes results that can no longer change.
     fn take(&mut self, results: &FinalResults<'_>);

@@ -269,7 +269,8 @@ impl Outcome {
         self.closed.tally.latency_ms.statistics_in(self.field_ms())
     }
 
-    /// Returns the latency parts of the complete pictures in the result window whose records are in memory.
+    /// Returns the latency parts of the complete pictures in the result window. Pictures without records in memory are
+    /// left out.
     #[must_use]
     pub fn latency_parts(&self) -> Vec<LatencyParts> {
         let stages = self.stages();

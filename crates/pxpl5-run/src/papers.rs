@@ -18,8 +18,8 @@ impl Registry {
 
     /// Returns true if a pipeline represents its family in a comparison of only a few rows.
     ///
-    /// A family without any of the papers' usual pipelines, such as a family of another crate, is represented by its
-    /// first compared pipeline.
+    /// If `USUAL` has no pipeline of a family, the first compared pipeline of the family represents this family. An
+    /// example is a family of another crate.
     #[must_use]
     pub fn is_usual(&self, pipeline: &PipelineEntry) -> bool {
         let mut family = self.pipelines().iter().filter(|other| other.compared && other.family == pipeline.family);

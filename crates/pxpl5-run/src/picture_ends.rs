@@ -33,8 +33,8 @@ impl PictureResult {
 /// Results of the pictures of each display period. A period takes one byte, so 10^7 fields take 10 MB.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PictureResults {
-    /// One code for each period: 0 if it has no picture, otherwise 1 plus the index in `ALL` of the period's best
-    /// result.
+    /// One code for each period: 0 if the period has no picture, otherwise 1 plus the index of the period's best result
+    /// in the list `PictureResult::ALL`.
     of_periods: Vec<u8>,
     begun: usize,
     steady_from: Option<PeriodNumber>,
@@ -66,7 +66,7 @@ impl PictureResults {
         self.steady_from
     }
 
-    /// Returns the best result among the pictures of the `every` periods that end with `last`.
+    /// Returns the best result of the pictures in `every` successive periods, of which `last` is the last period.
     pub(crate) fn best(&self, last: u64, every: u64) -> Option<PictureResult> {
         let end = (last as usize + 1).min(self.of_periods.len());
         let of_periods = self.of_periods.get((last + 1).saturating_sub(every) as usize..end)?;
@@ -74,7 +74,7 @@ impl PictureResults {
         Self::ALL.get(usize::from(best) - 1).copied()
     }
 
-    /// Returns the first period, from `start` on, that has a picture.
+    /// Returns the first period at or after `start` that has a picture.
     pub(crate) fn first_from(&self, start: u64) -> Option<u64> {
         let behind = self.of_periods.get(start as usize..)?;
         behind.iter().position(|code| *code > 0).map(|place| start + place as u64)

@@ -78,7 +78,7 @@ pub struct Setup {
 pub struct PictureTimes {
     /// Number of the picture, as counted by the pipeline.
     pub picture: PictureNumber,
-    /// View that the picture shows. If the picture shows several views, this is the view at its middle.
+    /// View that the picture shows. If the picture shows several views, this is the view at the middle of the picture.
     pub view: ViewNumber,
     /// Time at which the head's pose for the picture was sampled.
     pub sampled_at: Option<Time>,
@@ -88,8 +88,8 @@ pub struct PictureTimes {
     pub copied_at: Option<Time>,
     /// Time of the retrace at which the display begins to show the picture.
     ///
-    /// Without a swap, this is the time at which the beam reaches a certain part of the picture, which the pipeline
-    /// selects.
+    /// If pictures are shown without a swap, this is the time at which the beam reaches a part of the picture. The
+    /// pipeline selects this part, for example the middle line.
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
     pub end: PictureResult,
@@ -103,8 +103,8 @@ impl PictureTimes {
     }
 }
 
-/// A program for a whole machine, which defines how the machine draws. [`PictureRules`] defines the times and contents
-/// of the pictures.
+/// A set of programs for all boards of a machine, which define how the machine draws. [`PictureRules`] defines the
+/// times and contents of the pictures.
 pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns the name of the pipeline on the command line.
     fn name(&self) -> &'static str;
@@ -133,7 +133,8 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         CodeUse::Pphigs
     }
 
-    /// Returns the machine as this variant of the pipeline needs it, for example with the times of other code.
+    /// Returns the configuration of the machine with the changes that this variant of the pipeline needs, for example
+    /// the times of other code.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         config
     }
@@ -157,7 +158,7 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
     /// Returns a short description of the graphics processors' work that has no i860 code. Returns `None` if all work
     /// has code.
     ///
-    /// At the cycle level, work without code takes its times from the timing table.
+    /// At the cycle level, the times of work without code come from the timing table.
     fn without_code(&self, _config: &MachineConfig) -> Option<&'static str> {
         Some("all work of its firmware except messages")
     }
@@ -197,8 +198,8 @@ pub trait PictureRules {
 
     /// Returns true if [`PictureRules::pictures`] and [`PictureRules::late_regions`] need no old records.
     ///
-    /// After [`Machine::discard_before`], both functions must give the same results for later times. Only then can a
-    /// long run discard records.
+    /// After [`Machine::discard_before`], both methods must give the same results for times after the discarded
+    /// records. Only then can a long run discard records.
     fn can_discard_records(&self) -> bool {
         false
     }
@@ -220,11 +221,12 @@ pub trait PictureRules {
     /// Returns one sentence that defines latency for this pipeline.
     fn latency_definition(&self) -> &'static str;
 
-    /// Returns a sentence that defines when a picture is due and when it is in time. For pipelines without due
-    /// pictures, the sentence gives the reason.
+    /// Returns a sentence that defines the time at which a picture is due, and the time up to which the picture is in
+    /// time. For pipelines without due pictures, the sentence gives the reason.
     fn due_definition(&self) -> &'static str;
 
-    /// Returns the number of entries of [`PictureRules::pictures`] that make up one whole picture.
+    /// Returns the number of entries in the list of [`PictureRules::pictures`] that together make one whole picture.
+    /// The number is 1 unless the pipeline draws a picture in several updates.
     fn updates_per_picture(&self, _record: &Record) -> f64 {
         1.0
     }
@@ -247,7 +249,8 @@ pub trait PictureRules {
         views.get(&target.picture).copied().map(Source::View)
     }
 
-    /// Returns the time span in which a picture is shown: until the next picture replaces it, or until the run ends.
+    /// Returns the time span in which a picture is shown. The span ends when the next picture replaces the shown
+    /// picture, or when the run ends.
     fn shown(&self, record: &Record, times: &PictureTimes, next: Option<&PictureTimes>) -> LightTimes {
         let first = record.display().period_at(times.shown_at);
         let next = next.map(|next| record.display().period_at(next.shown_at));

@@ -1,5 +1,5 @@
-//! The pipelines of the papers. To add a pipeline, write it in a new file here or in a separate crate, and add a line
-//! to `entries`.
+//! The pipelines of the papers. A new pipeline needs a new file in this module or in a separate crate, and a line in
+//! the function `entries`.
 
 pub(crate) mod faces;
 mod frameless;
@@ -34,8 +34,8 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
     all
 }
 
-/// Checks that a renderer's backing store has room for a finished region, which takes `blocks` blocks. Without room, no
-/// region could be copied.
+/// Checks that a renderer's backing store has room for a finished region. The region takes `blocks` blocks of
+/// `renderer.kept_bits` bits. Without room, no region could be copied.
 fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     let renderer = &record.config().renderer;
     if renderer.backing_regions() >= blocks {
@@ -73,7 +73,7 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Setti
 /// Methods of shading with their names. The first method is the default.
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
-/// Setting of pipelines that support both methods of shading.
+/// The key `shading` of pipelines that support both Phong and Gouraud shading.
 const SHADING: Key = Key {
     name: "shading",
     about: "phong or gouraud",

@@ -48,8 +48,8 @@ impl Experiment {
 
     /// Stores the result of [`Experiment::after_dry_run`] from an experiment that differs only in the predictor.
     ///
-    /// This method is hidden, because a wrong dry run would give wrong results. Comparisons of predictors use this
-    /// function, so that they make one dry run for all predictors.
+    /// This method is hidden, because a wrong dry run would give wrong results. A comparison of predictors uses this
+    /// method, so that one dry run serves all predictors.
     #[doc(hidden)]
     #[must_use]
     pub fn with_dry_run(self, dry_run: Option<Arc<DryRun>>) -> Self {

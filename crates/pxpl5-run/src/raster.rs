@@ -6,14 +6,15 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// Correction that a display applies to a picture while it scans its frame buffer.
+/// Correction that a display applies to a picture while the display scans the frame buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Raster {
-    /// No correction: each pixel is displayed at the position where it was drawn.
+    /// No correction: each pixel is displayed at the position at which the pixel was drawn.
     #[default]
     Plain,
-    /// The picture is shifted during the scan, by the error of the pose for which it was drawn (VDRT, Breglia 1981).
+    /// The picture is shifted during the scan, by the error of the pose for which the picture was drawn (VDRT, Breglia
+    /// 1981).
     Vdrt,
     /// A device moves the picture to the newest pose.
     Reprojected(Reprojection),

@@ -26,7 +26,8 @@ pub enum Goal {
     LatencyFields(f64),
 }
 
-/// Kind of triangles in the scene with which a limit search finds the largest load.
+/// Kind of triangles in the test scenes. A search draws test scenes of different sizes to find the largest number of
+/// triangles that a pipeline draws in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TestScene {
@@ -90,9 +91,10 @@ pub struct PipelineEntry {
     pub build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
     /// Function that returns the criterion for the largest scene, given the settings.
     pub limit: fn(&PipelineSettings) -> LimitCriterion,
-    /// Timing tables of the firmware. The name of a table, such as `jitp`, begins the paths of its parameters.
+    /// Timing tables of the firmware. The name of a table, such as `jitp`, is the first part of the paths of the
+    /// table's parameters.
     pub tables: &'static [NamedTable],
-    /// Closed form of the pipeline, or `None` if it has none.
+    /// Closed form of the pipeline, or `None` if the pipeline has no closed form.
     pub closed_form: Option<ClosedForm>,
     /// True if the command `compare` has a row for the pipeline.
     pub compared: bool,
@@ -146,13 +148,13 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// Creates a registry with the given pipelines and displays. More entries can be added later.
+    /// Creates a registry with the entries `pipelines` and `displays`. More entries can be added later.
     #[must_use]
     pub const fn with(pipelines: Vec<PipelineEntry>, displays: Vec<DisplayEntry>) -> Self {
         Self { pipelines, displays }
     }
 
-    /// Adds the firmware tables of all pipelines to a machine.
+    /// Adds the timing tables of the firmware of all pipelines to the configuration of a machine.
     #[must_use]
     pub fn machine_of(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
@@ -196,7 +198,7 @@ impl Registry {
         &self.displays
     }
 
-    /// Returns the pipeline with the given name.
+    /// Returns the pipeline with the name `name`.
     ///
     /// # Errors
     ///
@@ -205,7 +207,7 @@ impl Registry {
         find_named("pipeline", name, self.pipelines.iter().map(|entry| (entry.name, entry)))
     }
 
-    /// Returns the display with the given name.
+    /// Returns the display with the name `name`.
     ///
     /// # Errors
     ///
@@ -214,7 +216,8 @@ impl Registry {
         find_named("display", name, self.displays.iter().map(|entry| (entry.name, entry)))
     }
 
-    /// Returns the settings (keys) of all pipelines, each once, with the families that have the setting.
+    /// Returns the settings (keys) of all pipelines, without repetition. Each setting comes with the families of
+    /// pipelines that have this setting.
     #[must_use]
     pub fn keys(&self) -> Vec<(Key, Vec<&'static str>)> {
         let mut all: Vec<(Key, Vec<&'static str>)> = Vec::new();

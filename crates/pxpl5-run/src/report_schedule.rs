@@ -1,5 +1,5 @@
-//! Arrival times of a tracker's reports at the host. The times do not depend on the contents of the reports, so they
-//! are known in advance even for an interactive head.
+//! Arrival times of a tracker's reports at the host. The times do not depend on the contents of the reports, so the
+//! times are known in advance even for an interactive head.
 
 use pxpl5_sim::Time;
 use std::collections::VecDeque;
@@ -59,7 +59,7 @@ impl ReportSchedule {
         self.known.get(there.checked_sub(1)?).copied()
     }
 
-    /// Discards reports that are not needed for this instant or later instants.
+    /// Discards reports that are not needed for `instant` or later instants.
     ///
     /// The last report before the instant stays, and so do reports that arrived at the same time.
     pub(crate) fn discard_before(&mut self, instant: Time) {
@@ -73,7 +73,7 @@ impl ReportSchedule {
         self.known.len()
     }
 
-    /// Computes the times of further reports until a report arrives after an instant.
+    /// Computes the times of the reports that follow the last report in memory, until a report arrives after `instant`.
     fn read_until_after(&mut self, instant: Time) {
         while self.known.back().is_none_or(|last| last.arrives <= instant) {
             let Some(coming) = self.arrivals.next() else { return };

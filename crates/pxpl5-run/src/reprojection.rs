@@ -15,8 +15,8 @@ pub enum Warp {
     /// The picture is rotated about the eye by a homography, as in timewarp, the method of current headsets. The result
     /// is exact for rotations of the head. Translations remain uncorrected.
     Rotation,
-    /// Each pixel is moved by its depth. The result is exact for rotations and translations, except where the picture
-    /// lacks the content.
+    /// Each pixel is moved according to its depth. The result is exact for rotations and translations, except where the
+    /// picture lacks the content.
     Depth,
 }
 
@@ -39,7 +39,8 @@ pub struct Reprojection {
     pub by: Warp,
     /// The part of a scan that is moved by the same pose. The device takes the newest pose for each part.
     pub every: Every,
-    /// Time from taking a pose until the first pixel moved to this pose is lit, in microseconds.
+    /// Time from the instant at which the device takes a pose until the first pixel that is moved to this pose is lit,
+    /// in microseconds.
     pub latency_us: u64,
 }
 
@@ -57,9 +58,9 @@ impl Every {
 
     /// Returns the default latency of a device, in microseconds (assumed).
     ///
-    /// The latency is 2,000 for one pose per field, because a graphics processor begins this long before the retrace
-    /// (range 1,000 to 4,000). For one pose per strip the latency is 500, and for one pose per line 100 (range 64 to
-    /// 1,000). In both cases the device works during the scan and holds only a few lines.
+    /// The latency is 2,000 for one pose per field, because the graphics hardware of a current headset begins this long
+    /// before the retrace (range 1,000 to 4,000). For one pose per strip the latency is 500, and for one pose per line
+    /// 100 (range 64 to 1,000). In both cases the device works during the scan and holds only a few lines.
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {

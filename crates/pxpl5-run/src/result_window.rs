@@ -4,8 +4,8 @@
 //! were begun. The window begins after the warm-up, with the periods of the next picture that is due.
 //!
 //! If a due picture in the first half of the run was not shown, the window begins with the first such picture. The
-//! window therefore leaves out no failure. Earlier pictures may have profited from queues that were still empty.
-//! Pictures of the warm-up never have a latency or an error.
+//! window therefore leaves out no failure. Pictures before this window may have been in time only because queues were
+//! still empty. Pictures of the warm-up never have a latency or an error.
 //!
 //! The window ends with the last complete period, or one period earlier if no picture is ever due.
 

@@ -43,8 +43,8 @@ impl Experiment {
         })
     }
 
-    /// Runs the experiment and calls `at` at the beginning of each field in `stops`, and at further fields for progress
-    /// reports.
+    /// Runs the experiment and calls `at` at the beginning of each field in `stops`, at every 60th field for progress
+    /// reports, and at the end of the run.
     ///
     /// `at` receives the field and the machine before any event of this field. An error from `at` ends the run.
     ///
@@ -91,7 +91,7 @@ impl Experiment {
         stepper.finish()
     }
 
-    /// Returns an error if the host no longer wants the result ([`Host::is_stopped`](crate::Host::is_stopped)).
+    /// Returns an error if the host no longer needs the result ([`Host::is_stopped`](crate::Host::is_stopped)).
     ///
     /// # Errors
     ///

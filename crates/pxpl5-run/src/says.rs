@@ -124,13 +124,14 @@ pub struct PixelField {
     pub value: u128,
 }
 
-/// Returns one bit of a pixel, from a bit plane. `x` is the column and `y` the row of the array.
+/// Returns one bit of a pixel. `plane` holds this bit of every pixel of a renderer's array. `x` is the column and `y`
+/// the row of the array.
 #[must_use]
 pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
     plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1
 }
 
-/// Returns a description of a processor's programs and of the messages that wait for them.
+/// Returns a description of a processor's programs and of the messages that wait for these programs.
 fn processor_line(look: &GpSnapshot) -> String {
     let mut parts: Vec<String> = look.programs.iter().map(program).collect();
     if parts.is_empty() {

@@ -40,8 +40,8 @@ pub(crate) fn poses(scene: &Scene, seed: u64) -> Poses {
     Arc::new(move |known, _| motion.pose(known.0))
 }
 
-/// Returns two functions that give views of the scene's own head motion. The first returns the view at the sample time,
-/// the second the view at the time when it is seen.
+/// Returns two functions that give views of the scene's own head motion. The first function returns the view at the
+/// sample time. The second function returns the view at the time when the view is seen.
 pub fn views(scene: &Arc<Scene>, seed: u64, hmd: Hmd, eyes: usize) -> (Views, ViewsWanted) {
     let motion: HeadMotion = scene.motion().with_seed(seed);
     let at = {

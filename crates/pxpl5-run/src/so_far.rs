@@ -1,4 +1,4 @@
-//! The simulated part of a run, as input for timelines and tables.
+//! The part of a run that has been simulated, as input for timelines and tables.
 
 use crate::experiment::Experiment;
 use crate::latency::{LatencyParts, parts};

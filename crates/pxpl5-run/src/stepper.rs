@@ -23,7 +23,7 @@ use std::collections::BTreeSet;
 /// Reason for which a step of a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Pause {
-    /// The run reached the given instant, or the awaited event happened.
+    /// The step ended as requested: the requested instant was reached, or the awaited event happened.
     Reached,
     /// Executed code reached one or more breakpoints. The list has one entry for each breakpoint.
     Breakpoints(Vec<BreakpointHit>),
@@ -125,7 +125,7 @@ impl Stepper {
         self.run_until(self.end(), |_, _| true)
     }
 
-    /// Handles events until an event of the given board has been handled.
+    /// Handles events until an event of the board `board` has been handled.
     pub fn step_board(&mut self, board: Board) -> Pause {
         self.run_until(self.end(), |_, happening| happening.board == board)
     }
@@ -136,7 +136,7 @@ impl Stepper {
         self.run_to(self.next_line())
     }
 
-    /// Runs to the next tick of the first display, at which the next period begins. For NTSC, a period is one field.
+    /// Runs to the beginning of the next period of the first display. For NTSC, a period is one field.
     pub fn step_period(&mut self) -> Pause {
         self.run_to(self.record().tick(self.period().next()))
     }
@@ -309,9 +309,9 @@ impl Stepper {
 
     /// Returns true if a machine at the end of the run may be in a deadlock.
     ///
-    /// A pipeline that waits for a swap has no pending work until the next tick. In a long run, the machine itself
-    /// detects a deadlock. A deadlock can remain undetected only in a short run, or after idle ticks at the end of a
-    /// run.
+    /// A pipeline that waits for a swap has no pending work until the next display period begins, although the pipeline
+    /// is not in a deadlock. In a long run, the machine itself detects a deadlock. A deadlock can remain undetected
+    /// only in a short run, or if the last periods of a run had no work.
     fn may_be_deadlocked(&self) -> bool {
         let is_long = self.experiment.fields > SHORT_RUN && self.run.machine.idle_ticks() < IDLE_TICKS;
         self.run.machine.is_at_rest() && !is_long

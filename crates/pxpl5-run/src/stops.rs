@@ -9,7 +9,8 @@ use std::collections::BTreeSet;
 pub(crate) const PROGRESS_FIELDS: u64 = 60;
 
 impl Experiment {
-    /// Returns the fields at which a run stops: the requested fields, every [`PROGRESS_FIELDS`]-th field, and the last.
+    /// Returns the fields at which a run stops: the requested fields, every [`PROGRESS_FIELDS`]-th field, and the end
+    /// of the run.
     pub(crate) fn stops(&self, asked: &[PeriodNumber]) -> impl Iterator<Item = PeriodNumber> {
         let end = self.end();
         let mut asked: BTreeSet<PeriodNumber> = asked.iter().copied().filter(|field| *field < end).collect();

@@ -11,7 +11,7 @@ pub struct Summary {
     pub latencies_ms: Samples,
     /// Duration of a display period, in milliseconds. For NTSC, a period is a field.
     pub field_ms: f64,
-    /// Number of complete pictures shown per second, over the window of `due`. `None` if fewer than two pictures were
+    /// Number of complete pictures shown per second, over the result window. `None` if fewer than two pictures were
     /// shown.
     pub updates_hz: Option<f64>,
     /// Numbers of due pictures, by result. `None` if no picture was due.
@@ -70,8 +70,8 @@ impl Summary {
 /// duration of a display period in milliseconds.
 #[must_use]
 pub fn retraces(latency_ms: f64, field_ms: f64) -> f64 {
-    /// Tolerance for the rounding of the quotient, in display periods. A latency of a whole number of periods must give
-    /// exactly this number.
+    /// Tolerance for rounding errors of the quotient (latency divided by duration of a period), in display periods. A
+    /// latency of a whole number of periods must give exactly this number.
     const ROUNDING: f64 = 1e-9;
     (latency_ms / field_ms - ROUNDING).ceil()
 }

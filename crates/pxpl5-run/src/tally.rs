@@ -1,7 +1,7 @@
 //! Sums of a run's results, updated during the run.
 //!
-//! Pictures are processed once, in the order in which they are shown, after all their records are complete. With a
-//! limit on samples, memory stays constant except for one byte per period ([`PictureResults`]).
+//! Pictures are processed once, in the order in which the pictures are shown, after all records of a picture are
+//! complete. With a limit on samples, memory stays constant except for one byte per period ([`PictureResults`]).
 
 use crate::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
 use crate::observers::FinalResults;
@@ -31,8 +31,8 @@ pub struct Tally {
     pub complete: u64,
     /// Number of complete pictures since the last picture that was incomplete or late.
     pub shown_in_a_row: u64,
-    /// Latencies in milliseconds, by the pipeline's definition. Usually from the start of TRANSFORM until the picture
-    /// is shown.
+    /// Latencies in milliseconds, by the pipeline's definition. The latency usually lasts from the start of TRANSFORM
+    /// until the picture is shown.
     pub latency_ms: Samples,
     /// Durations of each latency part in milliseconds, in the order of [`LATENCY_PARTS`].
     pub parts_ms: Vec<Samples>,
@@ -91,8 +91,8 @@ pub struct SurfaceLatency<'a> {
     pub ms: &'a Samples,
 }
 
-/// Times of the first and the last word of a copy. A copy is one eye under Rendering Control, and half a field under
-/// Slats.
+/// Times of the first and the last word of a copy. A copy transfers the regions of one eye under Rendering Control, and
+/// of half a field under Slats.
 struct CopySpan {
     begin: Time,
     end: Time,
@@ -277,8 +277,8 @@ impl Tally {
         }
     }
 
-    /// Adds regions that have arrived. Each region must be added once. A message occupies a channel for the span
-    /// `message`.
+    /// Adds regions that have arrived. Each region must be added once. `message` is the time for which one message
+    /// occupies a channel of the ring.
     pub(crate) fn take_arrivals(&mut self, arrivals: &[Arrival], message: Span) {
         for arrival in arrivals {
             let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);
@@ -306,7 +306,7 @@ impl Tally {
     }
 }
 
-/// Returns the stages of a picture. The given stages must be sorted by picture.
+/// Returns the part of `stages` that belongs to one picture. `stages` must be sorted by picture.
 pub(crate) fn of_picture(stages: &[StageSpan], picture: PictureNumber) -> &[StageSpan] {
     let first = stages.partition_point(|span| span.picture < picture);
     let count = stages[first..].iter().take_while(|span| span.picture == picture).count();

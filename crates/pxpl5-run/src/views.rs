@@ -13,8 +13,8 @@ pub type Views = Arc<dyn Fn(ViewNumber, Time) -> FrameView + Send + Sync>;
 /// to which tracker reports have arrived, and the instant for which the view is drawn.
 pub type ViewsWanted = Arc<dyn Fn(ViewNumber, Time, Time) -> FrameView + Send + Sync>;
 
-/// Function that returns a host's prediction of the pose. The arguments are the instant at which the host predicts and
-/// the instant for which it predicts. From call to call, the first argument must not decrease.
+/// Function that returns a host's prediction of the head's pose. The arguments are the instant at which the host
+/// predicts, and the instant for which the pose is predicted. From call to call, the first argument must not decrease.
 pub type Poses = Arc<dyn Fn(Time, Time) -> Pose + Send + Sync>;
 
 /// Function that returns the arrival time of the first tracker report after an instant, or `None` if no later report

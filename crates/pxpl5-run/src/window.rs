@@ -20,15 +20,15 @@ use std::sync::Arc;
 /// takes about 80 bytes.
 const LEAST_RECORDS: usize = 32_768;
 
-/// Number of newest pictures whose results can still change, because later records may belong to them.
+/// Number of newest pictures whose results can still change, because later records may belong to these pictures.
 const PICTURES_HELD: usize = 32;
 const PERIODS_HELD: u64 = 32;
 
-/// The sums of a run's results so far, and the state of discarding: which records are still needed.
+/// The sums of a run's results so far, and the limits that separate needed records from records to discard.
 ///
 /// A picture is final (its results can no longer change) after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`]
-/// display periods. Records are discarded if they are at least [`PERIODS_HELD`] periods older than the first picture
-/// that is not final. All earlier periods are final too. Records of the head are kept for [`PERIODS_HELD`] more
+/// display periods. Records are discarded if the records are at least [`PERIODS_HELD`] periods older than the first
+/// picture that is not final. All earlier periods are final too. Records of the head are kept for [`PERIODS_HELD`] more
 /// periods, because views are predicted from older reports.
 #[derive(Debug)]
 pub(crate) struct Window {
@@ -69,7 +69,7 @@ impl Window {
     }
 
     /// Adds results that can no longer change to the sums of the run, and discards the records of these results. Does
-    /// nothing if the run has few records or must keep all of them.
+    /// nothing if the run has few records or must keep all records.
     pub(crate) fn look(&mut self, experiment: &Experiment, run: &mut Assembled, now: Time) {
         if !self.forgets || run.records() < self.next_look {
             return;
@@ -87,8 +87,8 @@ impl Window {
         self.next_look = LEAST_RECORDS.max(2 * run.records());
     }
 
-    /// Adds pictures whose results can no longer change to the sums of the run. Returns the earliest instant whose
-    /// records other pictures still need.
+    /// Adds pictures whose results can no longer change to the sums of the run. Returns the instant from which records
+    /// are still needed for all other pictures.
     fn take_final(&mut self, experiment: &Experiment, run: &Assembled, now: Time) -> Option<Time> {
         let record = run.machine.record();
         let fresh = self.fresh(experiment.pipeline.as_ref(), record, now);
@@ -158,7 +158,7 @@ impl Window {
     }
 }
 
-/// Returns the instant that is [`PERIODS_HELD`] periods earlier than the given instant.
+/// Returns the beginning of the period that is [`PERIODS_HELD`] periods earlier than the period of `instant`.
 fn before(record: &Record, instant: Time) -> Option<Time> {
     let period = record.display().period_at(instant).before(PERIODS_HELD)?;
     Some(record.tick(period))

@@ -15,7 +15,7 @@
 use crate::time::nearest_ps;
 use pxpl5_sim::parameters::{ParameterTable, parameter_table};
 
-/// Converts milliseconds of a parameter table into picoseconds, rounded to the nearest.
+/// Converts milliseconds of a parameter table into picoseconds, rounded to the nearest picosecond.
 pub(crate) fn ms_to_ps(ms: f64) -> u64 {
     nearest_ps(ms / 1e3)
 }
@@ -143,7 +143,7 @@ parameter_table! {
         /// Constant orientation error of the Flock of Birds, the same in every report of a run. The value is the root
         /// mean square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.5, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "Ascension data sheet";
-        /// Time from the first report of a Flock of Birds until a host with a patched kernel crashes.
+        /// Time from the first report of a Flock of Birds until a host with a patched Unix kernel crashes.
         crash: f64 = 1000.0, "ms", Assumed, 0.0..=600000.0, "TR94 says that it crashes, not when";
     }
 }
@@ -185,10 +185,11 @@ parameter_table! {
         /// Constant orientation error of the 3Space, the same in every report of a run. The value is the root mean
         /// square of this error about each axis, over all seeds.
         orientation_bias: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
-        /// Depth of the position error by metal, at 1 m from the transmitter. Metal bends a measured plane into a bowl.
+        /// Depth of the position error by metal, at 1 m from the transmitter. Near metal, measured positions on a flat
+        /// surface form a bowl.
         bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
         /// Distance from the transmitter at which the position error by metal is half of `bowl` times the squared
-        /// distance in metres. The error bends a measured plane into a bowl.
+        /// distance in metres. With this error, measured positions on a flat surface form a bowl.
         bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0 in 0.001..=1000.0, "keeps the error finite out of range";
     }
 }
@@ -206,7 +207,7 @@ parameter_table! {
     pub struct HostPort {
         /// Bits on the serial cable for each byte: start bit, 8 data bits, stop bit.
         byte_bits: 10, "bits", Derived, 10..=11 in 1..=100, "47 x 10 / 115200 = 4.08 ms and / 9600 = 49 ms, the times of PF";
-        /// Interval at which the host's kernel polls the serial port.
+        /// Interval at which the host's Unix kernel polls the serial port.
         poll: f64 = 30.0, "ms", Published, 1.0..=100.0 in 0.001..=10000.0, "TR94";
     }
 }

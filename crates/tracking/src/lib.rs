@@ -16,7 +16,7 @@
 //!    recorded file.
 //! 2. [`tracker`]: the tracker measures poses at its own rate. The model adds noise, metal distortion and filter delay.
 //!    The serial cable carries one record at a time, so the tracker drops measurements if a transfer takes longer than
-//!    its period. The host's kernel polls the serial port. Experiments can inject faults.
+//!    its period. The host's Unix kernel polls the serial port. Experiments can inject faults.
 //! 3. [`predict`]: a check rejects and counts impossible reports. A filter then predicts the pose at an exact instant.
 //! 4. [`view`]: converts a pose error into pixels. This module also has the formulas of the dual display list, of the
 //!    raster offset and of frameless rendering.
@@ -52,7 +52,7 @@
 //!
 //! - The field of a magnetic tracker. The distortion is a smooth bowl.
 //! - The sight lines of the optical tracker.
-//! - Coloured noise. All noise is white, so the tracker's filter performs better than a real one, and slow drift is
+//! - Coloured noise. All noise is white, so the tracker's filter performs better than a real filter, and slow drift is
 //!   missing.
 //! - The contents of other receivers' records. These records only take time on the cable, and the head's record goes
 //!   first.

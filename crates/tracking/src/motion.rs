@@ -51,8 +51,8 @@ pub trait Motion: Debug {
     /// Writes settings that distinguish this motion from all others. The names of experiments derive from these
     /// settings.
     ///
-    /// The default writes the poses at every eighth of a second of the first 64 seconds. Two motions of one type can
-    /// agree at all these instants but differ at others. Such a type must override this method.
+    /// The default writes the poses at every eighth of a second of the first 64 seconds. If two motions of a type can
+    /// agree at all these instants but differ at other instants, the type must override this method.
     fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"sampled");
         for sample in 0..SAMPLES {

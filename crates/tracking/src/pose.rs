@@ -25,7 +25,7 @@ impl Pose {
         Self { position, ..Self::IDENTITY }
     }
 
-    /// Creates a pose at the origin with this orientation.
+    /// Creates a pose at the origin with the orientation `orientation`.
     pub fn facing(orientation: DQuat) -> Self {
         Self { orientation, ..Self::IDENTITY }
     }

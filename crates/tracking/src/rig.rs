@@ -3,8 +3,8 @@
 //! An LED and a photodiode detect the low point of a pendulum's arc. A tracker on the pendulum sends reports to the
 //! host. When the host detects the low point in the reports, the host starts a new frame and switches its D/A output. A
 //! photodiode on the screen detects frames that are alternately dark and light. On the oscilloscope, tracking latency
-//! is the time from the low point to the step of the D/A output. Rendering latency is the time from this step to the
-//! step of the screen.
+//! is the time from the low point to the step of the D/A output. Rendering latency is the time from the step of the D/A
+//! output to the step of the screen.
 //!
 //! This module has the parts outside of the emulated system: the pendulum and the oscilloscope. The module also has the
 //! host's detection of low points. The caller simulates the system and supplies the steps of the host's D/A output and
@@ -80,7 +80,8 @@ impl PendulumRig {
         }
     }
 
-    /// Returns the first `n` passes (at least 1) that the host detects in the reports of a tracker on the pendulum.
+    /// Returns the first `n` passes of the pendulum (at least 1) that the host detects in the reports of a tracker on
+    /// the pendulum.
     ///
     /// # Errors
     ///

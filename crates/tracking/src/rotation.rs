@@ -54,7 +54,8 @@ pub fn slerp(from: DQuat, to: DQuat, s: f64) -> DQuat {
     (exp(difference(from, to) * s) * from).normalize()
 }
 
-/// Returns the rotation by yaw about y, then pitch about the turned x, then roll about the turned z (radians).
+/// Returns the rotation by yaw about the y axis, then by pitch about the turned x axis, then by roll about the turned z
+/// axis (radians).
 pub fn from_yaw_pitch_roll(yaw: f64, pitch: f64, roll: f64) -> DQuat {
     about_y(yaw) * about_x(pitch) * about_z(roll)
 }
@@ -70,19 +71,19 @@ pub fn to_yaw_pitch_roll(q: DQuat) -> (f64, f64, f64) {
     (yaw, pitch, 2.0 * libm::atan2(rest.z, rest.w))
 }
 
-/// Returns the rotation about x by `angle` radians.
+/// Returns the rotation about the x axis by `angle` radians.
 pub fn about_x(angle: f64) -> DQuat {
     let (sin, cos) = libm::sincos(angle / 2.0);
     DQuat::from_xyzw(sin, 0.0, 0.0, cos)
 }
 
-/// Returns the rotation about y by `angle` radians.
+/// Returns the rotation about the y axis by `angle` radians.
 pub fn about_y(angle: f64) -> DQuat {
     let (sin, cos) = libm::sincos(angle / 2.0);
     DQuat::from_xyzw(0.0, sin, 0.0, cos)
 }
 
-/// Returns the rotation about z by `angle` radians.
+/// Returns the rotation about the z axis by `angle` radians.
 pub fn about_z(angle: f64) -> DQuat {
     let (sin, cos) = libm::sincos(angle / 2.0);
     DQuat::from_xyzw(0.0, 0.0, sin, cos)

@@ -42,8 +42,8 @@ impl Frameless {
         Self { block: 16, batch: 0, seed: 1 }
     }
 
-    /// Returns the number of blocks in a batch. While one slave processor transforms, the blocks of the other slave
-    /// processors pass through the frame buffer's port.
+    /// Returns the number of blocks in a batch. The number is chosen so that the ring carries the blocks of all slave
+    /// processors in the time in which one slave processor transforms.
     ///
     /// A run of i860 code uses a fixed number, because the time of code is unknown in advance.
     fn batch(&self, record: &Record, pass: TransformCost, runs_code: bool) -> u32 {
@@ -89,7 +89,7 @@ impl Default for Frameless {
 /// Smallest number of blocks in a batch (assumed). With fewer blocks, the master would limit the rate, because each of
 /// its orders to a slave takes 24 us.
 ///
-/// With more blocks than [`MOST_BATCH`], a view would be in use for too long (assumed).
+/// The largest number is [`MOST_BATCH`] (assumed). With more blocks, the same view would be used for too long.
 const LEAST_BATCH: u64 = 4;
 const MOST_BATCH: u64 = 64;
 
@@ -204,8 +204,8 @@ impl PictureRules for Frameless {
 
 /// Returns, for each update, the number of arrived blocks, and the arrival time and target of the last block.
 ///
-/// Blocks may arrive at two frame buffers at the same instant. The block with the higher port and region then counts as
-/// the last block, independent of the order of the records.
+/// Blocks may arrive at two frame buffers at the same instant. The block with the higher number of port and region then
+/// counts as the last block, independent of the order of the records.
 fn last_blocks(arrivals: &[Arrival]) -> BTreeMap<PictureNumber, (u32, Time, CopyTarget)> {
     let mut last: BTreeMap<PictureNumber, (u32, Time, CopyTarget)> = BTreeMap::new();
     for Arrival { last_part_at, target, .. } in arrivals {

@@ -26,8 +26,8 @@ pub use jitp::{Interpolation, Viewpoint};
 pub struct Jitp {
     /// The instants for which the parts of a picture are computed.
     pub viewpoint: Viewpoint,
-    /// True if strips arrive at the frame buffer just before the display's beam scans them. False if strips arrive one
-    /// field earlier.
+    /// True if strips arrive at the frame buffer just before the display's beam scans the strips. False if strips
+    /// arrive one field earlier.
     pub racing: bool,
     /// Number of lines in a strip, 1 to 128.
     pub strip_rows: u32,
@@ -42,7 +42,8 @@ impl Jitp {
         Self { viewpoint, racing, strip_rows }
     }
 
-    /// Returns all viewpoints, each without and with beam racing.
+    /// Returns the pipelines of all viewpoints, each without and with beam racing. A viewpoint defines the instants for
+    /// which the parts of a picture are computed.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let viewpoints = [
@@ -138,8 +139,8 @@ fn due(video: &Video, target: &CopyTarget) -> Time {
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions. Two numbers count the regions that arrived before the field's end, and before the
-/// beam reached them. The time is the arrival time of the middle strip.
+/// Arrivals of a field's regions. The type counts the regions that arrived before the field's end, and the regions that
+/// arrived before the beam. The time is the arrival time of the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,

@@ -21,7 +21,7 @@ use pxpl5_wire::{
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A frame after TRANSFORM, as a policy receives it.
+/// Data about a frame after TRANSFORM, which a policy receives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PolicyFrame {
     /// Number of the frame, counted from 0.
@@ -65,7 +65,7 @@ pub trait RegionPolicy: Debug + Send + Sync {
     fn name(&self) -> &str;
 
     /// Returns every region once with its renderer, in the order in which the regions are sent. Returns `None` to end
-    /// the drawing; the run then continues without further pictures.
+    /// the drawing. The run then continues without new pictures.
     ///
     /// The same frame must always get the same answer, because a run may be repeated. Reasons are the detection of a
     /// deadlock, and the dry run of an experiment with a predicted head.
@@ -126,7 +126,7 @@ impl PolicyPipeline {
     }
 }
 
-/// Everything that the firmware needs to draw a frame.
+/// Data that the graphics processor's program needs to draw a frame.
 struct Drawing {
     ports: Ports,
     list: Arc<DisplayList>,

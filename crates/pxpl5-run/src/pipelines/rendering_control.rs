@@ -24,11 +24,11 @@ pub struct RenderingControl {
     pub mono: bool,
     /// Method of shading.
     pub shading: Shading,
-    /// Action of a renderer with a finished region whose frame buffer is not available yet.
+    /// Action of a renderer that has finished a region before the frame buffer of this region is available.
     pub finished: FinishedRegions,
 }
 
-/// Action of a renderer with a finished region whose frame buffer is not available yet.
+/// Action of a renderer that has finished a region before the frame buffer of this region is available.
 ///
 /// TR94 says that the last slave returns the token, and that the master assigns the renderer to the next region. The
 /// copy command comes later if the frame buffer was not available. TR94 does not say if the renderer gets the next
@@ -43,8 +43,8 @@ pub enum FinishedRegions {
 }
 
 impl FinishedRegions {
-    /// All actions of a renderer with a finished region whose frame buffer is not available. The first action is the
-    /// default.
+    /// All actions of a renderer that has finished a region before the frame buffer of this region is available. The
+    /// first action is the default.
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
     /// Returns the name of the action in experiment files.
@@ -82,7 +82,7 @@ impl RenderingControl {
         Self { mono: true, ..Self::stereo() }
     }
 
-    /// Returns the properties of an eye's picture on a display with the given surfaces.
+    /// Returns the properties of an eye's picture on a display whose surfaces are `surfaces`.
     fn drawn(self, surfaces: &[Surface], pixels: bool) -> Result<Picture, SettingError> {
         let grid = surfaces.first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
         let viewport = Viewport::new(grid, Lines::Frame)?;
@@ -209,7 +209,8 @@ impl PictureRules for RenderingControl {
     }
 }
 
-/// Returns the transfer time of a surface's pixels at its busiest port.
+/// Returns the time in which all pixels of a surface are transferred: the transfer time at the port that receives the
+/// most pixels.
 ///
 /// Regions are assigned to the ports in turn. Messages have at most [`MAX_MESSAGE_WORDS`] words.
 fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {

@@ -267,7 +267,8 @@ impl PictureRules for Slats {
         Some(1)
     }
 
-    /// Returns the time span in which one field is lit. Each field is scanned once. The next field has the other lines.
+    /// Returns the time span in which one field is lit. Each field is scanned once, because the next field consists of
+    /// the lines between the lines of this field.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
     }
@@ -353,12 +354,12 @@ const BINNINGS: [(&str, RegionBinning); 2] = RegionBinning::ALL;
 const LIGHTINGS: [(&str, SlatsLighting); 2] = SlatsLighting::ALL;
 const CODES: [(&str, Code); 3] = Code::ALL;
 
-/// Returns the name of a value in a list of choices.
+/// Returns the name of the value `value` in the list `choices`.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> KeyValue {
     KeyValue::Name(choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name))
 }
 
-/// Returns the value that has a given name in a list of choices.
+/// Returns the value with the name `name` in the list `choices`.
 fn chosen<T: Copy>(choices: &[(&'static str, T)], name: Option<&str>) -> Option<T> {
     choices.iter().find(|(choice, _)| Some(*choice) == name).map(|(_, value)| *value)
 }

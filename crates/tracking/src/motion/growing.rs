@@ -9,8 +9,8 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 /// A recorded head motion to which samples can be added during a run. Clones share the same recording.
 ///
-/// After the last sample the head stands still until more samples arrive. The caller must keep the recording ahead of
-/// the simulation: every instant that the simulation reads must lie between two samples. Otherwise a sample added later
+/// After the last sample the head stands still until more samples arrive. Samples must be added before the simulation
+/// needs them: every instant that the simulation reads must lie between two samples. Otherwise a sample added later
 /// would change a pose that the simulation has already used.
 #[derive(Clone, Debug)]
 pub struct GrowingRecording(Arc<RwLock<Recording>>);

@@ -17,7 +17,7 @@ pub struct Pan {
 }
 
 impl Pan {
-    /// Creates a turn at this yaw rate, positive to the left, from the identity pose at time 0.
+    /// Creates a turn at `deg_per_s` degrees per second, positive to the left, from the identity pose at time 0.
     pub fn at(deg_per_s: f64) -> Self {
         Self { start: Pose::IDENTITY, deg_per_s }
     }

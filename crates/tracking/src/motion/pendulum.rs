@@ -161,7 +161,7 @@ mod tests {
         state.x
     }
 
-    /// Returns the derivative of (angle, rate) of a pendulum with this arm.
+    /// Returns the derivative of the state (angle, rate) of a pendulum with an arm of `arm` metres.
     fn slope(arm: f64, state: DVec2) -> DVec2 {
         DVec2::new(state.y, -table::RigNumbers::PAPERS.gravity / arm * state.x.sin())
     }

@@ -23,13 +23,13 @@ use crate::time::span_s;
 /// Latest time stamp of a recording: 10^7 s (115 days). Simulated time ends after 213 days.
 const LATEST_S: f64 = 1e7;
 
-/// Greatest absolute coordinate in a recording, m. Assumed, with a range of 1e6 to 1e12. Map coordinates, which count
-/// from the equator, reach 1e7. The square of this limit still fits into single precision.
+/// Greatest absolute coordinate in a recording, m. The value is assumed, with a range of 1e6 to 1e12. Map coordinates,
+/// which count from the equator, reach 1e7. The square of this limit still fits into single precision.
 const FARTHEST_M: f64 = 1e8;
 
-/// Fastest movement (m/s) and fastest turn (rad/s) between two samples. Assumed, with a range of 1e3 to 1e9. A head
-/// never moves so fast. The limit is high because a recorded position can jump within a millisecond, after the tracker
-/// has lost and found the head.
+/// Fastest movement (m/s) and fastest turn (rad/s) between two samples. The value is assumed, with a range of 1e3 to
+/// 1e9. A head never moves so fast. The limit is high because a recorded position can jump within a millisecond, after
+/// the tracker has lost and found the head.
 const FASTEST: f64 = 1e6;
 
 /// Least length of a gap, as a multiple of the median time between two samples. A gap must also be longer than `GAP_S`
@@ -81,7 +81,8 @@ pub struct RecordingFormat {
 pub struct Recording {
     samples: Vec<Sample>,
     end: End,
-    /// Gaps in the order of time. Each gap is given by the times (ps) of the samples before and after it.
+    /// Gaps in the order of time. A gap is stored as the times (ps) of the last sample before the gap and of the first
+    /// sample after the gap.
     gaps: Vec<(u64, u64)>,
     warnings: Vec<String>,
 }
@@ -106,8 +107,8 @@ impl Recording {
         Self::read_as(input, &RecordingFormat::default())
     }
 
-    /// Reads a file of poses with given columns and axes. If the format maps columns, the file may have further
-    /// columns, and time counts from the first line. Commas, semicolons, tabs or blanks separate the columns.
+    /// Reads a file of poses with given columns and axes. If the format maps columns, the file may have other columns
+    /// too, and time counts from the first line. Commas, semicolons, tabs or blanks separate the columns.
     ///
     /// # Errors
     ///

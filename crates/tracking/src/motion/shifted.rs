@@ -4,8 +4,8 @@ use super::Motion;
 use crate::identity::SettingSink;
 use crate::pose::Pose;
 
-/// A motion that is ahead of another motion by a constant time. Its pose at time t is the other motion's pose at t +
-/// `by_ps`.
+/// A motion that is ahead of another motion by a constant time. The pose of this motion at time t is the other motion's
+/// pose at t + `by_ps`.
 #[derive(Clone, Copy, Debug)]
 pub struct AdvancedMotion<M> {
     /// The original motion. Its poses occur earlier by `by_ps` in the advanced motion.

@@ -15,7 +15,7 @@ pub struct Slide {
 }
 
 impl Slide {
-    /// Creates a motion to the right (+x) at this speed, from the identity pose at time 0.
+    /// Creates a motion to the right (+x) at `m_per_s` metres per second, from the identity pose at time 0.
     pub fn right_at(m_per_s: f64) -> Self {
         Self { start: Pose::IDENTITY, m_per_s: DVec3::X * m_per_s }
     }

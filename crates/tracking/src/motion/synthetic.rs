@@ -48,7 +48,7 @@ pub struct SyntheticConfig {
 
 impl SyntheticConfig {
     /// Returns settings whose statistics agree with recorded headset use ([`crate::config::HeadSpeeds`]). The standard
-    /// deviations are assumed. The resulting head speeds are published, and tests compare them.
+    /// deviations are assumed. Tests compare the resulting head speeds with published head speeds.
     pub fn recorded_use() -> Self {
         Self {
             turn: Band { spacing_s: 2.6, deviation: [47.0, 4.0, 1.0], calm: 0.6, power: 1 },

@@ -10,9 +10,9 @@ use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
 use crate::time::seconds;
 
-/// Distance along the path from a walking head to the point at which the head looks, m. Assumed. The head turns towards
-/// a corner before it reaches the corner. At 1 m/s and a square corner the head turns at up to 76 degrees per second,
-/// which a real head can do.
+/// Distance along the path from a walking head to the point at which the head looks, m. The distance is assumed. The
+/// head turns towards a corner before it reaches the corner. At 1 m/s and a square corner the head turns at up to 76
+/// degrees per second, which a real head can do.
 const AHEAD_M: f64 = 1.5;
 
 /// Least distance between two successive corners of a path, m. At a smaller distance, rounding errors would falsify the
@@ -32,8 +32,8 @@ pub struct Walk {
 }
 
 impl Walk {
-    /// Creates a walk along these corners and back to the first corner, at a speed of -100 to 100 m/s. A negative speed
-    /// reverses the direction.
+    /// Creates a walk along the positions `corners` and back to the first corner, at a speed of -100 to 100 m/s. A
+    /// negative speed reverses the direction.
     ///
     /// # Errors
     ///
@@ -56,7 +56,7 @@ impl Walk {
     }
 
     /// Returns the same walk with a head that also looks around. The glances come from [`Synthetic::recorded_use`] with
-    /// this seed.
+    /// the seed `seed`.
     #[must_use]
     pub fn with_glances(mut self, seed: u64) -> Self {
         self.glances = Some(Synthetic::recorded_use(seed));

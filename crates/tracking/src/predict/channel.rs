@@ -2,7 +2,7 @@ use glam::{DQuat, DVec3};
 
 use crate::rotation;
 
-/// A prediction filter of one quantity, either position or orientation. The filter must receive measured values in
+/// A prediction filter for one quantity, either position or orientation. The filter must receive measured values in
 /// order of time.
 pub(super) trait Channel<T>: Send {
     /// Discards all past values and starts again from this value.

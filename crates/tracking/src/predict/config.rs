@@ -118,12 +118,13 @@ const fn default_gate() -> table::Gate {
 }
 
 impl PredictorConfig {
-    /// Returns settings of a predictor for this tracker, with the noise that the tracker really has.
+    /// Returns settings of a predictor for the tracker `tracker`. The predictor assumes the same noise that the tracker
+    /// model adds.
     pub fn for_tracker(kind: PredictorKind, tracker: &TrackerConfig) -> Self {
         Self::for_tracker_by(&table::Tables::PAPERS, kind, tracker)
     }
 
-    /// Returns the settings of [`Self::for_tracker`], but with the numbers from these tables.
+    /// Returns the settings of [`Self::for_tracker`], but with the numbers from `tables`.
     pub fn for_tracker_by(tables: &table::Tables, kind: PredictorKind, tracker: &TrackerConfig) -> Self {
         let filter = &tables.filter;
         Self {
@@ -164,8 +165,9 @@ impl PredictorConfig {
         Ok(())
     }
 
-    /// Returns these settings as a parameter table. The table has room for one baseline (a number of reports). The
-    /// caller therefore passes the baseline of either the position or the orientation.
+    /// Returns these settings as a parameter table. The table has room for one baseline, the distance in reports
+    /// between two poses whose difference gives a velocity. `baseline` is therefore the baseline of either the position
+    /// or the orientation.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,

@@ -10,8 +10,8 @@ use crate::tracker::TrackerReport;
 /// A predictor that has access to the true motion. The predictor moves the newest reported pose along the true motion
 /// and keeps the error of the report.
 ///
-/// No real machine has access to the true motion. The predictor is a reference for all others: the errors of its poses
-/// come only from the tracker, not from the prediction.
+/// No real machine has access to the true motion. The predictor is a reference for all real predictors: the errors of
+/// its poses come only from the tracker, not from the prediction.
 #[derive(Clone, Debug)]
 pub struct ExactPredictor<M> {
     motion: M,
@@ -20,7 +20,8 @@ pub struct ExactPredictor<M> {
 }
 
 impl<M: Motion> ExactPredictor<M> {
-    /// Creates a predictor for this true motion. `gate` has the limits by which reports are accepted or rejected.
+    /// Creates a predictor for the true motion `motion`. `gate` has the limits by which reports are accepted or
+    /// rejected.
     pub fn new(motion: M, gate: table::Gate) -> Self {
         Self { motion, gate: Gate::new(gate), newest: None }
     }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::channel::{Channel, VectorDifference};
 use crate::time::span_s;
 
-/// The order of an extrapolation: the highest derivative that it uses.
+/// The order of an extrapolation, which is the highest derivative that the extrapolation uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
     /// No derivative: the prediction is the last value.
@@ -32,8 +32,8 @@ impl<T: VectorDifference> Extrapolation<T> {
         Self { order, baseline, past: VecDeque::from([(0, start)]) }
     }
 
-    /// Returns the time and the value of an earlier report, both relative to the newest report. The time is negative,
-    /// in seconds.
+    /// Returns the time in seconds and the value of the report that came `age` reports before the newest report. Time
+    /// and value are relative to the newest report, so the time is negative.
     fn point(&self, age: usize) -> (f64, DVec3) {
         let (newest_ps, newest) = self.past[0];
         let (t_ps, value) = self.past[age];

@@ -7,7 +7,7 @@ use crate::tracker::TrackerReport;
 /// rejected.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// Numbers of reports that a predictor has received, by its decision to accept or reject them.
+/// Numbers of reports that a predictor has received: accepted reports, and rejected reports by the reason of rejection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReportCounts {
     /// Number of accepted reports, which the filters used.
@@ -19,8 +19,8 @@ pub struct ReportCounts {
     pub untimely: u64,
     /// Number of reports that were rejected because the head would have to move or turn faster than a head can.
     pub jumps: u64,
-    /// Number of accepted reports that restarted the filters. These are the first report, the first report after a gap,
-    /// and a report that confirmed a jump.
+    /// Number of accepted reports that restarted the filters. A filter restarts at the first report, at the first
+    /// report after a gap, and at a report that confirms a jump of the pose.
     pub restarts: u64,
 }
 

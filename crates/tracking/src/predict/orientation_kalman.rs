@@ -10,7 +10,7 @@ use crate::time::span_s;
 const LARGEST_LINEAR_TURN: f64 = 1.0;
 
 /// The 9 x 9 covariance of (rotation error, angular velocity, angular acceleration), stored as its six distinct 3 x 3
-/// blocks.
+/// submatrices.
 #[derive(Clone, Copy, Debug)]
 struct Covariance {
     angle: DMat3,
@@ -144,7 +144,7 @@ impl Channel<DQuat> for OrientationKalman {
     }
 }
 
-/// Returns the covariance of three independent axes that all have this variance.
+/// Returns the covariance matrix of three independent axes with the variance `variance`.
 fn isotropic(variance: f64) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(variance))
 }

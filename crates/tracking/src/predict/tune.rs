@@ -19,8 +19,8 @@ const SETTLING_S: u64 = 1;
 /// tracker reaches the limit sooner.
 const MOST_REPORTS: usize = 12_000;
 
-/// Seed of the tracker's noise when a filter is tuned. If the evaluated run has this seed, the tuning uses the next
-/// seed.
+/// Seed of the tracker's noise when a filter is tuned. If the noise of the evaluated run has the same seed, the tuning
+/// uses the next seed.
 const TRAINING_SEED: u64 = 0x7475_6e65;
 
 /// Range of the decimal logarithm in the search for the best white jerk. The search has `ROUNDS` rounds with
@@ -38,8 +38,8 @@ const LONGEST_BASELINE: u32 = 16;
 pub struct Training {
     /// Time from the instant at which a reported pose was true to the predicted instant, ps.
     pub interval_ps: u64,
-    /// True if the filter was tuned on another random motion of the same kind, false if it was tuned on the evaluated
-    /// motion.
+    /// True if the filter was tuned on another random motion of the same kind, false if the filter was tuned on the
+    /// evaluated motion.
     pub sibling: bool,
     /// Length of the motion on which the filter was tuned, seconds. Up to one second at its start is not evaluated.
     pub seconds: f64,
@@ -221,7 +221,7 @@ fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     }
 }
 
-/// Returns the white jerk with this decimal logarithm, limited to the range that the filters of position and
+/// Returns the white jerk with the decimal logarithm `decades`, limited to the range that the filters of position and
 /// orientation both allow.
 fn jerk(decades: f64) -> f64 {
     within("position_jerk", libm::pow(10.0, decades))

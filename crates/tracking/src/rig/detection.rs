@@ -1,7 +1,7 @@
 use crate::tracker::TrackerReport;
 
-/// The method by which the host detects that the pendulum passes its low point, from the reported positions. The paper
-/// does not state its method.
+/// The method by which the host detects that the pendulum passes its low point, from the reported positions. TR94 does
+/// not state the method that was used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detection {
     /// The host detects that the pendulum has crossed the vertical. The first report after the low point shows the
@@ -28,8 +28,8 @@ impl Detection {
     }
 }
 
-/// A detector of the pendulum's low points in a sequence of reports. After each low point the detector ignores further
-/// low points for a quarter of a swing.
+/// A detector of the pendulum's low points in a sequence of reports. For a quarter of a swing after each detected low
+/// point, the detector detects no other low point.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,

@@ -29,7 +29,7 @@ impl ScopeTrace {
         Self { name, edges }
     }
 
-    /// Creates a trace that changes its level at each of these instants (ps).
+    /// Creates a trace that changes its level at each of the instants `instants` (ps).
     #[must_use]
     pub fn toggling(name: &'static str, mut instants: Vec<u64>) -> Self {
         instants.sort_unstable();
@@ -37,7 +37,8 @@ impl ScopeTrace {
         Self { name, edges: edges.collect() }
     }
 
-    /// Creates a trace with a pulse of this width (ps) centred on each of these instants.
+    /// Creates a trace with a pulse at each of the instants `instants` (ps). A pulse has the width `width_ps` and is
+    /// centred on the instant.
     pub(super) fn pulsing(name: &'static str, instants: impl Iterator<Item = u64>, width_ps: u64) -> Self {
         let ends = instants.flat_map(|t| [t.saturating_sub(width_ps / 2), t.saturating_add(width_ps / 2)]);
         Self::toggling(name, ends.collect())

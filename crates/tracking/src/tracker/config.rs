@@ -41,10 +41,10 @@ pub struct TrackerConfig {
     pub filter_gain: f64,
     /// The serial cable from tracker to host, or `None` if the latencies already include the time on the cable.
     pub serial: Option<SerialLine>,
-    /// Method by which the host's kernel reads the serial port.
+    /// Method by which the host's Unix kernel reads the serial port.
     pub host: SerialRead,
-    /// Time from the first report to the crash of a host with a patched kernel, which interrupts for each character.
-    /// `None` if such a host never crashes. TR94 reports the crash for the Flock of Birds.
+    /// Time from the first report to the crash of a host with a patched Unix kernel, which handles an interrupt for
+    /// each character. `None` if such a host never crashes. TR94 reports the crash for the Flock of Birds.
     pub crashes_patched_host_after_ps: Option<u64>,
     /// Distortion by metal near a magnetic tracker, or `None` without distortion.
     pub distortion: Option<MagneticDistortion>,
@@ -54,8 +54,8 @@ pub struct TrackerConfig {
 }
 
 impl TrackerConfig {
-    /// Returns the Polhemus Fastrak with one receiver, its filter off and 115,200 baud. The host's kernel is patched to
-    /// interrupt for each character.
+    /// Returns the Polhemus Fastrak with one receiver, its filter off and 115,200 baud. The host's Unix kernel is
+    /// patched so that each character on the serial port causes an interrupt.
     pub fn fastrak() -> Self {
         Self::fastrak_by(&Tables::PAPERS)
     }
@@ -76,8 +76,8 @@ impl TrackerConfig {
         }
     }
 
-    /// Returns the Ascension Flock of Birds with its filters off, on a host with an unpatched kernel. A patched kernel
-    /// crashes with this tracker.
+    /// Returns the Ascension Flock of Birds with its filters off, on a host with an unpatched Unix kernel. A patched
+    /// Unix kernel crashes with this tracker.
     pub fn flock_of_birds() -> Self {
         Self::flock_of_birds_by(&Tables::PAPERS)
     }
@@ -98,13 +98,14 @@ impl TrackerConfig {
         }
     }
 
-    /// Returns the Flock of Birds on a host with a patched kernel, which crashes one second after the first report.
-    /// This preset is for fault injection.
+    /// Returns the Flock of Birds on a host with a patched Unix kernel. The host crashes one second after the first
+    /// report. This preset is for fault injection.
     pub fn flock_of_birds_on_patched_host() -> Self {
         Self::flock_of_birds_on_patched_host_by(&Tables::PAPERS)
     }
 
-    /// Returns the Flock of Birds on a host with a patched kernel, which crashes. The numbers come from `tables`.
+    /// Returns the Flock of Birds on a host with a patched Unix kernel, which crashes with this tracker. The numbers
+    /// come from `tables`.
     pub fn flock_of_birds_on_patched_host_by(tables: &Tables) -> Self {
         Self { host: SerialRead::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
     }
@@ -123,7 +124,7 @@ impl TrackerConfig {
             .with_latency_ps(table::ms_to_ps(tables.optical.latency))
     }
 
-    /// Returns the Polhemus 3Space above a steel floor, with its transmitter at the origin. The host's kernel is
+    /// Returns the Polhemus 3Space above a steel floor, with its transmitter at the origin. The host's Unix kernel is
     /// unpatched and polls the serial port.
     pub fn polhemus_3space() -> Self {
         Self::polhemus_3space_by(&Tables::PAPERS)
@@ -169,8 +170,8 @@ impl TrackerConfig {
         }
     }
 
-    /// Returns the same tracker with this latency for both position and orientation. The time from the sync signal to
-    /// the first character becomes equal to the latency.
+    /// Returns the same tracker with the latency `latency_ps` for both position and orientation. The time from the sync
+    /// signal to the first character becomes equal to the latency.
     pub fn with_latency_ps(self, latency_ps: u64) -> Self {
         Self {
             sync_to_output_ps: latency_ps,
@@ -196,13 +197,14 @@ impl TrackerConfig {
         Self { serial: None, ..self.without_polling().with_latency_ps(0) }
     }
 
-    /// Returns the same tracker on a host whose kernel receives every character immediately, without polling.
+    /// Returns the same tracker on a host with a patched Unix kernel, which receives every character immediately,
+    /// without polling.
     pub fn without_polling(self) -> Self {
         Self { host: SerialRead::InterruptPerCharacter, crashes_patched_host_after_ps: None, ..self }
     }
 
-    /// Returns the same tracker on a host with an unpatched kernel, which polls the serial port. The value `host.poll`
-    /// of `tables` is the polling interval.
+    /// Returns the same tracker on a host with an unpatched Unix kernel, which polls the serial port. The value
+    /// `host.poll` of `tables` is the polling interval.
     pub fn with_polling_by(self, tables: &Tables) -> Self {
         Self { host: SerialRead::unix_by(tables), ..self }
     }

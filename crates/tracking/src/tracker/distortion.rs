@@ -8,7 +8,7 @@ use crate::pose::Pose;
 use crate::rotation;
 
 /// Distortion of measured poses by metal near a magnetic tracker. The error is smooth and depends only on the position.
-/// A plane appears as a bowl, and even a still head sees objects in wrong places (TR94).
+/// Measured positions on a flat surface form a bowl, and even a still head sees objects in wrong places (TR94).
 ///
 /// At distance r from the transmitter, measured positions move towards the metal by depth r^2 / (1 + (r / reach)^2).
 /// Near the transmitter this is a parabola. Measured orientations tilt with the bowl's surface. The true magnetic field
@@ -28,8 +28,8 @@ pub struct MagneticDistortion {
 }
 
 impl MagneticDistortion {
-    /// Returns the distortion by metal in the floor below a transmitter at this position. Without the limit by
-    /// `reach_m`, positions 1 m from the transmitter would be wrong by 20 mm (assumed).
+    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. Without the
+    /// limit by `reach_m`, positions 1 m from the transmitter would be wrong by 20 mm (assumed).
     pub fn floor_below(transmitter_m: DVec3) -> Self {
         Self::floor_below_by(&Tables::PAPERS, transmitter_m)
     }

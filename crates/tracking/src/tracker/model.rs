@@ -17,7 +17,7 @@ impl TrackerModel {
     ///
     /// # Errors
     ///
-    /// Returns [`SettingError`] if a setting is out of range or contradicts another.
+    /// Returns [`SettingError`] if a setting is out of range or contradicts another setting.
     pub fn new(config: TrackerConfig) -> Result<Self, SettingError> {
         check_times(&config)?;
         check("position noise, m", config.position_noise_m, 0.0, 10.0)?;

@@ -1,6 +1,6 @@
 use crate::pose::Pose;
 
-/// A report as the host receives it: a measured pose with its time stamps.
+/// A report that the host receives from the tracker: a measured pose with its time stamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerReport {
     /// Index of the measurement (called a solution). If the index grows by more than 1 between two reports,

@@ -9,7 +9,8 @@ use crate::rotation;
 
 impl TrackerModel {
     /// Returns the reports that the host receives while the head follows `motion`, in order of arrival. The sequence
-    /// ends when the tracker fails permanently. The same (model, motion, seed) gives the same sequence on every host.
+    /// ends if a fault makes the tracker fail permanently. The same (model, motion, seed) gives the same sequence on
+    /// every host.
     pub fn reports<M: Motion>(&self, motion: M, seed: u64) -> Reports<M> {
         Reports::new(self.clone(), motion, seed)
     }
@@ -116,8 +117,8 @@ impl<M: Motion> Reports<M> {
         filtered
     }
 
-    /// Returns true if a fault causes the loss of this measurement. All measurements within a dropout interval are
-    /// skipped in one step.
+    /// Returns true if an injected fault causes the loss of measurement `solution`. All measurements within a dropout
+    /// interval are skipped in one step.
     fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
@@ -174,7 +175,7 @@ impl<M: Motion> Reports<M> {
         Some(config.host.seen_ps(complete_ps, self.poll_phase_ps))
     }
 
-    /// Schedules the crash of a host with a patched kernel. The delay counts from the arrival of the first report.
+    /// Schedules the crash of a host with a patched Unix kernel. The delay counts from the arrival of the first report.
     fn schedule_crash(&mut self, arrives_ps: u64) {
         if let Some(after_ps) = self.model.config().crashes_patched_host_after_ps.filter(|_| self.crashes) {
             self.silent_from_ps = self.silent_from_ps.min(arrives_ps.saturating_add(after_ps));

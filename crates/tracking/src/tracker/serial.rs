@@ -43,33 +43,33 @@ impl SerialLine {
     }
 }
 
-/// The method by which the host's kernel reads the serial port.
+/// The method by which the host's Unix kernel reads the serial port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum SerialRead {
-    /// The kernel polls the port periodically, and the seed determines the phase. A record waits for at most one
-    /// period. All waiting times are equally probable over all seeds.
+    /// The unpatched Unix kernel polls the port periodically, and the seed determines the phase. A record waits for at
+    /// most one period. All waiting times are equally probable over all seeds.
     Polled {
         /// Time between two polls, ps, above 0.
         period_ps: u64,
     },
-    /// The patched kernel, which interrupts for each character. A record arrives without waiting.
+    /// The patched Unix kernel handles an interrupt for each character. A record arrives without waiting.
     InterruptPerCharacter,
 }
 
 impl SerialRead {
-    /// Returns the unpatched kernel, which polls the serial port every 30 ms (TR94).
+    /// Returns the method of the unpatched Unix kernel, which polls the serial port every 30 ms (TR94).
     pub fn unix() -> Self {
         Self::unix_by(&Tables::PAPERS)
     }
 
-    /// Returns the unpatched kernel with the polling interval `host.poll` of `tables`.
+    /// Returns the method of the unpatched Unix kernel, with the polling interval `host.poll` of `tables`.
     pub fn unix_by(tables: &Tables) -> Self {
         Self::Polled { period_ps: table::ms_to_ps(tables.host.poll) }
     }
 
-    /// Returns the instant (ps) at which the kernel reads a record whose last character arrives at `t_ps`. `phase_ps`
-    /// is the instant of the first poll.
+    /// Returns the instant (ps) at which the Unix kernel reads a record whose last character arrives at `t_ps`.
+    /// `phase_ps` is the instant of the first poll.
     pub fn seen_ps(&self, t_ps: u64, phase_ps: u64) -> u64 {
         match *self {
             Self::InterruptPerCharacter => t_ps,

@@ -69,8 +69,8 @@ impl HmdView {
         DVec2::new(self.width_px, self.height_px) / 2.0
     }
 
-    /// Returns the average number of pixels per degree over the width of the picture, which the papers use. A flat
-    /// picture has fewer pixels per degree in the middle than at the edge.
+    /// Returns the average number of pixels per degree over the width of the picture. The papers use this average,
+    /// although a flat picture has fewer pixels per degree in the middle than at the edge.
     pub fn mean_px_per_deg(&self) -> f64 {
         self.width_px / self.horizontal_deg
     }

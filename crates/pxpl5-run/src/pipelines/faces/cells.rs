@@ -10,19 +10,19 @@ use rendering_control::cube::FaceWarp;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Region priority rendering: assigns each structure to the fastest display memory of any of its cells. A structure
-/// that moves by itself is in memory 0.
+/// Region priority rendering: assigns each structure to the fastest (most often updated) display memory among the
+/// memories of its cells. A structure that moves by itself is in memory 0.
 ///
-/// In each cycle, the policy redraws the display memories that are due. All memories of a cycle are drawn from one
-/// position of the eye, because warping needs the exact positions. With warping, all memories of a cycle swap together.
-/// Otherwise, a memory that swapped before its neighbour would be warped for an eye position that the neighbour does
-/// not display yet.
+/// In each cycle (a round of updates), the policy redraws the display memories that are due. All memories of a cycle
+/// are drawn from one position of the eye, because warping needs the exact positions. With warping, all memories of a
+/// cycle swap together. Otherwise, a memory that swapped before its neighbour would be warped for an eye position that
+/// the neighbour does not display yet.
 pub(super) struct ByCells {
     policy: Cells,
     cells: Arc<[Vec<Cell>]>,
     falloff: Falloff,
     length_m: f64,
-    /// Eye position from which each display memory was last drawn.
+    /// For each display memory, the position of the eye in the last update of the memory.
     drawn_from: Vec<DVec3>,
     /// For each display memory, true if its last update contained any structure.
     held: Vec<bool>,
@@ -50,8 +50,8 @@ impl ByCells {
         cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)
     }
 
-    /// Returns the displacement of vertices with which the image of a display memory meets the image of the next slower
-    /// memory at their border.
+    /// Returns the displacement of vertices for a display memory. The displaced image meets the image of the memory
+    /// with the next lower update rate at their border.
     fn warp(&self, memory: usize) -> Option<FaceWarp> {
         let slower_from = *self.drawn_from.get(memory + 1).filter(|_| self.falloff != Falloff::None)?;
         Some(FaceWarp {
@@ -63,7 +63,8 @@ impl ByCells {
         })
     }
 
-    /// Returns the display memories to draw in this cycle. A memory that was empty and remains empty is left out.
+    /// Returns the display memories to draw in this cycle. A memory that contained no structure and still contains none
+    /// is left out.
     fn drawn(&mut self, due: &[bool], of_memories: &[Arc<[bool]>]) -> Vec<usize> {
         let mut drawn = Vec::new();
         for (memory, structures) in of_memories.iter().enumerate().filter(|(memory, _)| due[*memory]) {

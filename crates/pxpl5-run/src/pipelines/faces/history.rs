@@ -9,7 +9,7 @@ use pxpl5_machine::Record;
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
 
-/// An update of a display memory, with the period from which the memory shows it.
+/// An update of a display memory, with the first period in which the memory shows the update.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownUpdate {
     /// Update that is shown.
@@ -41,8 +41,8 @@ impl FaceHistory {
         Some(Self { memories: memories.collect() })
     }
 
-    /// Returns the update that each display memory shows in a period, from the lowest memory to the highest. Memories
-    /// that show nothing are left out.
+    /// Returns the update that each display memory shows in a period, in ascending order of the memory's index.
+    /// Memories that show nothing are left out.
     pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownUpdate> {
         (0..self.memories.len()).filter_map(move |memory| self.memory_at(memory, period))
     }
@@ -67,7 +67,8 @@ impl FaceHistory {
     }
 }
 
-/// Returns the updates of a display memory whose swaps are recorded. Each swap shows the next update of the memory.
+/// Returns the updates that a display memory has shown, from the recorded swaps of this memory. Each swap shows the
+/// next update.
 fn shown(record: &Record, notes: &RequestedUpdates, memory: usize, port: NodeId) -> Vec<ShownUpdate> {
     let of_memory = notes.of_memory(memory);
     let swaps = record.observation().swaps.iter().filter(|swap| swap.port == port);
@@ -114,8 +115,8 @@ impl Outcome {
 }
 
 impl FinalResults<'_> {
-    /// Returns the rotation latency of the middle pixel of each given field. Fields without a latency are left out. The
-    /// results of the fields must be final.
+    /// Returns the rotation latency of the middle pixel of each of the fields `fields`. Fields without a latency are
+    /// left out. The results of the fields must be final.
     #[must_use]
     pub fn rotation_latencies(&self, fields: impl Iterator<Item = PeriodNumber>) -> Vec<RotationLatency> {
         let Some((latched, head)) = OrientationTiming::of_run(self).zip(self.head) else { return Vec::new() };

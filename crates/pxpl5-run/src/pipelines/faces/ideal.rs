@@ -1,4 +1,5 @@
-//! Cube faces that an ideal renderer draws without delay, and the host's connection that carries them to the display.
+//! Cube faces that an ideal renderer draws without delay, and the host's connection that carries the faces to the
+//! display.
 
 use super::plan::{Due, DuePolicy, Plan, Updates};
 use crate::pipeline::Setup;
@@ -23,8 +24,8 @@ const BEFORE_RETRACE: Span = Span(1);
 /// Source of ideal cube faces. At each retrace, the source writes the updates that a policy requests into the display
 /// memories.
 ///
-/// Views, policies, number widths and the display's protocol are the same as on the machine. Drawing takes no time and
-/// sends no ring messages.
+/// Views, policies, the widths of numbers in bits, and the messages to the display are the same as on the machine.
+/// Drawing takes no time and sends no ring messages.
 pub(super) struct IdealFaces {
     pub(super) plan: Plan,
     pub(super) faces: Arc<Faces>,

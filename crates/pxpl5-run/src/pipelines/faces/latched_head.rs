@@ -61,8 +61,8 @@ impl OrientationTiming {
 
     /// Returns the first time after an instant at which a new orientation is in the register.
     ///
-    /// The first orientation arrives when the machine starts. Later orientations follow each report, or the schedule of
-    /// lines or pixels. `reports` returns the first report after an instant.
+    /// The first orientation arrives when the machine starts. Each later orientation comes from a report, or from the
+    /// schedule for latching by line or pixel. `reports` returns the arrival time of the first report after an instant.
     pub(crate) fn next(&self, after: Time, reports: impl Fn(Time) -> Option<Time>) -> Option<Time> {
         let first = self.loaded(Time::ZERO);
         if after < first {
@@ -74,8 +74,8 @@ impl OrientationTiming {
         }
     }
 
-    /// Returns the instant at which the host sent an orientation, and the instant for which it was predicted. `loaded`
-    /// is the time at which this orientation is in the register.
+    /// Returns the instant at which the host sent an orientation, and the instant for which the orientation was
+    /// predicted. `loaded` is the time at which this orientation is in the register.
     pub(crate) fn predicted(&self, loaded: Time) -> (Time, Time) {
         let aimed = match self.schedule {
             Some(schedule) => schedule.aimed(schedule.at(loaded)),
@@ -150,7 +150,7 @@ pub struct RotationLatency {
     ///
     /// For latching by line or pixel, the host waits for this time before it predicts from the report.
     pub wait_for_latch: Span,
-    /// Time of a pixel through the stages of the display's pipeline.
+    /// Time that a pixel takes through the stages of the display's pipeline.
     pub pipeline: Span,
     /// Time from the lighting of the first pixel with the latched orientation to the lighting of this pixel.
     pub scan: Span,

@@ -7,16 +7,16 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 
 /// A schedule of the orientations that a host predicts for parts of a field.
 ///
-/// Each orientation is in the display's register when the first pixel that uses it is latched. With latching by line, a
-/// line has one orientation. With latching by pixel, a line has as many orientations as the host's connection can
-/// carry. After the last orientation of a line, the connection is idle until the next line. If the transfer of an
-/// orientation takes longer than a line, the orientation serves several lines.
+/// Each orientation is in the display's register when the display latches the orientation for the first pixel that uses
+/// this orientation. With latching by line, a line has one orientation. With latching by pixel, a line has as many
+/// orientations as the host's connection can carry. After the last orientation of a line, the connection is idle until
+/// the next line. If the transfer of an orientation takes longer than a line, the orientation serves several lines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
     scan: FaceScan,
     /// Delay of a pixel through all stages of the display's pipeline.
     depth: Span,
-    /// Time from one load of the display's orientation register to the next load within a line.
+    /// Time between two successive loads of the display's orientation register within a line.
     link: Span,
     /// Number of lines of a field that use the same load of the display's orientation register.
     lines: u32,
@@ -36,7 +36,7 @@ pub(crate) struct Load {
 impl LoadSchedule {
     /// Creates a schedule. Returns `None` for a display that latches one orientation per field.
     ///
-    /// The host of such a display sends each orientation as soon as it is known.
+    /// The host of such a display sends each orientation as soon as the orientation is known.
     pub(crate) fn new(scan: FaceScan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
         let line = scan.lights(0, 2, PeriodNumber::FIRST)?.since(scan.lights(0, 0, PeriodNumber::FIRST)?);
         let lines = link.0.div_ceil(line.0.max(1)).max(1) as u32;
@@ -67,8 +67,8 @@ impl LoadSchedule {
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }
 
-    /// Returns the instant at which an orientation is in the display's register. The display latches the orientation
-    /// for its first pixel at most one pixel's time later.
+    /// Returns the instant at which an orientation is in the display's register. At most one pixel's time later, the
+    /// display latches this orientation for the first pixel that uses the orientation.
     pub(crate) fn loaded(&self, load: Load) -> Time {
         let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
         Time(first.0.saturating_sub(self.depth.0))
@@ -120,8 +120,8 @@ impl LoadSchedule {
         }
     }
 
-    /// Returns the load of the display's orientation register that is complete at exactly this instant, or else the
-    /// first load after this instant.
+    /// Returns the load of the display's orientation register that is complete at exactly the instant `loaded`. If
+    /// there is no such load, returns the first later load.
     pub(crate) fn at(&self, loaded: Time) -> Load {
         self.next(Time(loaded.0.saturating_sub(1)))
     }

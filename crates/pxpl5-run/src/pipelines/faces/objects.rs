@@ -1,4 +1,5 @@
-//! Policy `objects`: each structure is in the slowest display memory in which its image stays correct.
+//! Policy `objects`: each structure is in the slowest (least often updated) display memory in which its image stays
+//! correct.
 
 use super::plan::{Due, DuePolicy, Updates};
 use address_recalculation::FaceScan;
@@ -9,15 +10,15 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::collections::VecDeque;
 
-/// Priority rendering by objects: assigns each structure to the slowest display memory in which its image stays
-/// correct.
+/// Priority rendering by objects: assigns each structure to the slowest (least often updated) display memory in which
+/// its image stays correct.
 pub(super) struct ByObjects {
     scan: FaceScan,
     policy: Objects,
     threshold: Threshold,
     spheres: Vec<ObjectSphere>,
     cycle: u64,
-    /// Field in which the last cycle began, and the eye position at that time.
+    /// Field in which the last cycle (round of updates) began, and the eye position at that time.
     began: Option<(PeriodNumber, DVec3)>,
 }
 

@@ -55,10 +55,11 @@ pub struct FacePipeline {
     pub shading: Shading,
     /// For policies with cells (squares of the floor): true if structures are cut at the borders of cells.
     ///
-    /// Otherwise a whole structure is in the fastest display memory of any cell that it touches.
+    /// Otherwise each whole structure is in the fastest (most often updated) display memory among the memories of the
+    /// cells that the structure touches.
     pub segmented: bool,
-    /// For warped cells: how the displacement of vertices decreases with the distance from the border to a slower
-    /// display memory.
+    /// For warped cells: how the displacement of vertices decreases with the distance from the border to a display
+    /// memory with a lower update rate.
     pub falloff: Falloff,
     /// Lens between display and eye.
     pub lens: FaceLens,
@@ -303,8 +304,8 @@ impl Pipeline for FacePipeline {
         true
     }
 
-    /// Adapts the display to this variant: it must accept cube faces and use the variant's latch mode and lens. The
-    /// policy `Full` uses one display memory.
+    /// Adapts the display to this variant. The adapted display accepts cube faces, and uses the variant's latch mode
+    /// and lens. The policy `Full` uses one display memory.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
         // Replace a display that takes no faces.

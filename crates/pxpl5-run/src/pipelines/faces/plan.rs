@@ -62,7 +62,8 @@ impl Updates {
         }
     }
 
-    /// Returns the view of an eye at the same position but without rotation, along the world's axes.
+    /// Returns the view of an eye at the position of the eye in `view`. The axes of the returned view are the world's
+    /// axes, without rotation.
     ///
     /// Structures attached to the head are drawn for the newest direction of the head. Until the next update, these
     /// structures turn with the faces.
@@ -94,7 +95,7 @@ pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
 }
 
-/// A plan with a single display memory. Each update redraws all structures. The next update begins when the previous
+/// A plan for a single display memory. Each update redraws all structures. The next update begins when the previous
 /// update ends.
 pub(super) struct Full {
     updates: Updates,
@@ -144,7 +145,7 @@ pub(super) struct Cycles<P> {
     scan: FaceScan,
     policy: P,
     pending: VecDeque<Due>,
-    /// Field in which the last cycle began.
+    /// Field in which the last cycle (round of updates of display memories) began.
     began: Option<PeriodNumber>,
 }
 

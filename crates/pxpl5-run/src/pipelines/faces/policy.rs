@@ -5,7 +5,8 @@
 pub enum FacePolicy {
     /// One display memory holds all structures and is redrawn as often as possible.
     Full,
-    /// Each structure is drawn into the slowest display memory in which its image stays correct (CPR05).
+    /// Each structure is drawn into the slowest (least often updated) display memory in which its image stays correct
+    /// (CPR05).
     Objects,
     /// Each structure is drawn into the display memory of its cell. The memory depends on the cell's distance from the
     /// user's cell (CPR05).

@@ -21,9 +21,9 @@ pub struct SegmentedScene {
 impl SegmentedScene {
     /// Cuts structures at the borders of square cells with a side of `side_m` metres.
     ///
-    /// A cut through an edge creates one vertex that all adjacent segments share, so the segments meet bit for bit. The
-    /// colour and normal of this vertex are interpolated. A sphere is not cut and belongs to the cell of its centre. A
-    /// moving structure stays whole.
+    /// A cut through an edge creates one vertex that all adjacent segments share, so no gap opens between the segments.
+    /// The colour and normal of this vertex are interpolated. A sphere is not cut and belongs to the cell of its
+    /// centre. A moving structure stays whole.
     ///
     /// # Errors
     ///
@@ -132,7 +132,8 @@ impl Pieces {
         Ok(())
     }
 
-    /// Adds a structure with the given primitives. All other properties are copied from the structure `like`.
+    /// Adds a structure with the vertices `vertices`, the triangles `triangles` and the spheres `spheres`. All other
+    /// properties are copied from the structure `like`.
     fn add(&mut self, like: &Structure, vertices: &[Vertex], triangles: &[[u32; 3]], spheres: &[Sphere]) {
         let first = self.parts.vertices.len() as u32;
         let structure = Structure {

@@ -21,7 +21,7 @@ pub struct Columns {
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Field {
     name: &'static str,
-    /// Index of the quantity in this list: time, x, y, z, qw, qx, qy, qz.
+    /// Index of the quantity in the list (time, x, y, z, qw, qx, qy, qz), counted from 0.
     slot: usize,
     /// Number of decimal places of the unit: the unit is 10^-`places` seconds or metres.
     places: i32,
@@ -105,8 +105,8 @@ impl Columns {
         self.given.iter().all(|(_, column)| number(column).is_some())
     }
 
-    /// Returns the columns of a file with this header, in the order time, x, y, z, qw, qx, qy, qz. An empty `header`
-    /// means that the file has no header.
+    /// Returns the mapped columns of a file with the header `header`, in the order time, x, y, z, qw, qx, qy, qz. An
+    /// empty `header` means that the file has no header.
     pub(super) fn in_header(&self, line: u64, header: &[&str]) -> Result<[Column; 8], FileError> {
         // Find each mapped column by its name in the header, or by its number.
         let mut found: [Option<Column>; 8] = Default::default();
@@ -124,7 +124,7 @@ impl Columns {
     }
 }
 
-/// Returns the error of a line, counted from 1, whose form is wrong.
+/// Returns the error for a line with a wrong form. `line` is the number of the line, counted from 1.
 pub(super) fn of_line(line: u64, expected: impl Display, found: impl Display) -> FileError {
     FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("line {line}"))
 }

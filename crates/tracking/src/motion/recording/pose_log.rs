@@ -18,8 +18,8 @@ const NAMES: [&str; 8] = [
     "orientation_z",
 ];
 
-/// Units of a time by the suffix of its name, each as a number of decimal places of a second. A name without suffix is
-/// in nanoseconds, as an `XrTime` of OpenXR.
+/// Suffixes of the names of time columns, with the units that the suffixes stand for. A unit is a number of decimal
+/// places of a second. A time column without suffix is in nanoseconds, as an `XrTime` of OpenXR.
 const UNITS: [(&str, i32); 4] = [("_ns", 9), ("_us", 6), ("_ms", 3), ("_s", 0)];
 
 const NANOSECONDS: i32 = 9;
@@ -58,8 +58,8 @@ pub(super) fn is_header(header: &[&str]) -> bool {
     has("predicted") || (has("position") && has("orientation"))
 }
 
-/// Returns the eight columns of a pose log in the order of [`NAMES`]. The header can contain them in any order, among
-/// other columns.
+/// Returns the eight columns of a pose log in the order of [`NAMES`]. The header can contain these columns in any
+/// order, among other columns.
 pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], FileError> {
     let mut found: [Option<Column>; 8] = Default::default();
     for (index, name) in header.iter().enumerate() {
@@ -78,7 +78,7 @@ pub(super) fn columns(line: u64, header: &[&str]) -> Result<[Column; 8], FileErr
     Ok(found.map(|column| column.expect("none is missing")))
 }
 
-/// Returns true if a file has one JSON object per line. The first line of the file decides.
+/// Returns true if a file has one JSON object per line. Only the first line of the file is checked.
 pub(super) fn is_json(first_line: &str) -> bool {
     first_line.starts_with('{')
 }

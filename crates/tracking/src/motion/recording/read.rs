@@ -22,7 +22,7 @@ const EUROC: [&str; 8] = ["timestamp", "_x", "_y", "_z", "_w", "_x", "_y", "_z"]
 /// header.
 const TUM: [&str; 8] = ["timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"];
 
-/// Indices of the fields of a TUM line in the order of a sample: time, position, and the quaternion with its real part
+/// Indices of the columns of a TUM line in the order of a sample: time, position, and the quaternion with its real part
 /// first.
 const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 
@@ -32,11 +32,11 @@ const LENGTH_TOLERANCE: f64 = 1e-2;
 
 /// The format of the lines of a file: separator, columns and header.
 struct Layout {
-    /// Character that separates the fields, or `None` for any white space.
+    /// Character between two columns, or `None` if white space separates the columns.
     separator: Option<char>,
     /// Columns of time, x, y, z, qw, qx, qy, qz.
     columns: [Column; 8],
-    /// Exact number of fields in a line. With `None`, a line may have more fields than the columns need.
+    /// Exact number of columns in each line. `None` allows lines with any number of additional columns.
     n_fields: Option<usize>,
     axes: Axes,
     /// True if time counts from the first sample, whose time stamp can have any value.
@@ -60,7 +60,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Removes blanks and quotes around a field.
+/// Removes blanks and quotes around the text of a column.
 fn bare(field: &str) -> &str {
     field.trim().trim_matches('"')
 }
@@ -68,11 +68,11 @@ fn bare(field: &str) -> &str {
 /// The samples of a recorded file, and warnings about the file.
 pub(super) struct Samples {
     pub(super) samples: Vec<Sample>,
-    /// Warning about samples that were left out because they have the same time stamp as the preceding sample.
+    /// Warning about samples that were left out because their time stamps equal the time stamp of the preceding sample.
     pub(super) repeated: Option<String>,
 }
 
-/// Reads the samples of a recorded file and converts them to this crate's axes.
+/// Reads the samples of a recorded file and converts the samples to this crate's axes.
 pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, FileError> {
     // Number the lines from 1, and drop a byte order mark and empty lines.
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
@@ -86,8 +86,8 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
     collect(&lines, &layout, axes)
 }
 
-/// Checks samples that a program supplies, as if they were the lines of one of this crate's own files. Lines count from
-/// the first sample.
+/// Checks the samples that a program supplies, by the same rules as the lines of a file in this crate's own format.
+/// Errors give the number of a sample, counted from 1, as the number of a line.
 pub(super) fn given_samples(given: impl IntoIterator<Item = (f64, Pose)>) -> Result<Samples, FileError> {
     // The shortest decimal form of a number is read back as the same number.
     let text = |(time_s, Pose { position: p, orientation: q }): (f64, Pose)| {
@@ -125,7 +125,7 @@ fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, FileError>
     collect(&lines, &layout, axes)
 }
 
-/// Parses lines as samples and converts them to this crate's axes.
+/// Parses lines as samples and converts the samples to this crate's axes.
 fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Samples, FileError> {
     let axes = axes.unwrap_or(layout.axes);
     let mut first_ps = None;
