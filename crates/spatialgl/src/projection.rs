@@ -1,5 +1,5 @@
-//! Projections from the coordinates of a slice to its image. No projection moves the points of the slice itself (s =
-//! 0).
+//! Projections from the coordinates of a slice to its image. No projection moves the points of the slice itself, at
+//! distance s = 0.
 
 use glam::{DMat4, DVec4};
 use pxpl5_sim::mix;
@@ -181,8 +181,8 @@ pub(crate) fn matrix_of_rows(rows: [[f64; 4]; 4]) -> DMat4 {
     DMat4::from_cols(x, y, z, w).transpose()
 }
 
-/// Returns the rows of the matrix that transforms eye coordinates to homogeneous window coordinates. `projection` transforms
-/// eye coordinates to clip coordinates.
+/// Returns the rows of the matrix that transforms eye coordinates to homogeneous window coordinates. `projection`
+/// transforms eye coordinates to clip coordinates.
 pub(crate) fn window_of(projection: &DMat4, size: Size) -> [[f64; 4]; 4] {
     let rows = projection.transpose();
     let w = rows.w_axis;

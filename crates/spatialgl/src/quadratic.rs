@@ -1,5 +1,6 @@
-//! The hyperbolic clip on the plane of a triangle, as a quadratic in screen coordinates. Hardware that evaluates
-//! quadratics can use this form, for example the renderers of Pixel-Planes 5. **Beyond the paper.**
+//! The hyperbolic clip on the plane of a triangle, as a quadratic in screen coordinates. This clip tests the product of
+//! the distances from both boundary planes of the slice, plus a bias. Hardware that evaluates quadratics can use this
+//! form, for example the renderers of Pixel-Planes 5. **Beyond the SpatialGL paper.**
 
 use crate::clip::HalfWedge;
 

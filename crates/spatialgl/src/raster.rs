@@ -28,7 +28,7 @@ pub enum Coverage {
     #[default]
     Sampled,
     /// The pixels of `Sampled`, plus a line of adjacent pixels along the intersection with the slice. **Beyond the
-    /// paper**: the paper calls for this coverage, but states that GPUs do not offer it.
+    /// SpatialGL paper**: the paper calls for this coverage, but states that GPUs do not offer it.
     Connected,
 }
 
@@ -48,11 +48,13 @@ pub struct SliceStats {
     pub generated: u64,
     /// Number of fragments that lie in the slice's volume.
     pub accepted: u64,
-    /// Number of pixels added to close gaps in the intersections of surfaces with the slice, which is beyond the paper.
+    /// Number of pixels added to close gaps in the intersections of surfaces with the slice, which is beyond the
+    /// SpatialGL paper.
     pub added: u64,
 }
 
-/// The part of a recording that one slice draws: the primitives of its bin, in the order of drawing.
+/// The part of the recorded draw calls that one slice draws: the primitives of the slice's bin, in the order of
+/// drawing.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceWork<'a> {
     /// Recording whose primitives are drawn.

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The rule for a point exactly on a boundary plane of a wedge. The paper's rule "signs equal" is ambiguous there.
+/// The rule for a point exactly on a boundary plane of a wedge. The SpatialGL paper's rule "signs equal" is ambiguous
+/// there.
 ///
 /// The values `a` and `b` are the signed distances from the two boundary planes. Both are positive in the + lobe: the
 /// half of the double wedge on the +u side.
@@ -10,14 +11,14 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
     /// Each boundary plane belongs to the slice that begins with this plane, so every point off the axis is in exactly
-    /// one slice. This rule is our own.
+    /// one slice. This rule is not from the SpatialGL paper.
     #[default]
     HalfOpen,
-    /// The rule as printed in the paper: the product of the distances is positive. No slice contains its boundary
-    /// planes or the axis.
+    /// The rule as printed in the SpatialGL paper: the product of the distances is positive. No slice contains its
+    /// boundary planes or the axis.
     ProductPositive,
-    /// The rule as printed in the paper: the signs are equal, and zero counts as positive. A slice contains both planes
-    /// of the positive lobe (half of the double wedge), no plane of the negative lobe, and the axis.
+    /// The rule as printed in the SpatialGL paper: the signs are equal, and zero counts as positive. A slice contains
+    /// both planes of the positive lobe (half of the double wedge), no plane of the negative lobe, and the axis.
     SameSign,
     /// Both planes belong to both lobes (halves of the double wedge), as with user clip planes. The product of the
     /// distances is not negative.
@@ -122,7 +123,7 @@ impl SliceVolume {
         matches!(self, Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } | Self::Slab { .. })
     }
 
-    /// Returns the s of the plane in which the slice is shown: 0, or the middle of a slab.
+    /// Returns the coordinate s, in pixels, of the plane in which the slice is shown: 0, or the middle of a slab.
     pub(crate) const fn middle(&self) -> f64 {
         match self {
             Self::Slab { low, high } => (*low + *high) / 2.0,

@@ -1,4 +1,4 @@
-//! The interface between a display and the pipeline: views and slice volumes, without the machinery of the display.
+//! The interface between a display and the pipeline: views and slice volumes, without other properties of the display.
 
 use crate::bin::BinLayout;
 use crate::projection::{Size, window_of};

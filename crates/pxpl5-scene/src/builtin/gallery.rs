@@ -193,7 +193,7 @@ fn frame(solid: &mut Solid, number: usize, place: usize) {
     solid.end_structure(&format!("frame {number}.{place}"), None);
 }
 
-/// Adds a bench beside the path, on the side without the partition.
+/// Adds a bench beside the middle of straight part `number` of the path, on the side without the partition.
 fn bench(solid: &mut Solid, number: usize) {
     let leg = leg(number);
     let middle = leg.from + leg.along * (leg.length / 2.0) - leg.left * (2.0 * BESIDE_M);

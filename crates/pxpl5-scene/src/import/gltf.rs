@@ -359,7 +359,8 @@ fn transform(source: &Source<'_>, number: usize, node: &Node) -> Result<DMat4, F
     Ok(DMat4::from_scale_rotation_translation(scale, rotation, translation))
 }
 
-/// Returns false for a triangle with a corner twice. Strips use such triangles to join their parts.
+/// Returns true if the three corners are different vertices. Triangle strips contain triangles with equal corners to
+/// join separate parts.
 fn is_triangle([a, b, c]: [u32; 3]) -> bool {
     a != b && b != c && c != a
 }
@@ -416,7 +417,7 @@ fn encoded(linear: f64) -> u8 {
 
 /// The corners of the triangles of a primitive.
 struct Corners<'a> {
-    /// `None` if the corners are all vertices in their order.
+    /// Indices of the vertices at the corners. `None` if the corners are all vertices in their order.
     indices: Option<Numbers<'a>>,
     vertices: usize,
     mode: Mode,

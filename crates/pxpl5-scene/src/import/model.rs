@@ -173,8 +173,8 @@ impl Model {
         }
     }
 
-    /// Returns the normal of a polygon, or zero for a polygon without area. The triangles from index `first` on are the
-    /// polygon's and share its first corner.
+    /// Returns the normal of a polygon, or zero for a polygon without area. The triangles from index `first` on form
+    /// the polygon and share its first corner.
     pub(super) fn polygon_normal(&self, first: usize) -> Vec3 {
         direction(polygon::normal(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))))
     }
@@ -215,7 +215,7 @@ impl Model {
         Err(crate::error::nothing_to_draw(name, expected))
     }
 
-    /// Makes a scene of the mesh. The bytes of the file may be freed before this.
+    /// Makes a scene of the mesh. The bytes of the file may be freed before this call.
     pub(super) fn into_scene(
         mut self,
         name: &str,
@@ -305,7 +305,8 @@ impl Model {
         (self.shaded() / 8).max(1 << 16)
     }
 
-    /// Computes a mean normal for every vertex without a normal, for `count` groups of vertices from group `first` on.
+    /// Computes the mean normals of `count` groups of vertices, from group `first` on. Each vertex without a normal
+    /// gets the mean normal of its group.
     fn complete_normals(&self, vertices: &mut [Vertex], fit: &Fit, first: usize, count: usize) {
         let mut sums = vec![DVec3::ZERO; count.min(self.shaded() - first)];
         for triangle in &self.triangles {
@@ -384,7 +385,7 @@ fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), FileE
 }
 
 /// Greatest number of bytes per vertex in the hash table. A slot has five bytes, and between 7/16 and 7/8 of the slots
-/// are used. While the table grows, it needs half as much again.
+/// are used. While the table grows, it needs half as much memory again.
 const TABLE_BYTES: usize = 17;
 
 /// Keeps the items whose element in `keep` is true, and frees the unused memory. An empty list stays empty.

@@ -140,8 +140,8 @@ fn atom(source: &Source<'_>, at: FilePlace, line: &[u8]) -> Result<Atom, FileErr
     })
 }
 
-/// Symbols of two letters of further elements, which occur in no residue of [`RESIDUES`]. Symbols that begin with H are
-/// left out: in an atom's name, H and a second letter stand for a hydrogen at a certain position.
+/// Symbols, two letters long, of elements that occur in no residue of [`RESIDUES`]. Symbols that begin with H are left
+/// out: in an atom's name, H and a second letter stand for a hydrogen at a certain position.
 const OTHER_SYMBOLS: [&str; 48] = [
     "LI", "BE", "NE", "AL", "SI", "AR", "SC", "TI", "CR", "NI", "CU", "GA", "GE", "AS", "KR", "RB", "SR", "ZR", "NB",
     "MO", "RU", "RH", "PD", "AG", "CD", "IN", "SN", "SB", "TE", "XE", "CS", "BA", "LA", "CE", "PR", "SM", "EU", "GD",

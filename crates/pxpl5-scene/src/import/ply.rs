@@ -304,7 +304,8 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Returns the vertex for a corner. If faces have colours, points with several colours have several vertices.
+    /// Returns the vertex for a corner. If faces have colours, a point has one vertex for each colour of the faces
+    /// around the point.
     fn vertex(
         &mut self,
         at: FilePlace,
@@ -557,8 +558,8 @@ fn number(property: &Property) -> Option<f64> {
     })
 }
 
-/// The corners of a face in the integer type of the file. Converting corners of one byte each would multiply the
-/// memory.
+/// The corners of a face in the integer type of the file. A conversion of one-byte corners to a wider type would
+/// multiply the memory.
 struct FaceRow {
     corners: Property,
     colour: [u8; 3],

@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 /// per corner, so the memory stays near [`crate::config::MEMORY_FLOOR_BYTES`].
 pub(super) const MOST_CORNERS: usize = 1 << 15;
 
-/// Least sine of the angle at which an edge counts as turning back. Assumed, 1e-7 to 1e-4. In single precision, points
-/// of a straight line deviate by up to 6e-8.
+/// Sines of angles between successive edges are zero within this limit. Such edges lie on one line. Assumed, 1e-7 to
+/// 1e-4. In single precision, points of a straight line deviate by up to 6e-8.
 const STRAIGHT: f64 = 1e-6;
 
 /// The result of cutting a polygon into triangles.

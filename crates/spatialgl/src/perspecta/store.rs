@@ -116,8 +116,8 @@ impl FrameStore {
         if is_complete { StoreReceipt::SliceComplete(slice) } else { StoreReceipt::Part }
     }
 
-    /// Handles strobe 0, the first flash of a revolution. Shows the store that was requested before (not at) this
-    /// instant, if all its tiles have arrived. Returns the buffer if it was swapped.
+    /// Handles strobe 0, the first flash of a revolution. A swap request from before `now` takes effect if all
+    /// announced tiles have arrived. Returns the number of the buffer that is then shown, or `None` without a swap.
     pub(crate) fn swap(&mut self, now: Time) -> Option<u8> {
         self.scanned.clone_from(&self.volumes[self.shown]);
         let is_whole = self.missing.is_empty();

@@ -5,15 +5,15 @@ use image::{Rgb, RgbImage};
 use pxpl5_sim::parameters::SettingError;
 use std::sync::{Mutex, PoisonError};
 
-/// Units of light of one lit pixel in one strobe (flash). With 256 x 256 units, the shares of four neighbouring picture
-/// pixels are integers.
+/// Units of light of one lit pixel in one strobe (flash). With 256 x 256 units, the parts of the light for four
+/// neighbouring picture pixels are integers.
 const FULL: u64 = 1 << 16;
 
 /// Number of slices whose light one task sums before it adds this sum to the total.
 const SLICES_PER_TASK: u32 = 33;
 
-/// The position of an eye before the display, and the size of its picture. The eye looks at the middle of the display,
-/// and y points downwards in the picture.
+/// The position of an eye in front of the display, and the size of the eye's picture. The eye looks at the middle of
+/// the display, and y points downwards in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
@@ -338,7 +338,7 @@ fn is_cut(cut: Option<[f64; 2]>, angle: f64) -> bool {
 ///
 /// # Errors
 ///
-/// The same as [`view_planes`]. An error occurs already in the first picture.
+/// The same as [`view_planes`], for every picture.
 pub fn film(
     planes: &BitPlanes,
     camera: Camera,
