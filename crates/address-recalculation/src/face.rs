@@ -66,7 +66,7 @@ impl CubeFace {
 
     /// Returns the face that a direction hits, or `None` for the zero vector.
     ///
-    /// The longest component selects the face. On ties, x precedes y, and y precedes z.
+    /// The longest component selects the face. Among equally long components, x precedes y, and y precedes z.
     #[must_use]
     pub fn of(direction: Vector) -> Option<Self> {
         let is_finite = direction.iter().all(|component| component.is_finite());

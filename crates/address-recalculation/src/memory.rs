@@ -41,7 +41,8 @@ impl MemoryKind {
         words * REGION_TEXELS as u32 / MESSAGE_WORDS
     }
 
-    /// Writes the selected regions of a buffer into faces.
+    /// Computes the texels of a buffer's regions and writes them into `faces`. `wanted` has true for each region to
+    /// write.
     pub(crate) fn draw(self, regions: &Regions, wanted: &[bool], faces: &mut FaceSet) {
         for (number, region) in regions.iter().filter(|(number, _)| wanted[usize::from(**number)]) {
             let words = region.words.get_or_init(|| region.source.pixels());

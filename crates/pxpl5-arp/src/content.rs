@@ -48,7 +48,8 @@ impl Content {
     }
 }
 
-/// Returns the warp that joins a memory to the next slower memory. `places` are the two eye positions.
+/// Returns the warp that joins a memory to the next slower memory. `places` are the eye positions from which the two
+/// memories were drawn.
 pub(crate) fn warp(
     settings: &crate::settings::WalkSettings,
     dealing: &CellAssignment,

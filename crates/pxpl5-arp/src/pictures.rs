@@ -39,7 +39,7 @@ pub enum ArpPicture {
 /// Number of frames of the viewer's walk that the pictures show.
 const FRAMES: u64 = 1_800;
 
-/// For each experiment: its name, the figures of the paper that it redraws, and the names of our pictures.
+/// For each experiment: its name, the figures of the paper that it redraws, and the names of the project's pictures.
 pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
     ("E2", "2, 12 and 14", &["faces-0", "faces-1", "faces-2", "faces-3", "faces-whole", "memories"]),
     ("E7", "13 and 15 to 17", &["tears", "unsegmented", "warped", "difference"]),
@@ -238,7 +238,7 @@ fn gaps(
     Ok(pictures)
 }
 
-/// Runs a walk over a range of frames and returns its final state.
+/// Simulates a walk over a range of frames. Returns the simulation after the last of these frames.
 fn shown<'a>(
     world: &'a World,
     settings: &WalkSettings,

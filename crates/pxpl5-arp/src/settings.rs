@@ -74,7 +74,8 @@ pub struct WalkSettings {
 }
 
 impl WalkSettings {
-    /// Settings with objects cut but not warped, cells of the size fitted to table 1, and an ideal renderer.
+    /// Settings with objects cut but not warped, cells of the size fitted to table 1 of the paper CPR05, and an ideal
+    /// renderer.
     pub const CELLS: Self = Self {
         policy: PolicyKind::Cells,
         is_segmented: true,

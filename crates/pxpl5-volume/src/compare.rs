@@ -1,5 +1,5 @@
-//! Comparison of all clips and projections for one scene. The comparison includes methods that the paper rejects as too
-//! expensive.
+//! Comparison of all clips and projections for one scene. The comparison includes methods that the SpatialGL paper
+//! rejects as too expensive.
 
 use crate::choices::{ClipKind, Named, ProjectionKind};
 use crate::experiment::Volume;
@@ -53,7 +53,7 @@ pub struct VariantRow {
     pub volumes_hz_overlapped: f64,
     /// Hash of all bits of the volume.
     pub volume_hash: String,
-    /// Settings of this variant that go beyond the paper.
+    /// Settings of this variant that go beyond the SpatialGL paper.
     pub beyond_paper: Vec<&'static str>,
     /// Time in which this computer drew the volume, in seconds.
     pub host_seconds: f64,
@@ -100,8 +100,8 @@ struct Variant {
     coverage: Coverage,
 }
 
-/// Returns all variants. The first 18 combine each of six clips with each of three projections. Further variants use
-/// the hyperbolic clip and an orthographic projection, with more samples and with connected coverage.
+/// Returns all variants. The first 18 combine each of six clips with each of three projections. The remaining variants
+/// use the hyperbolic clip and an orthographic projection, with more samples and with connected coverage.
 fn variants() -> Vec<Variant> {
     let sampled = |clip, projection| Variant { clip, projection, samples: 1, coverage: Coverage::Sampled };
     let mut all: Vec<Variant> = ClipKind::ALL

@@ -11,7 +11,7 @@ use spatialgl::{
 };
 use std::time::Instant;
 
-/// A drawn volume, with the settings, display and recording from which it was drawn.
+/// A drawn volume, with the settings, the display and the recorded graphics commands from which it was drawn.
 #[derive(Clone, Debug)]
 pub struct Volume {
     /// Settings with which the volume was drawn.

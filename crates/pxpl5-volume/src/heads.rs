@@ -6,14 +6,14 @@
 //!
 //! # Behaviour
 //!
-//! - The volume stands upright before the head. The middle of the volume is `viewer.distance_mm` ahead of the start of
-//!   the motion, and the +z axis points towards the head. Both displays show the same scene at the position of the
-//!   volume.
+//! - The volume stands upright in front of the head. The middle of the volume is `viewer.distance_mm` ahead of the
+//!   start of the motion, and the +z axis points towards the head. Both displays show the same scene at the position of
+//!   the volume.
 //! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. For the head-mounted display, the error
 //!   is the angle between the drawn and the true position of a point. The point was drawn for the pose one latency ago.
 //!   For the volume, the error is the angle between a point and the voxel that shows the point in the nearest slice.
-//! - Dither makes the level of a colour correct only on average over a cell of the dither matrix. The study reports the
-//!   visual angle of this cell.
+//! - Dither makes the level of a colour correct only on average over the square of pixels that the dither matrix
+//!   covers. The study reports the visual angle of this square.
 //! - In pictures, each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn
 //!   for the pose of the eye one latency ago. This picture is then shifted by the error of its middle.
 //!
@@ -71,7 +71,7 @@ pub struct HeadSample {
     /// Mean distance between a point and the voxel that shows the point, in millimetres perpendicular to the line of
     /// sight.
     pub voxel_mean_mm: f64,
-    /// Visual angle of a cell of the dither matrix at the middle of the volume, in degrees.
+    /// Visual angle of the square of pixels that the dither matrix covers, at the middle of the volume, in degrees.
     pub dither_cell_deg: f64,
 }
 
@@ -107,7 +107,7 @@ pub struct HeadStudyConfig {
     pub instants: u32,
 }
 
-/// A moving head before a volume, for the comparison of the volume with a head-mounted display.
+/// A moving head in front of a volume, for the comparison of the volume with a head-mounted display.
 #[derive(Debug)]
 pub struct HeadComparison<'a> {
     volume: &'a Volume,
@@ -134,7 +134,7 @@ impl Volume {
 }
 
 impl<'a> HeadComparison<'a> {
-    /// Places a volume before a moving head.
+    /// Places a volume in front of a moving head.
     ///
     /// # Errors
     ///
@@ -346,7 +346,7 @@ fn moved(image: &SliceImage, by: DVec2) -> RgbImage {
 }
 
 /// Returns the matrix from world coordinates in metres to coordinates of an upright volume in pixels. The volume stands
-/// before the head.
+/// in front of the head.
 fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     let ahead = head.orientation * DVec3::NEG_Z;
     let yaw = DQuat::from_rotation_y(libm::atan2(-ahead.x, -ahead.z));

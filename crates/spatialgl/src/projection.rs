@@ -39,13 +39,13 @@ pub struct Jitter {
     pub eye_distance: f64,
     /// Radius of the disc in which the random eye lies, in radii of the display. Assumed 0.5, 0 to 1.
     pub eye_radius: f64,
-    /// Greatest shift of a point by the shear, at the face of the slice's slab, in pixels. Assumed 0.5, 0 to 1.
+    /// Greatest shift of a point by the shear, at the near or far plane of the slice, in pixels. Assumed 0.5, 0 to 1.
     pub shear_px: f64,
 }
 
 impl Jitter {
     /// Returns the assumed jitter with this seed. The eye is four display radii away, within a disc of half a radius.
-    /// The shear shifts points at the slab's face by at most half a pixel.
+    /// The shear shifts points at the slice's near and far planes by at most half a pixel.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { seed, eye_distance: 4.0, eye_radius: 0.5, shear_px: 0.5 }

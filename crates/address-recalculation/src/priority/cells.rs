@@ -49,7 +49,8 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     near.saturating_add(after - before)
 }
 
-/// Assignment of cells to memories by rings: all cells at the same distance from the home cell form a ring.
+/// Assignment of cells to memories by rings. The home cell contained the eye at the time of the assignment, and all
+/// cells at the same distance from it form a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
     /// The home cell, which is the centre of all rings.
@@ -87,8 +88,8 @@ impl CellAssignment {
 
     /// Returns the distance, in metres, between a position and the border at which memory k = `memory` begins.
     ///
-    /// The distance is 0 on the border and outside of the border. For memory 0, which begins at the eye, the distance
-    /// is always 0.
+    /// The cells of the memory lie outside this border. For a position on or outside the border, the distance is 0. For
+    /// memory 0, which begins at the eye, the distance is always 0.
     #[must_use]
     pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
@@ -182,8 +183,8 @@ impl Cells {
         self.threshold.way(self.distances(eye).get(memory).copied().unwrap_or(0.0))
     }
 
-    /// Returns, for each memory, the distance from the eye that determines when the memory is due, in metres. This
-    /// distance leads to the border of the memory's block of cells, or to the memory's nearest occupied cell.
+    /// Returns, for each memory, the distance from the eye that determines when the memory is due, in metres. The
+    /// distance is measured to the border of the memory's block of cells, or to the memory's nearest occupied cell.
     fn distances(&self, eye: DVec3) -> Vec<f64> {
         if !self.to_held_cells {
             return (0..self.dealing.memories).map(|memory| self.dealing.distance(eye, memory)).collect();

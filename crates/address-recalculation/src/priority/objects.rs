@@ -1,4 +1,4 @@
-//! The policy `objects`: each object is in the slowest display memory that keeps the object's image right.
+//! The policy `objects`: each object is in the least often drawn display memory that keeps the object's image right.
 
 use crate::priority::config::PriorityTiming;
 use crate::priority::update::Update;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 
-/// Largest coordinate, in metres, of a world that the function can cut.
+/// Largest coordinate, in metres, of a mesh that [`Segmentation::new`] can cut.
 const FARTHEST_M: f64 = 1e6;
 
 /// Largest number of pieces that the triangles of one mesh may be cut into.
@@ -29,8 +29,8 @@ pub struct CutVertex {
 pub struct Segmentation {
     /// The vertices of the mesh, followed by the vertices that cuts have created.
     pub vertices: Vec<DVec3>,
-    /// Origin of each vertex that a cut has created, in the same order. The origin serves to interpolate colours and
-    /// normals.
+    /// Origin of each vertex that a cut has created, in the order of `vertices`. The origin serves to interpolate
+    /// colours and normals.
     pub cuts: Vec<CutVertex>,
     /// The triangles in each cell, with the orientation of the original triangles.
     pub segments: BTreeMap<Cell, Vec<[u32; 3]>>,

@@ -41,7 +41,7 @@ impl Falloff {
     }
 }
 
-/// The displacement of a memory's vertices near the border to the next slower memory.
+/// The displacement of a memory's vertices near the border to the next less often drawn memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionWarp {
     falloff: Falloff,

@@ -18,10 +18,10 @@ pub struct Corner {
 /// Counts of triangles and texels of a drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DrawCounts {
-    /// Number of triangles given to the drawing.
+    /// Number of triangles to draw, visible or not.
     pub triangles: u64,
-    /// Sum, over all triangles, of the number of faces that the triangle can touch. A real machine transforms a
-    /// triangle once for each of these faces.
+    /// Number of faces that a triangle can touch, summed over all triangles. A real machine transforms a triangle once
+    /// for each of these faces.
     pub on_faces: u64,
     /// Number of texels that triangles cover. A texel counts once for each triangle that covers it, visible or not.
     pub texels: u64,

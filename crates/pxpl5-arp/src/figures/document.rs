@@ -163,7 +163,7 @@ fn fits(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Returns the interpretations of the paper's table 1 as Markdown, ranked by their error.
+/// Returns the interpretations of table 1 of the paper CPR05 (update rates) as Markdown, ranked by their error.
 #[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
@@ -282,7 +282,8 @@ fn thresholds(text: &mut String, all: &Experiments) {
     );
 }
 
-/// Writes the consequences for table 2 of one fact: cutting does not change the number of sections.
+/// Writes a consequence for table 2 of the paper CPR05 (sections in each memory). Cutting does not change the number of
+/// sections.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();

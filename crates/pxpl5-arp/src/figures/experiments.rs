@@ -16,8 +16,7 @@ use glam::{DMat3, DQuat, DVec3};
 use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
-/// Number of frames of each walk: two minutes, or four fifths of a round on the gallery's path. The specification asks
-/// for at least 1,800 frames.
+/// Number of frames of each walk: two minutes, or four fifths of a round on the gallery's path.
 pub const EXPERIMENT_FRAMES: u64 = 7_200;
 
 /// Settings and results of one simulated walk of the viewer.
@@ -30,7 +29,7 @@ pub struct NamedWalk {
     pub report: ArpReport,
 }
 
-/// The side of a cell (square of the floor), fitted to one update rate of table 1.
+/// The side of a cell (square of the floor), fitted to one update rate in table 1 of the paper CPR05.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellFit {
     /// Rules with which the cell side was fitted.
@@ -57,9 +56,9 @@ pub struct SlowRendererResult {
 pub struct Experiments {
     /// Two fits of the cell side in the gallery: with this project's rules, and with rings of equal width.
     pub fits: [CellFit; 2],
-    /// All interpretations of table 1.
+    /// All interpretations of table 1 of the paper CPR05 (update rates).
     pub interpretations: Interpretations,
-    /// Thresholds of the image error, each with the cell side that fits table 1.
+    /// Thresholds of the image error, each with the cell side that fits the update rates in table 1 of the paper CPR05.
     pub thresholds: Vec<ThresholdRow>,
     /// Number of segments (parts of objects) into which the fitted cells cut the gallery.
     pub segments: usize,
@@ -231,7 +230,7 @@ pub fn size_limits() -> Vec<SizeLimit> {
     kinds.map(|(angle, factor)| size_limit(angle, factor)).to_vec()
 }
 
-/// Number of bisection steps. A double has fewer bits, so more steps change nothing.
+/// Number of bisection steps. A double has fewer bits of precision, so more steps would change no result.
 const BISECTION_STEPS: usize = 60;
 
 fn size_limit(angle: &'static str, factor: f64) -> SizeLimit {

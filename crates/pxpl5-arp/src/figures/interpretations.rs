@@ -1,5 +1,5 @@
-//! Interpretations of the paper's table 1: each open question of the paper has several answers, which are simulated and
-//! ranked.
+//! Interpretations of table 1 of the paper CPR05 (update rates). Each open question of the paper has several answers,
+//! which are simulated and ranked.
 //!
 //! If the hall and the path are measured in cells, the update rates depend only on the product of threshold and cell
 //! side. Therefore one number is fitted to three rates. A cell side stands for all pairs of threshold and cell side
@@ -92,7 +92,7 @@ pub struct Trial {
 
 impl Trial {
     /// Returns the root mean square of the relative errors in percent, for the update rates of the given memories
-    /// compared with table 1.
+    /// compared with table 1 of the paper CPR05.
     #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();
@@ -151,12 +151,12 @@ pub struct LeftOutRate {
     pub error_percent: f64,
 }
 
-/// All interpretations of table 1, best first.
+/// All interpretations of table 1 of the paper CPR05 (update rates), best first.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interpretations {
     /// Sets of rules with their results, in ascending order of the mean error.
     pub ranked: Vec<RankedRules>,
-    /// Predictions of each of the three update rates. Rules, hall and path are chosen by the other two rates.
+    /// Prediction of each of the three update rates. Rules, hall and path are those that fit the other two rates best.
     pub left_out: Vec<LeftOutRate>,
 }
 
@@ -258,7 +258,7 @@ pub const PIXEL_DEG: f64 = 60.0 / 640.0;
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
 /// A threshold of the image error, with the cell side and the tears (gaps between memories) that follow. The product of
-/// threshold and cell side is fixed, because it fits table 1.
+/// threshold and cell side is fixed, because it fits the update rates in table 1 of the paper CPR05.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
     /// The threshold of the image error as text, in pixels of the display or texels of an ideal face.
@@ -275,7 +275,7 @@ pub struct ThresholdRow {
 }
 
 /// Returns several thresholds, given in pixels or texels, with their consequences. `fitted_cell_m` is the cell side
-/// that fits table 1 at the default threshold.
+/// that fits table 1 of the paper CPR05 at the default threshold.
 #[must_use]
 pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
     let product = fitted_cell_m * PriorityTiming::PAPERS.theta_deg;

@@ -1,9 +1,9 @@
-//! Rules of priority rendering that the paper leaves open.
+//! Rules of priority rendering that the paper CPR05 (Chow, Pose and Regan, ACSC 2005) leaves open.
 
 use address_recalculation::priority::PriorityTiming;
 use serde::Serialize;
 
-/// One set of answers to the questions about priority rendering that the paper leaves open.
+/// One set of answers to the questions about priority rendering that the paper CPR05 leaves open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rules {
     /// Number of rings of cells around the user's cell in memory 0.

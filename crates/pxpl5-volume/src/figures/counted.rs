@@ -1,4 +1,4 @@
-//! Figures of the paper that are counted in views of the display, or measured in drawn volumes.
+//! Figures of the SpatialGL paper that are counted in views of the display, or measured in drawn volumes.
 
 use super::printed::{TRIANGLE, display, recording};
 use pxpl5_sim::figures::FigureRow;
@@ -10,7 +10,7 @@ use spatialgl::{
     SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
-/// Returns all figures of the paper that are counted or measured.
+/// Returns all figures of the SpatialGL paper that are counted or measured.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;

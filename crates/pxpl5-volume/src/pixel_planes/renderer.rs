@@ -119,8 +119,8 @@ impl PixelPlanesRenderer {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the work for each of these slices when it was last drawn. The work is zero for a slice that was never
-    /// drawn.
+    /// Returns the work for each of these slices at the time when the slice was last drawn. The work is zero for a
+    /// slice that was never drawn.
     #[must_use]
     pub fn loads(&self, views: &[SliceView]) -> Vec<SliceLoad> {
         let loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);

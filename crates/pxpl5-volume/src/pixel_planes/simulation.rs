@@ -418,8 +418,8 @@ fn words_of(body: &Body) -> u32 {
     if let Body::Words(words) = body { words.len() as u32 } else { 0 }
 }
 
-/// Returns the renderer's times, in which slice programs replace the commands whose codes they use. A slice triangle
-/// replaces a triangle, and the halftone replaces deferred shading.
+/// Returns the renderer's times, in which slice programs replace the commands whose codes these programs use. A slice
+/// triangle replaces a triangle, and the halftone replaces deferred shading.
 fn slice_timing(layout: &Layout) -> RendererTiming {
     RendererTiming {
         triangle_clocks: u64::from(SliceTriangle::clocks(layout)),
