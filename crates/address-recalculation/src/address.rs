@@ -34,8 +34,9 @@ impl FaceHit {
 pub struct Footprint {
     /// Upper left, upper right, lower left and lower right texel.
     ///
-    /// Without guard texels, a texel beyond an edge belongs to the neighbouring face. `None` marks a texel beyond a
-    /// corner. The mean of the other three texels replaces such a texel.
+    /// Without guard texels (a margin that repeats the neighbouring face), a texel beyond an edge belongs to the
+    /// neighbouring face. `None` marks a texel beyond a corner. The mean of the other three texels replaces a texel
+    /// beyond a corner.
     pub texels: [Option<TexelAddress>; 4],
     /// Horizontal and vertical distance from the upper left texel, as fractions from 0 to 1 inclusive. The unit is
     /// `2^-weight_bits`.

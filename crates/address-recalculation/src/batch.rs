@@ -1,6 +1,7 @@
 //! Address computation for groups of pixels. Each step is a loop over all pixels, so the compiler can vectorize it.
 //!
-//! Directions are sums of three products below 2^53, so doubles hold them exactly. Quotients need no correction either:
+//! Directions are sums of three products below 2^53, so doubles hold the sums exactly. Quotients need no correction
+//! either:
 //!
 //! - A quotient is a multiple of 1/(2F) and less than 2^q. Here q is the number of bits of a quotient, and F is the
 //!   component of the direction along the face's axis. F is below 2^(v + m - 1), where v and m are the numbers of bits

@@ -7,7 +7,7 @@ use std::io::BufRead;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// Widest angle of a flat picture or a radial lens, in degrees. Other pipelines have the same limit.
+/// Widest angle of a flat picture or a radial lens, in degrees. All displays with flat pictures have the same limit.
 const WIDEST_FLAT_DEG: f64 = 170.0;
 
 /// The lens between the picture and the eye.

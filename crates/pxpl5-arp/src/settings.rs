@@ -14,7 +14,8 @@ pub enum PolicyKind {
     Full,
     /// Each object is in the least often updated memory that keeps its image error below the threshold.
     Objects,
-    /// The floor is divided into square cells. Each cell is assigned to a memory by its distance from the user's cell.
+    /// The floor is divided into square cells. Each cell is assigned to a memory by its distance from the viewer's
+    /// cell.
     #[default]
     Cells,
 }
@@ -44,7 +45,7 @@ pub enum SourceKind {
     /// A renderer that draws memories one after the other at a limited rate. Updates are shown in the next frame at the
     /// earliest.
     Timed {
-        /// Number of triangles drawn per second. A triangle counts once, even if it covers several faces.
+        /// Number of triangles drawn per second. A triangle counts once, even if the triangle covers several faces.
         triangles_per_s: f64,
     },
 }
@@ -62,10 +63,10 @@ pub struct WalkSettings {
     pub policy: PolicyKind,
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
-    /// Rule by which the displacement by warping decreases with the distance from the border to a slower memory.
-    /// [`Falloff::None`] disables warping, so gaps appear at cuts.
+    /// Rule by which the displacement by warping decreases with the distance from the border to a less often drawn
+    /// memory. [`Falloff::None`] disables warping, so gaps appear at cuts.
     pub falloff: Falloff,
-    /// True if an update of a memory makes all faster memories due for an update.
+    /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,
     /// Parameters of the policies.
     pub numbers: PriorityTiming,
@@ -86,7 +87,8 @@ impl WalkSettings {
         source: SourceKind::Ideal,
     };
 
-    /// The settings of [`Self::CELLS`] with warping. An update of a memory then also updates all faster memories.
+    /// The settings of [`Self::CELLS`] with warping. An update of a memory then also updates all more often drawn
+    /// memories.
     pub const WARPED: Self = Self { falloff: Falloff::Linear, has_cascade: true, ..Self::CELLS };
 
     /// Settings with one memory, in which everything is drawn in every frame.

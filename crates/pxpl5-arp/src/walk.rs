@@ -30,7 +30,7 @@ pub struct MemoryTally {
     pub age_frames: u64,
     /// Part of `age_frames` that passed before each update was first shown.
     pub drawing_frames: u64,
-    /// Number of frames that it took to draw the shown update.
+    /// Number of frames in which the renderer drew the shown update.
     drawn_in: u64,
 }
 

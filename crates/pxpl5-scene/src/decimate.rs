@@ -5,7 +5,8 @@
 //! surface stays closed.
 //!
 //! When no edge can be collapsed, whole connected pieces are removed, the smallest first. When one piece is left, its
-//! smallest triangles are removed. Spheres have no edges. Some of them are removed, evenly over their order.
+//! smallest triangles are removed. Spheres have no edges. Some spheres are removed, spread evenly over the list of
+//! spheres.
 
 mod collapse;
 mod quadric;

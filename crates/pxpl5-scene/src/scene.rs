@@ -181,7 +181,7 @@ impl Scene {
         &self.parts.lighting
     }
 
-    /// Returns the motion of a head that looks at this scene. The model stays in view during runs of any length.
+    /// Returns the motion of a head that looks at this scene. The scene stays in view for any duration.
     #[must_use]
     pub fn motion(&self) -> &HeadMotion {
         &self.parts.motion

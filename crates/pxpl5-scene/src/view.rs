@@ -47,7 +47,7 @@ impl View {
     }
 }
 
-/// Numbers of a head-mounted display in metres, degrees and pixels. [`Hmd::new`] checks them.
+/// Numbers of a head-mounted display in metres, degrees and pixels. [`Hmd::new`] checks the numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HmdConfig {

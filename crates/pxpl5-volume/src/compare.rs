@@ -49,7 +49,7 @@ pub struct VariantRow {
     pub model_ms: [f64; 3],
     /// Volumes per second of the time model if processor, GPU and bus work one after the other.
     pub volumes_hz_serial: f64,
-    /// Volumes per second of the time model if processor, GPU and bus work at the same time.
+    /// Volumes per second of the time model if processor, GPU and bus work at the same time on different volumes.
     pub volumes_hz_overlapped: f64,
     /// Hash of all bits of the volume.
     pub volume_hash: String,
@@ -72,7 +72,7 @@ pub struct VolumeComparison {
     pub triangles: u64,
     /// Width of the rings in `brightness_by_radius`, pixels.
     pub ring_px: u32,
-    /// Seed of the jitter's random sequence.
+    /// Seed of the random eyes and shears of the jittered projection.
     pub seed: u64,
     /// One row for each variant.
     pub variants: Vec<VariantRow>,

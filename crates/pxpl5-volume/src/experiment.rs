@@ -33,7 +33,8 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Draws a scene with its middle on the axis and its farthest corner at 0.9 of the radius.
+    /// Draws a scene. The middle of the scene is on the axis, and its farthest corner is at 0.9 times the radius of the
+    /// display.
     ///
     /// # Errors
     ///

@@ -116,7 +116,7 @@ pub struct HeadComparison<'a> {
     /// Matrix from the world coordinates of the motion, in metres, to the coordinates of the volume, in pixels.
     into_volume: DMat4,
     latency_ps: u64,
-    /// Points of the scene, each with the voxel that shows it, in pixels of the volume.
+    /// Points of the scene, each with the voxel that shows the point, in pixels of the volume.
     points: Vec<[DVec3; 2]>,
 }
 
@@ -363,8 +363,8 @@ fn around(place: DVec3) -> [f64; 2] {
     [libm::atan2(place.x, place.z).to_degrees(), libm::atan2(place.y, level).to_degrees()]
 }
 
-/// Returns vertices of the scene that the display can show, each with the voxel that shows it. The vertices are evenly
-/// spread over the scene's list of vertices.
+/// Returns vertices of the scene that the display can show, each with the voxel that shows the vertex. The vertices are
+/// evenly spread over the scene's list of vertices.
 fn points(volume: &Volume) -> Vec<[DVec3; 2]> {
     let shown: Vec<DVec3> = volume
         .commands

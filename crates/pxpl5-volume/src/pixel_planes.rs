@@ -9,9 +9,9 @@
 //! ```
 //!
 //! The emulated pixel arrays draw the slices, and their instructions determine the clocks. Two methods compute the
-//! number of volumes per second. [`SliceBounds`] has the time that each part of the machine needs if it never waits.
-//! [`simulate()`] sends the messages of the volume through the ring and the boards, event by event, and is never faster
-//! than the bounds.
+//! number of volumes per second. [`SliceBounds`] has the time that each part of the machine needs if the part never
+//! waits. [`simulate()`] sends the messages of the volume through the ring and the boards, event by event, and is never
+//! faster than the bounds.
 
 mod bounds;
 mod command;

@@ -23,7 +23,7 @@ pub struct VolumeReport {
     pub clip: String,
     /// Name of the projection.
     pub projection: &'static str,
-    /// Seed of the jitter's random sequence.
+    /// Seed of the random eyes and shears of the jittered projection.
     pub seed: u64,
     /// Name of the renderer that drew the slices.
     pub renderer: &'static str,
@@ -39,7 +39,7 @@ pub struct VolumeReport {
     pub passes: u64,
     /// Number of primitives drawn, summed over all slices and passes.
     pub draws: u64,
-    /// Number of primitives that would be drawn without sorting them into bins.
+    /// Number of primitives that would be drawn without bins.
     pub draws_unbinned: u64,
     /// Number of entries in all bins. A primitive has an entry in each bin that it touches.
     pub bin_memberships: u64,
@@ -186,7 +186,7 @@ pub struct ModelTimes {
 pub struct Override {
     /// Path of the number, as after `--set`.
     pub path: String,
-    /// Value of the number in this volume.
+    /// Value of the number with which the volume was drawn.
     pub value: Value,
     /// Value or range that the SpatialGL paper gives.
     pub papers: Value,

@@ -34,7 +34,7 @@ pub struct VolumeSettings {
     pub jitter: JitterNumbers,
     /// Eye of the perspective projection.
     pub eye: EyeNumbers,
-    /// Seed of the jitter's random sequence.
+    /// Seed of the random eyes and shears of the jittered projection.
     pub seed: u64,
     /// Method of sorting primitives into bins.
     pub binning: Binning,

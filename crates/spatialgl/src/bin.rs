@@ -1,5 +1,5 @@
-//! Binning: finds for each primitive the groups of slices that can show it. Binning takes place once per volume, and
-//! only uses the signs of a few plane equations.
+//! Binning finds, for each primitive, the groups of slices that can show the primitive. Binning takes place once per
+//! volume, and only uses the signs of a few plane equations.
 //!
 //! The code of a vertex has one bit per plane, which is set on the positive side. The `and` of a primitive's codes
 //! gives the planes with the whole primitive on their positive side. The complement of the `or` gives the planes with
@@ -164,7 +164,8 @@ impl Codes {
 /// second is true if any part of the primitive lies on this side.
 ///
 /// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
-/// plane is therefore drawn by the slices on both sides, because the half-open rule may assign it to either side.
+/// plane is therefore drawn by the slices on both sides, because the half-open rule may assign the triangle to either
+/// side.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {
         BinTolerance::Codes => return (least >= 0.0, most >= 0.0),

@@ -72,7 +72,7 @@ pub enum Topology {
     LineStrip,
     /// Each group of three vertices is a triangle.
     Triangles,
-    /// Each vertex from the third on forms a triangle with the two vertices before it.
+    /// Each vertex from the third on forms a triangle with the two preceding vertices.
     TriangleStrip,
     /// Each vertex from the third on forms a triangle with the first vertex and the previous vertex.
     TriangleFan,
@@ -166,7 +166,7 @@ impl DrawContext {
         Ok(())
     }
 
-    /// Ends the current recording of draw calls and returns it.
+    /// Ends the current recording of draw calls and returns the recording.
     #[must_use]
     pub fn present(&mut self) -> CommandBuffer {
         std::mem::take(&mut self.recording)

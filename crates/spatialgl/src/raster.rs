@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coverage {
-    /// A primitive covers the pixels whose centres lie inside it.
+    /// A primitive covers the pixels whose centres lie inside the primitive.
     #[default]
     Sampled,
     /// The pixels of `Sampled`, plus a line of adjacent pixels along the intersection with the slice. **Beyond the
@@ -63,7 +63,7 @@ pub struct SliceWork<'a> {
     pub coverage: Coverage,
 }
 
-/// A renderer of slices. The image that it receives is in the state after [`SliceImage::clear`].
+/// A renderer of slices. [`SliceImage::clear`] has cleared the image in which a slice is drawn.
 pub trait SliceRenderer: Send + Sync {
     /// Draws one slice with all its passes.
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats;

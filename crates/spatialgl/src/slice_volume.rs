@@ -89,7 +89,7 @@ pub enum WedgeTest {
 pub enum SliceVolume {
     /// All points between the near and far planes.
     Frustum,
-    /// A slab low <= s < high parallel to the slice, in pixels.
+    /// A slab low <= s < high parallel to the slice, where s is the distance from the slice in pixels.
     Slab {
         /// Lower limit of the slab's s, inclusive.
         low: f64,

@@ -22,7 +22,8 @@ pub struct SliceView {
     /// True if the nearest surface hides farther surfaces. This suits a display that is seen from one side only.
     pub hides: bool,
     pub(crate) window: [[f64; 4]; 4],
-    /// Slightly enlarged range of s in which anything can be drawn, or `None` if the range is unknown.
+    /// Slightly enlarged range of distances from the slice in which anything can be drawn, or `None` if the range is
+    /// unknown.
     pub(crate) reach: Option<[f64; 2]>,
     /// Number of samples along a side of a pixel. The number exceeds 1 while a supersampled image is drawn.
     pub(crate) magnification: f64,

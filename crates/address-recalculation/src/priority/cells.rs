@@ -1,5 +1,5 @@
-//! The policy `cells`: the floor is divided into square cells of unlimited height. A cell's distance from the user's
-//! cell determines its display memory.
+//! The policy `cells`: the floor is divided into square cells of unlimited height. The distance of a cell from the
+//! viewer's cell determines the cell's display memory.
 
 use crate::priority::config::PriorityTiming;
 use crate::priority::update::Update;
@@ -75,7 +75,7 @@ impl CellAssignment {
     }
 
     /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The value does not apply to
-    /// the slowest memory, which has no outer limit.
+    /// the last memory (the least often drawn), which has no outer limit.
     ///
     /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`CellAssignment::ring_growth`].
     #[must_use]
@@ -95,10 +95,10 @@ impl CellAssignment {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }
 
-    /// Returns the horizontal distance, in metres, between a position and the border of memory k = `memory` to the
-    /// slower memory k + 1. The distance is 0 outside the border.
+    /// Returns the horizontal distance, in metres, between a position and the border of memory k = `memory` to memory k
+    /// + 1, which is drawn less often. The distance is 0 outside the border.
     ///
-    /// Returns `None` for the slowest memory, which has no such border.
+    /// Returns `None` for the last memory (the least often drawn), which has no outer border.
     #[must_use]
     pub fn to_slower(&self, place: DVec3, memory: usize) -> Option<f64> {
         (memory + 1 < self.memories).then(|| self.inside_block(place, self.last_ring(memory)))
@@ -139,8 +139,8 @@ pub struct Cells {
 impl Cells {
     /// Creates the policy for a world. `occupied` lists the cells that contain parts of the scene.
     ///
-    /// With `has_cascade`, an update of a memory makes all faster memories due for an update as well. Warping requires
-    /// such a cascade.
+    /// With `has_cascade`, an update of a memory makes all memories that are drawn more often due for an update as
+    /// well. Warping requires such a cascade.
     #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
@@ -234,7 +234,8 @@ impl Cells {
         Update { due, together, deals_anew: deals_anew && !is_first }
     }
 
-    /// Assigns cells to memories around another home cell. Returns, for each memory, true if its cells have changed.
+    /// Assigns cells to memories around another home cell. Returns, for each memory, true if the cells of the memory
+    /// have changed.
     fn deal(&mut self, home: Cell) -> Vec<bool> {
         let before = self.dealing;
         self.dealing.home = home;

@@ -1,4 +1,5 @@
-//! Segmentation: a mesh is cut once at the borders of cells, so that only its near parts must be drawn often.
+//! Segmentation: a mesh is cut once at the borders of cells, so that only the parts near the viewer must be drawn
+//! often.
 
 use crate::priority::cells::{Cell, CellAssignment, border, column};
 use glam::DVec3;
@@ -59,8 +60,8 @@ impl Segmentation {
         Ok(Self { vertices: cutter.vertices, cuts: cutter.cuts, segments })
     }
 
-    /// Returns the memory that must hold the uncut mesh: the fastest memory of all cells that the mesh touches. Returns
-    /// `None` for an empty mesh.
+    /// Returns the memory that must hold the uncut mesh: the most often drawn memory of all cells that the mesh
+    /// touches. Returns `None` for an empty mesh.
     #[must_use]
     pub fn fastest_memory(&self, dealing: &CellAssignment) -> Option<usize> {
         self.segments.keys().map(|cell| dealing.memory(*cell)).min()

@@ -84,7 +84,7 @@ impl Crossing {
         Self { edge, has_edge, columns_of: -1.0 / (edge.x * columns.step), middle: -columns.first / columns.step }
     }
 
-    /// Returns true if a texel whose middle is at `x` is inside the edge.
+    /// Returns true if a texel whose middle is at `x` lies on the inner side of the edge.
     #[inline(always)]
     fn takes(&self, x: f64, row: f64) -> bool {
         let value = self.edge.x * x + row;

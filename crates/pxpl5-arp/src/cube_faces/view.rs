@@ -39,7 +39,8 @@ impl DrawCounts {
 /// Size of the faces, and range of drawn depths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeView {
-    /// Number of texels along an edge of a face, including guard texels, and number of guard texels.
+    /// Number of texels along an edge of a face, and number of guard texels (a margin that repeats the neighbouring
+    /// face).
     pub geometry: FaceGeometry,
     /// Distances of the near and far plane.
     pub depth: DepthRange,

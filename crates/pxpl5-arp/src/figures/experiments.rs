@@ -62,8 +62,8 @@ pub struct Experiments {
     pub thresholds: Vec<ThresholdRow>,
     /// Number of segments (parts of objects) into which the fitted cells cut the gallery.
     pub segments: usize,
-    /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without the
-    /// updates of faster memories (cascade).
+    /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without a
+    /// cascade (an update of a memory does not update the more often drawn memories).
     pub walks: Vec<NamedWalk>,
     /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,

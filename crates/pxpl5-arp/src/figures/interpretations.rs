@@ -160,7 +160,7 @@ pub struct Interpretations {
     pub left_out: Vec<LeftOutRate>,
 }
 
-/// Smallest cell side to try, in metres. Each further cell side is [`STEP`] times the previous side.
+/// Smallest cell side to try, in metres. Each larger cell side is [`STEP`] times the next smaller side.
 const FIRST_SIDE_M: f64 = 1.4;
 const STEP: f64 = 1.06;
 const STEPS: i32 = 20;
@@ -235,8 +235,9 @@ impl Interpretations {
 
     /// Returns the rules of this project with their rank, counted from 1.
     ///
-    /// With a *cascade*, an update of a memory makes all faster memories due. The ranking has two parts: rules with a
-    /// cascade, and rules without. The rank counts only within the part that contains this project's rules.
+    /// With a *cascade*, an update of a memory makes all more often drawn memories due. The ranking has two parts:
+    /// rules with a cascade, and rules without. The rank counts only within the part that contains this project's
+    /// rules.
     #[must_use]
     pub fn usual(&self) -> Option<(usize, &RankedRules)> {
         let alike = self.ranked.iter().filter(|ranked| ranked.rules.has_cascade == Rules::USUAL.has_cascade);
@@ -267,10 +268,11 @@ pub struct ThresholdRow {
     pub theta_deg: f64,
     /// Side of a cell in metres.
     pub cell_m: f64,
-    /// Widest tear (gap between two memories) if each update is shown as soon as it is due, in pixels of the display.
+    /// Widest tear (gap between two memories) if each update is shown in the frame in which the update is due, in
+    /// pixels of the display.
     pub at_once_px: f64,
-    /// Widest tear (gap between two memories) if the update of the slower memory is shown one frame of walking too
-    /// late, in pixels of the display.
+    /// Widest tear (gap between two memories) if the update of the less often drawn memory is shown one frame of
+    /// walking too late, in pixels of the display.
     pub frame_late_px: f64,
 }
 

@@ -77,8 +77,8 @@ impl MemoryViews<'_> {
         }))
     }
 
-    /// Returns the error of one pixel for [`Self::errors`]: the angle between the displayed and the correct direction
-    /// of the point that the pixel's ray hits, in radians.
+    /// Returns the error of one pixel for [`Self::errors`], in radians. The error is the angle between the displayed
+    /// and the correct direction of the point that the pixel's ray hits.
     ///
     /// Returns `None` if the ray hits nothing.
     fn off(&self, simulation: &Simulation<'_>, view: &CubeView, ray: DVec3, eye: DVec3) -> Option<f64> {

@@ -88,8 +88,8 @@ impl FirstPass {
         Self { decimator, queue }
     }
 
-    /// Returns true if a decimation to `wanted` triangles also leads to the present surface, so that it can continue
-    /// from there.
+    /// Returns true if a decimation to `wanted` triangles also leads to the present surface and can continue from
+    /// there.
     pub(super) const fn serves(&self, wanted: usize) -> bool {
         wanted <= self.decimator.least_left
     }
@@ -234,8 +234,8 @@ impl Decimator {
         borders.is_empty() || (borders.len() == 2 && borders.contains(&onto))
     }
 
-    /// Returns true if a triangle is still valid after one of its points moves: it equals no other triangle and is not
-    /// folded over.
+    /// Returns true if a triangle is still valid after one of its points moves. A valid triangle equals no other
+    /// triangle and is not folded over.
     fn may_move(&self, points: [u32; 3], from: u32, onto: u32, may_flip_triangles: bool) -> bool {
         let moved = points.map(|point| if point == from { onto } else { point });
         let is_same = |(_, other): (u32, [u32; 3])| moved.iter().all(|point| other.contains(point));

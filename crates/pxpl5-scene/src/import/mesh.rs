@@ -8,7 +8,7 @@ use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Lighting, Scene, SceneParts, Sphere, Vertex, bounding_sphere};
 use crate::sway::Sway;
 
-/// A mesh before it is scaled.
+/// A mesh in the coordinates of a file, before the mesh is scaled.
 #[derive(Default)]
 pub(crate) struct Mesh {
     pub(crate) positions: Vec<DVec3>,

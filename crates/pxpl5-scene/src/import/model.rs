@@ -110,8 +110,8 @@ impl Vertices {
     }
 }
 
-/// Adds an item to a list. The list grows by an eighth instead of doubling, because it may contain most of a file and
-/// must not waste memory.
+/// Adds an item to a list. The list grows by an eighth instead of doubling, because the list may contain most of a file
+/// and must not waste memory.
 pub(super) fn push_with_slow_growth<T>(list: &mut Vec<T>, item: T) {
     if list.len() == list.capacity() {
         list.reserve_exact(list.len() / 8 + 1024);
@@ -119,7 +119,7 @@ pub(super) fn push_with_slow_growth<T>(list: &mut Vec<T>, item: T) {
     list.push(item);
 }
 
-/// A mesh as its file contains it, before it is scaled.
+/// A mesh with the coordinates of its file, before the mesh is scaled.
 pub(super) struct Model {
     pub(super) places: Places,
     /// Unit normals from the file. A zero vector stands for a missing normal. The list is empty until the first
@@ -215,7 +215,7 @@ impl Model {
         Err(crate::error::nothing_to_draw(name, expected))
     }
 
-    /// Makes a scene of the mesh. The bytes of the file may be freed before this call.
+    /// Makes a scene from the mesh. The bytes of the file may be freed before this call.
     pub(super) fn into_scene(
         mut self,
         name: &str,

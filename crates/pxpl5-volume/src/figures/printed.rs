@@ -154,7 +154,7 @@ fn stencil(frame: &VolumeFrame) -> Vec<FigureRow> {
     ]
 }
 
-/// Returns figure P19: the largest shift of a point by the shear at the face of a slice's slab, and the number of
+/// Returns figure P19: the largest shift of a point by the shear at the near or far plane of a slice, and the number of
 /// distinct eyes.
 fn jitter() -> Result<Vec<FigureRow>, SettingError> {
     let clip = SliceClip::Hyperbolic(0.25);

@@ -428,7 +428,7 @@ fn slice_timing(layout: &Layout) -> RendererTiming {
     }
 }
 
-/// Returns the time that a processor needs to compute the commands of a slice and to hand them over.
+/// Returns the time that a processor needs to compute the commands of a slice and to hand the commands to its port.
 fn making(load: &super::renderer::SliceLoad) -> Span {
     let gp = GpTiming::PAPERS;
     let commands: u64 = load.commands.iter().map(|count| u64::from(*count)).sum();

@@ -10,7 +10,7 @@ use crate::{
 use pxpl5_sim::figures::{Definition, FigureRow, around};
 use pxpl5_sim::parameters::Provenance;
 
-/// Returns the row of a figure. A computed value agrees with the published value if they differ by at most
+/// Returns the row of a figure. A computed value agrees with the published value if the difference is at most
 /// `half_digit`.
 #[must_use]
 pub fn row(
@@ -137,7 +137,7 @@ fn doubling() -> Vec<Definition> {
     ]
 }
 
-/// Returns the figures that the model computes without drawing: trigonometry, bins, and the thickness of slabs.
+/// Returns the figures that the model computes without drawing: trigonometry, bins, and the thickness of slice volumes.
 #[must_use]
 pub fn formulas() -> Vec<FigureRow> {
     let config = PerspectaConfig::PAPERS;
@@ -197,8 +197,8 @@ fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<FigureRow> {
     ]
 }
 
-/// Returns the mean number of planes that show a point of the display's disc. This mean is the area of one slice's slab
-/// within the disc, times the number of planes, divided by the area of the disc.
+/// Returns the mean number of planes that show a point of the display's disc. This mean is the area of one slice's
+/// volume within the disc, times the number of planes, divided by the area of the disc.
 fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
     let steps = 100_000;
     let radius = wedge.radius;

@@ -23,7 +23,7 @@ pub(crate) struct FrameStore {
     scanned: Vec<Slice>,
     /// Tiles that were announced and have not arrived: slice, tile and tile size.
     missing: BTreeSet<(u32, u32, u32)>,
-    /// Arrival time of the last swap request, and the buffer that it requested.
+    /// Arrival time of the last swap request, and the requested buffer.
     requested: Option<(Time, u8)>,
     pub(crate) tiles: u64,
 }
@@ -35,7 +35,7 @@ pub(crate) enum StoreReceipt {
     SliceComplete(u32),
     /// The message was a map, a swap request, or a tile that does not complete its slice.
     Part,
-    /// The store cannot use the message, for this reason.
+    /// The store cannot use the message. The text states the reason.
     Fault(&'static str),
 }
 

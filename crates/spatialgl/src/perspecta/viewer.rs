@@ -281,7 +281,7 @@ struct Strobe {
     focal: f64,
     centre: [f64; 2],
     lambert: bool,
-    /// For each half of the screen (u < 0, u >= 0), true if the cutaway hides it.
+    /// For each half of the screen (u < 0, u >= 0), true if the cutaway hides this half.
     cut: [bool; 2],
 }
 
