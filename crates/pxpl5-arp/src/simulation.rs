@@ -105,7 +105,7 @@ impl<'a> Simulation<'a> {
         &self.settings
     }
 
-    /// Returns the contents of each memory, or `None` before its first update.
+    /// Returns the contents of each memory, or `None` for a memory without an update so far.
     #[must_use]
     pub fn shown(&self) -> &[Option<Content>] {
         &self.shown

@@ -1,4 +1,5 @@
-//! A renderer of limited speed, which draws memories in ascending order and shows only complete updates.
+//! A renderer of limited speed, which draws memories in ascending order of their indices and shows only complete
+//! updates.
 
 use crate::content::Content;
 

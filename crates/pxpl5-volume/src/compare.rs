@@ -219,7 +219,8 @@ impl Variant {
 }
 
 impl VolumeComparison {
-    /// Divides the lit pixels of each row by the lit pixels of the exact clip with the same projection, ring by ring.
+    /// Computes, for each variant and each ring, the number of lit pixels divided by the number with the exact clip and
+    /// the same projection.
     fn set_brightness_ratios(&mut self) {
         let exact: Vec<(ProjectionKind, Vec<u64>)> = self
             .variants

@@ -1,4 +1,4 @@
-//! A volume, drawn from a scene with given settings.
+//! A volume that is drawn from a scene with the settings of an experiment.
 
 use crate::choices::RendererKind;
 use crate::pixel_planes::{ArrayKind, PixelPlanesRenderer, SliceBounds, SliceTraffic};

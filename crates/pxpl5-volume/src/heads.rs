@@ -176,7 +176,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the length is out of range, if there are fewer than two instants, or if the
+    /// Returns a [`SettingError`] if the duration is out of range, if there are fewer than two instants, or if the
     /// head-mounted view is invalid.
     pub fn study(&self, question: &HeadStudyConfig) -> Result<HeadStudy, SettingError> {
         let view = self.view()?;
@@ -195,7 +195,8 @@ impl<'a> HeadComparison<'a> {
         })
     }
 
-    /// Returns the instants of a study, evenly spaced and starting one latency after the beginning.
+    /// Returns the evenly spaced instants of a study. The first instant is one latency after the beginning of the
+    /// motion.
     fn instants(&self, question: &HeadStudyConfig) -> Result<Vec<u64>, SettingError> {
         let HeadStudyConfig { seconds, instants, .. } = *question;
         let wrong = |what, expected: &str, found: String| SettingError::value(what, expected, found);

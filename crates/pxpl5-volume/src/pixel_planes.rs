@@ -1,6 +1,6 @@
-//! Slices drawn by the renderers of Pixel-Planes 5, which is **beyond the SpatialGL paper**. The function that clips a
-//! triangle to a slice is a quadratic on the triangle's plane, and its zeros form a hyperbola. The multiplier trees of
-//! the renderers can evaluate quadratics at all pixels.
+//! Drawing of slices by the renderers of Pixel-Planes 5, an addition **beyond the SpatialGL paper**. The function that
+//! clips a triangle to a slice is a quadratic on the triangle's plane, and its zeros form a hyperbola. The multiplier
+//! trees of the renderers can evaluate quadratics at all pixels.
 //!
 //! ```text
 //!  corners of a slice --snap to 1/16 px--> SliceTriangle (38 words, 238 clocks) --ring--> 36 regions of 128 x 128 pixels

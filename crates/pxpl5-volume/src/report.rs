@@ -48,8 +48,8 @@ pub struct VolumeReport {
     pub fragments_generated: Option<u64>,
     /// Number of fragments that lie in the volume of their slice, or `None` for the renderers of Pixel-Planes 5.
     pub fragments_accepted: Option<u64>,
-    /// Number of pixels added to close gaps in the intersections of surfaces with slices, which is beyond the SpatialGL
-    /// paper.
+    /// Number of pixels added to close gaps in the intersections of surfaces with slices. Added pixels are beyond the
+    /// SpatialGL paper.
     pub fragments_added: u64,
     /// Number of slices on which nothing was drawn.
     pub slices_empty: u64,
@@ -101,7 +101,7 @@ pub struct VolumeReport {
     pub host_seconds: f64,
 }
 
-/// The cost of a volume on Pixel-Planes 5, which is beyond the SpatialGL paper.
+/// The cost of a volume that the renderers of Pixel-Planes 5 draw. This is an addition to the SpatialGL paper.
 #[derive(Clone, Debug, Serialize)]
 pub struct PixelPlanesReport {
     /// Counts of clocks, commands, words and sent tiles.

@@ -42,7 +42,7 @@ pub struct VolumeSettings {
     pub bin_tolerance: BinTolerance,
     /// Size of tiles, and number of slices per batch of queries.
     pub tile: TileNumbers,
-    /// Number of samples and size of the dither matrix.
+    /// Number of samples per pixel, and size of the dither matrix.
     pub draw: DrawNumbers,
     /// Rule for the pixels of a slice that a primitive covers.
     pub coverage: Coverage,

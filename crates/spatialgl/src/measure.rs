@@ -83,7 +83,7 @@ pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, f
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Counts the samples in each row of a slice's image.
+/// Counts all samples and the shown samples in each row of a slice's image.
 fn rows_of_slice(
     view: &SliceView,
     commands: &CommandBuffer,

@@ -13,7 +13,7 @@ pub type Size = [u32; 2];
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Projection {
-    /// Projection along s. Surfaces perpendicular to the slice become lines.
+    /// Parallel projection along the normal of the slice. Surfaces perpendicular to the slice become lines.
     Orthographic,
     /// Projection with a shear from an eye at (u, v, distance), in pixels of the slice's coordinates. All slices have
     /// the same eye.

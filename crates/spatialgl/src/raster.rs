@@ -48,8 +48,8 @@ pub struct SliceStats {
     pub generated: u64,
     /// Number of fragments that lie in the slice's volume.
     pub accepted: u64,
-    /// Number of pixels added to close gaps in the intersections of surfaces with the slice, which is beyond the
-    /// SpatialGL paper.
+    /// Number of pixels added to close gaps in the intersections of surfaces with the slice. Added pixels are beyond
+    /// the SpatialGL paper.
     pub added: u64,
 }
 

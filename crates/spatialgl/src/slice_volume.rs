@@ -75,7 +75,7 @@ pub enum WedgeTest {
     /// Two user clip planes for each lobe (half of the double wedge), with one drawing pass per lobe. Fragments outside
     /// the planes are not generated.
     UserPlanes(TieRule),
-    /// Both distances are interpolated, and one test compares their signs.
+    /// The distances from both boundary planes are interpolated, and one test compares their signs.
     Shader(TieRule),
     /// Both planes are moved outwards by this number of pixels before the product of the distances is tested.
     Parallel(f64),
@@ -91,9 +91,9 @@ pub enum SliceVolume {
     Frustum,
     /// A slab low <= s < high parallel to the slice, where s is the distance from the slice in pixels.
     Slab {
-        /// Lower limit of the slab's s, inclusive.
+        /// Lower limit of the distance s in the slab, inclusive.
         low: f64,
-        /// Upper limit of the slab's s, exclusive.
+        /// Upper limit of the distance s in the slab, exclusive.
         high: f64,
     },
     /// A double wedge around the axis y: its planes, and its test.
@@ -172,8 +172,8 @@ fn along(plane: [f64; 2], world: [f64; 3]) -> f64 {
     world[0] * plane[0] + world[2] * plane[1]
 }
 
-/// The test of one sample in one pass. Its inputs are w and the interpolated attributes p and q, all multiplied by one
-/// positive factor.
+/// The test of one sample in one pass. Its inputs are the homogeneous coordinate w and the interpolated values p and q
+/// of the slice volume. All three are multiplied by the same positive factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SampleTest {
     All,

@@ -19,10 +19,10 @@ pub struct Threshold {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Translation {
-    /// 2 d sin(theta / 2), as in a drawing in the papers on priority rendering.
+    /// 2 d sin(theta / 2) for a point at distance d, as in a drawing in the papers on priority rendering.
     #[default]
     Chord,
-    /// d sin(theta), the shortest movement of the eye that can change the direction of a point by theta.
+    /// d sin(theta), the shortest movement of the eye that can change the direction of a point at distance d by theta.
     Sine,
 }
 
@@ -30,7 +30,7 @@ pub enum Translation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SizeRule {
-    /// The angle of a disc perpendicular to the line of sight.
+    /// The angle that a disc with the object's radius covers, perpendicular to the line of sight.
     #[default]
     Disc,
     /// The angle of the bounding sphere's outline.

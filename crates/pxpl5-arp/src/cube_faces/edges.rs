@@ -91,7 +91,7 @@ impl Crossing {
         value > 0.0 || (value == 0.0 && self.has_edge)
     }
 
-    /// Restricts a range of columns to the columns inside this edge.
+    /// Restricts a range of columns to the columns on the inner side of this edge.
     ///
     /// A quotient estimates the column at which the edge crosses the row. The function `takes` then determines the
     /// exact column. The rounded value of the edge function rises or falls monotonically along a row.

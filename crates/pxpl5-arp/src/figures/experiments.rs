@@ -72,7 +72,8 @@ pub struct Experiments {
     pub reductions: [f64; 2],
     /// Times for which an object's image is valid, for several ratios of size to distance.
     pub sizes: Vec<SizeRow>,
-    /// Ratios of size to distance above which growth on the screen decides the validity, for each interpretation.
+    /// Ratios of an object's size to its distance, above which the growth of the object on the screen limits the
+    /// validity period, for each interpretation.
     pub size_limits: Vec<SizeLimit>,
     /// Largest deviation of a straight edge from a straight line, in pixels: on the screen, and through the lens.
     pub lens_px: [f64; 2],
@@ -139,7 +140,7 @@ impl Experiments {
     }
 }
 
-/// Repeats the walk with tears (gaps between memories) for renderers of decreasing speed.
+/// Repeats the walk without warping (which has tears between memories), with renderers of decreasing speed.
 fn slowed(world: &World, settings: &WalkSettings, path: &Walk) -> Result<Vec<SlowRendererResult>, SettingError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
@@ -154,7 +155,8 @@ fn slowed(world: &World, settings: &WalkSettings, path: &Walk) -> Result<Vec<Slo
 /// Threshold of experiments E3 and E4 in degrees: one texel of an ideal face.
 const THETA_DEG: f64 = 90.0 / 512.0;
 
-/// Number of point objects on a disc of 100 m around the walker, distributed evenly by area.
+/// Number of point objects on a disc around the walker with a radius of 100 m. The points are distributed evenly by
+/// area.
 const POINTS: usize = 20_000;
 
 /// Returns the factor by which priority rendering reduces draws of point objects, relative to drawing all at 60 Hz.
@@ -201,8 +203,8 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
-/// Ratio of size to distance above which growth on the screen decides the validity. The paper does not define "size"
-/// and "distance", so there is one limit for each interpretation.
+/// Ratio of an object's size to its distance, above which the growth of the object on the screen limits the validity
+/// period. The papers do not define "size" and "distance", so there is one limit for each interpretation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
     /// Name of the angle whose change is limited: the angle that the sphere's diameter covers, or the angle that the
@@ -222,8 +224,8 @@ pub struct SizeLimit {
 /// sphere.
 ///
 /// The interpretations differ in the limited angle. In the first, the threshold limits the change of the angle that the
-/// diameter covers. In the second, the threshold limits the change of the radius' angle. In the third, the limit of the
-/// radius' angle is twice the threshold.
+/// diameter covers. In the second, the threshold limits the change of the angle that the radius covers. In the third,
+/// twice the threshold limits this change.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
     let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];

@@ -2,8 +2,8 @@
 //! which are simulated and ranked.
 //!
 //! If the hall and the path are measured in cells, the update rates depend only on the product of threshold and cell
-//! side. Therefore one number is fitted to three rates. A cell side stands for all pairs of threshold and cell side
-//! with the same product.
+//! side. Therefore one number is fitted to three rates. In the results, each cell side therefore represents all pairs
+//! of threshold and cell side with the same product.
 
 use super::fit::{RATES_HZ, policy_rates_hz, rates_hz};
 use super::gallery::gallery;
@@ -38,7 +38,7 @@ const GALLERY_FRAMES: u64 = 3_600;
 impl Situation {
     pub const ALL: [Self; 4] = [Self::Straight, Self::Diagonal, Self::Round, Self::Gallery];
 
-    /// Returns the name used in table headings.
+    /// Returns the name of the hall and path for table headings.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -192,7 +192,7 @@ impl Tried {
     }
 }
 
-/// Returns the indices of all compared memories except `memory`.
+/// Returns the indices of all memories whose update rates are compared with the paper, except `memory`.
 fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }

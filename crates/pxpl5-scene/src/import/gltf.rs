@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
         Numbers::of(self.document, accessor, components, kinds)
     }
 
-    /// Adds all vertices of a primitive with normals, and the triangles between them.
+    /// Adds a primitive that has normals: all its vertices, and the triangles between these vertices.
     fn push_smooth(
         &mut self,
         vertices: &PrimitiveVertices<'_>,
@@ -326,7 +326,7 @@ impl<'a> Reader<'a> {
 /// Number of bytes of a point with its normal and its colour.
 const BYTES_OF_POINT: usize = 2 * size_of::<glam::Vec3>() + 3;
 
-/// Returns the nodes that are the child of no node.
+/// Returns the indices of all nodes without a parent.
 fn roots_of(nodes: &[Node]) -> Vec<usize> {
     let mut is_child = vec![false; nodes.len()];
     for child in nodes.iter().flat_map(|node| node.children.iter().flatten()) {

@@ -73,8 +73,8 @@ impl Places {
     }
 }
 
-/// Index of a point, and a number that distinguishes the vertices at this point ([`Detail`]). The type is short,
-/// because a file can have many times more corners than points.
+/// Index of a point, and a number that distinguishes the vertices at this point ([`Detail`]). The type has only 8
+/// bytes, because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
 /// The meaning of the second number of a [`Corner`]. This number distinguishes vertices at one point.

@@ -89,8 +89,8 @@ fn is_convex(fan: &[[u32; 3]], flat: impl Fn(u32) -> DVec2) -> bool {
     true
 }
 
-/// A projection of a polygon onto a plane of two coordinate axes. The direction of view is the third axis, the axis
-/// nearest to the normal, from the side where the polygon is anticlockwise.
+/// A projection of a polygon along one of the three coordinate axes: the axis with the smallest angle to the polygon's
+/// normal. In the projection, the corners run anticlockwise.
 struct Projection {
     origin: DVec3,
     /// Factor that brings the farthest corner near a distance of 1. Otherwise squares of very small or large numbers
