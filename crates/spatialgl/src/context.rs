@@ -90,7 +90,7 @@ pub struct TwoSidedLight {
 }
 
 /// The drawing state and the current recording of draw calls. [`DrawContext::present`] returns the recording and starts
-/// a new one. The drawing state does not change.
+/// a new recording. The drawing state does not change.
 #[derive(Clone, Debug)]
 pub struct DrawContext {
     /// Matrix from object to world coordinates. The matrix must scale uniformly if there is a light.

@@ -28,7 +28,7 @@ pub enum Coverage {
     #[default]
     Sampled,
     /// The pixels of `Sampled`, plus a line of adjacent pixels along the intersection with the slice. **Beyond the
-    /// SpatialGL paper**: the paper calls for this coverage, but states that GPUs do not offer it.
+    /// SpatialGL paper**, which calls for this coverage but states that GPUs do not offer it.
     Connected,
 }
 

@@ -11,9 +11,9 @@ use std::collections::BTreeSet;
 /// A square of the floor, identified by its column (along x) and its row (along z).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cell {
-    /// Column: the x coordinate of the cell's lower border, divided by the side of a cell.
+    /// Column: the least x coordinate in the cell, divided by the side of a cell.
     pub x: i64,
-    /// Row: the z coordinate of the cell's lower border, divided by the side of a cell.
+    /// Row: the least z coordinate in the cell, divided by the side of a cell.
     pub z: i64,
 }
 
@@ -53,7 +53,7 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
 /// cells at the same distance from it form a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
-    /// The home cell, which is the centre of all rings.
+    /// The home cell, which contained the eye at the time of the assignment and is the centre of all rings.
     pub home: Cell,
     /// Side of a cell (square of the floor) in metres.
     pub side_m: f64,

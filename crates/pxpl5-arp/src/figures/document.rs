@@ -398,8 +398,8 @@ fn sizes(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Writes the ratio of size to distance above which an object's growth on the screen decides how long its image is
-/// valid (statement A8).
+/// Writes the ratio of an object's size to its distance, above which the growth on the screen limits the validity
+/// period (statement A8 of the papers).
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
         "\nStatement A8, \"about ten times the distance\", leaves two questions open. One question is which angle describes the size\n\

@@ -63,7 +63,7 @@ pub struct Experiments {
     /// Number of segments (parts of objects) into which the fitted cells cut the gallery.
     pub segments: usize,
     /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without a
-    /// cascade (an update of a memory does not update the more often drawn memories).
+    /// cascade. In a cascade, an update of a memory also updates all more often drawn memories.
     pub walks: Vec<NamedWalk>,
     /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,
@@ -212,11 +212,11 @@ pub struct SizeLimit {
     pub angle: &'static str,
     /// Allowed change of the angle that the radius covers, divided by the threshold for translation of the eye.
     pub factor: f64,
-    /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation still decides the
-    /// validity.
+    /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation, not growth, limits
+    /// the validity period.
     pub of_middle: f64,
-    /// Greatest ratio of the sphere's diameter to the distance of its nearest point at which translation still decides
-    /// the validity.
+    /// Greatest ratio of the sphere's diameter to the distance of its nearest point at which translation, not growth,
+    /// limits the validity period.
     pub of_nearest: f64,
 }
 

@@ -56,8 +56,8 @@ impl MemoryViews<'_> {
 
     /// Returns a picture of the error that each pixel has because its memory was drawn from an older eye position.
     ///
-    /// Black means no error, and white means two pixels or more, in pixels of the picture's middle. A scale is drawn
-    /// below the picture.
+    /// Black means no error, and white means an error of two pixels or more. The unit is the size of a pixel in the
+    /// middle of the picture. A scale is drawn below the picture.
     ///
     /// # Errors
     ///

@@ -61,7 +61,7 @@ impl Mesh {
         sums
     }
 
-    /// Returns the vertices of a scene, rounded to single precision.
+    /// Returns the vertices of the mesh for a scene, rounded to single precision.
     pub(crate) fn vertices(&self) -> Vec<Vertex> {
         let positions = self.positions.iter().zip(&self.normals).zip(&self.colours);
         positions

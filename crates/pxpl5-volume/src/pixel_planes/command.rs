@@ -33,8 +33,8 @@ pub struct SliceTriangle {
     /// The clip function A B + b on the triangle's plane, with [`CLIP_FRACTION_BITS`]. A and B are the distances from
     /// the boundary planes, and b is the bias.
     pub clip: Quadratic,
-    /// Linear functions for red, green and blue. Their number of fraction bits is the number that colours have on the
-    /// ring.
+    /// Linear functions for red, green and blue. The coefficients have as many fraction bits as colours in ring
+    /// messages.
     pub colour: [Linear; 3],
 }
 

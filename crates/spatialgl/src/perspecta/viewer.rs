@@ -271,8 +271,8 @@ fn sum(
 /// The geometry of the screen during one strobe (flash), in the coordinates of the eye.
 struct Strobe {
     half: [f64; 2],
-    /// Vector of one screen pixel to the right (`across`) or upwards (`upward`), as right, up and back along the eye's
-    /// axes.
+    /// Vectors from a screen pixel to the next pixel on its right (`across`) and above (`upward`). The components are
+    /// right, up and back along the eye's axes.
     across: [f64; 3],
     upward: [f64; 3],
     /// Normal of the screen, in components along the eye's axes.
