@@ -54,8 +54,8 @@ impl LensPicture {
         libm::tan(self.horizontal_deg.to_radians() / 2.0)
     }
 
-    /// Returns the squared distance of a pixel from the middle. The unit is the distance of the left and right ends of
-    /// the middle line.
+    /// Returns the squared distance of a pixel from the middle. The unit is the distance from the picture's middle to
+    /// the left or right end of the middle line.
     fn rho_squared(&self, x: u32, y: u32) -> f64 {
         let [right, down] = self.offset(x, y).map(|p| p / (f64::from(self.width) / 2.0));
         right * right + down * down

@@ -166,8 +166,8 @@ fn rotation(display: &ArpConfig) -> WalkLatency {
     WalkLatency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
 }
 
-/// Returns the latency of translation in three parts: drawing the update, the wait after it is first shown, and the
-/// scan.
+/// Returns the latency of translation in three parts: drawing the update, the wait after the update is first shown, and
+/// the scan until the pixel is displayed.
 fn translation(memory: Option<&MemoryTally>, settings: &WalkSettings) -> WalkLatency {
     let memory = memory.filter(|memory| memory.shown_frames > 0);
     let mean_ms = |frames: fn(&MemoryTally) -> u64| {

@@ -52,8 +52,9 @@ pub enum SourceKind {
 
 /// Distances of the near and the far plane along a face's axis, in metres.
 ///
-/// Both limits are assumed. The near limit is less than 1 m (for the gallery's path) divided by the square root of 3.
-/// The far limit exceeds the size of the hall. A step of depth is 0.24 mm at 20 m.
+/// Both limits are assumed. Walls are at least 1 m away from the gallery's path, which is at least 1 m / sqrt(3) along
+/// the axis of a face. The near limit is less than this distance. The far limit exceeds the size of the hall. A step of
+/// depth is 0.24 mm at 20 m.
 const NEAR_M: f64 = 0.1;
 const FAR_M: f64 = 100.0;
 

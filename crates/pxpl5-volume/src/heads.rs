@@ -59,7 +59,7 @@ pub struct HeadSample {
     pub hmd_mean_deg: Option<f64>,
     /// Largest angle between the drawn and the true position of a point on the head-mounted display, in degrees.
     pub hmd_worst_deg: Option<f64>,
-    /// Mean distance between drawn and true positions on the head-mounted display, in its pixels.
+    /// Mean distance between drawn and true positions on the head-mounted display, in pixels of this display.
     pub hmd_mean_px: Option<f64>,
     /// Mean distance between drawn and true positions on the head-mounted display, in millimetres at the points'
     /// distance.

@@ -90,7 +90,8 @@ impl BinLayout {
         Self { planes, regions, tolerance }
     }
 
-    /// Returns the SpatialGL paper's code of a point: bit i is set if plane i is not negative.
+    /// Returns the SpatialGL paper's code of a point: bit i is set if the equation of plane i is not negative at the
+    /// point.
     #[must_use]
     pub fn code(&self, point: [f64; 3]) -> u32 {
         let bits = self.planes.iter().enumerate().map(|(i, plane)| u32::from(distance(plane, point) >= 0.0) << i);

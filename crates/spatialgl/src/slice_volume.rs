@@ -131,7 +131,8 @@ impl SliceVolume {
         }
     }
 
-    /// Returns the two values of a vertex that the test compares. Both are linear in space and can be interpolated.
+    /// Returns the two values of a vertex that the test of the slice volume compares. Both values are linear in space
+    /// and can be interpolated.
     #[inline(always)]
     #[must_use]
     pub(crate) fn attributes(&self, world: [f64; 3], u: f64, s: f64) -> [f64; 2] {

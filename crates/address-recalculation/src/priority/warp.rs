@@ -16,7 +16,8 @@ pub enum Falloff {
     Linear,
     /// The displacement decreases smoothly to 0, with slope 0 at both ends.
     Smoothstep,
-    /// Full displacement up to the length of the falloff from the border, and no displacement beyond.
+    /// Full displacement up to a certain distance from the border (the length of the falloff), and no displacement
+    /// beyond.
     Step,
 }
 

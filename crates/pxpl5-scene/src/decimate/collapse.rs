@@ -69,8 +69,8 @@ pub(super) struct Decimator {
 /// Rules of the first pass. No collapse may turn a triangle over or leave fewer triangles than wanted.
 const FIRST: Rules = Rules { may_flip_triangles: false, may_overshoot: false };
 
-/// Rules of the second and the third pass. Both passes may leave fewer triangles than wanted. The third pass may also
-/// turn triangles over.
+/// Rules of the last two passes. Both passes may leave fewer triangles than wanted. The last pass may also turn
+/// triangles over.
 const LATER: [Rules; 2] =
     [Rules { may_flip_triangles: false, may_overshoot: true }, Rules { may_flip_triangles: true, may_overshoot: true }];
 

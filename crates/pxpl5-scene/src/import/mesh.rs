@@ -12,8 +12,8 @@ use crate::sway::Sway;
 #[derive(Default)]
 pub(crate) struct Mesh {
     pub(crate) positions: Vec<DVec3>,
-    /// Normals of the vertices, of any length. A zero vector stands for a missing normal. The list is empty until the
-    /// first normal is given.
+    /// Normals of the vertices, of any length. A zero vector stands for a missing normal. The list is empty until a
+    /// vertex with a normal is added.
     pub(crate) normals: Vec<DVec3>,
     pub(crate) colours: Vec<[u8; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,

@@ -136,7 +136,7 @@ fn plan(clip: ClipKind) -> Result<RgbImage, SettingError> {
 
 /// Draws points red where the distance from the first plane is positive, and green where the distance from the second
 /// plane is positive. The lobe (half of the double wedge) with two positive distances is yellow, and the lobe with two
-/// negative distances dark.
+/// negative distances is dark.
 fn orientation() -> Result<RgbImage, SettingError> {
     let display = few(ClipKind::Exact)?;
     let spatialgl::SliceVolume::Wedge(planes, _) = display.views()[1].volume else {
