@@ -34,8 +34,9 @@ impl FaceHit {
 pub struct Footprint {
     /// Upper left, upper right, lower left and lower right texel.
     ///
-    /// Without guard texels, a texel beyond an edge belongs to the neighbouring face. `None` marks a texel beyond a
-    /// corner. The mean of the other three texels replaces such a texel.
+    /// Without guard texels (a margin that repeats the neighbouring face), a texel beyond an edge belongs to the
+    /// neighbouring face. `None` marks a texel beyond a corner. The mean of the other three texels replaces a texel
+    /// beyond a corner.
     pub texels: [Option<TexelAddress>; 4],
     /// Horizontal and vertical distance from the upper left texel, as fractions from 0 to 1 inclusive. The unit is
     /// `2^-weight_bits`.
@@ -64,7 +65,8 @@ impl Footprint {
     }
 }
 
-/// The stages of the pipeline between the matrix and the memories: face selection, dividers and addresses.
+/// The pipeline stages after the rotation of the viewing vector and before the display memories: face selection,
+/// dividers and addresses.
 #[derive(Clone, Copy, Debug)]
 pub struct AddressUnit {
     /// Size of the faces.
@@ -93,8 +95,9 @@ impl AddressUnit {
     /// Returns a position along one axis of the face, relative to the middles of texels, in units of
     /// `2^-quotient_bits`.
     ///
-    /// The position is guard + quotient * inner, minus half a texel for interpolation. A rounded quotient stands for
-    /// the middle of its interval, so half of its last bit is added.
+    /// The position is the number of guard texels plus the quotient times the number of inner texels. For
+    /// interpolation, half a texel is subtracted. A rounded quotient stands for the middle of its interval, so half of
+    /// its last bit is added.
     fn place(&self, quotient: i64) -> i64 {
         let half = if self.weight_bits == 0 { 0 } else { 1 << (self.quotient_bits - 1) };
         let inner = i64::from(self.geometry.inner());
@@ -128,8 +131,8 @@ impl AddressUnit {
         Some(self.around(met.face, [column, row], fractions))
     }
 
-    /// Returns the footprint of four texels with the given upper left texel. Texels of the footprint can lie beyond the
-    /// edges of the face.
+    /// Returns the footprint of four texels whose upper left texel has this column and row. Texels of the footprint can
+    /// lie beyond the edges of the face.
     pub(crate) fn around(&self, face: CubeFace, [column, row]: [i64; 2], fractions: [u32; 2]) -> Footprint {
         let places = [[column, row], [column + 1, row], [column, row + 1], [column + 1, row + 1]];
         let size = i64::from(self.geometry.texels);
@@ -151,7 +154,7 @@ impl AddressUnit {
         }
     }
 
-    /// Returns the direction of a texel's middle as integers. The texel can lie beside the face.
+    /// Returns the direction of a texel's middle as integers. The texel can lie beyond the edges of the face.
     fn middle(&self, face: CubeFace, place: [i64; 2]) -> [i64; 3] {
         let inner = i64::from(self.geometry.inner());
         let [u, v] = place.map(|n| 2 * (n - i64::from(self.geometry.guard)) + 1 - inner);

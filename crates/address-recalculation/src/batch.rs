@@ -1,6 +1,7 @@
 //! Address computation for groups of pixels. Each step is a loop over all pixels, so the compiler can vectorize it.
 //!
-//! Directions are sums of three products below 2^53, so doubles hold them exactly. Quotients need no correction either:
+//! Directions are sums of three products below 2^53, so doubles hold the sums exactly. Quotients need no correction
+//! either:
 //!
 //! - A quotient is a multiple of 1/(2F) and less than 2^q. Here q is the number of bits of a quotient, and F is the
 //!   component of the direction along the face's axis. F is below 2^(v + m - 1), where v and m are the numbers of bits
@@ -114,7 +115,8 @@ fn turn(out: &mut Each<f64>, [x, y, z]: &[Each<i32>; 3], row: &[i32; 3]) {
     }
 }
 
-/// Selects the face of each direction by its longest component. On ties, x precedes y, and y precedes z.
+/// Selects the face of each direction by its longest component. Among equally long components, x precedes y, and y
+/// precedes z.
 #[inline(always)]
 fn meet(met: &mut Met) {
     let Met { turned: [xs, ys, zs], face, forward, right, down, .. } = met;
@@ -188,7 +190,7 @@ fn footprints(batch: &mut Batch, unit: &AddressUnit) {
 
 /// Interpolates the four colours of each footprint (four texels) in a group.
 ///
-/// `reach` is the distance in texels from a row to the next, or 0 without interpolation.
+/// `reach` is the number of texels from a texel to the texel below it, or 0 without interpolation.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u32, out: &mut [u32]) {
     if weight_bits == 0 {
@@ -221,7 +223,7 @@ pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u
 /// The reason is that 255 * 4^4 plus half a unit is below 2^16.
 const MAX_PACKED_WEIGHT_BITS: u32 = 4;
 
-/// Interpolates red and blue in one product, and green in another product.
+/// Interpolates colours. One product contains red and blue, and another product contains green.
 #[inline(always)]
 fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
     let one = 1 << weight_bits;
@@ -241,7 +243,7 @@ fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) 
     }
 }
 
-/// Interpolates red, green and blue in separate products.
+/// Interpolates colours, with a separate product for each of red, green and blue.
 #[inline(always)]
 fn each(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
     let one = 1 << weight_bits;

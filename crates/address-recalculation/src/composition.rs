@@ -77,7 +77,8 @@ impl Composition {
         })
     }
 
-    /// Interpolates the nearness of four texels. The result is rounded down.
+    /// Interpolates the nearness of four texels: the farthest depth minus the depth of the texel. The result is rounded
+    /// down.
     fn mixed_nearness(&self, four: [u32; 4], weights: [Option<u32>; 4]) -> u32 {
         self.weighed(four, weights, false)
     }

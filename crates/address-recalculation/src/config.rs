@@ -1,4 +1,4 @@
-//! Configuration of the display.
+//! Configuration of the address recalculation display.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::composition::{Composition, CompositionOrder};
@@ -66,7 +66,7 @@ impl ArpConfig {
         LensPicture { width: self.scan.visible_pixels as u32, height, horizontal_deg: self.timing.horizontal_deg }
     }
 
-    /// Returns the table of viewing vectors.
+    /// Returns the table of viewing vectors, one for each pixel.
     ///
     /// # Errors
     ///

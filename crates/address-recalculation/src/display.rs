@@ -71,7 +71,8 @@ impl AddressRecalculationPipeline {
         self.eyes.get(eye.index()).map_or(&[], |boards| &boards.memories)
     }
 
-    /// Loads an orientation through the host's own port. `rows` is the matrix from head axes to world axes.
+    /// Loads an orientation into the register of an eye, as the host does through its own port. `rows` is the matrix
+    /// from head axes to world axes.
     ///
     /// # Errors
     ///

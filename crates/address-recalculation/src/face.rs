@@ -66,7 +66,7 @@ impl CubeFace {
 
     /// Returns the face that a direction hits, or `None` for the zero vector.
     ///
-    /// The longest component selects the face. On ties, x precedes y, and y precedes z.
+    /// The longest component selects the face. Among equally long components, x precedes y, and y precedes z.
     #[must_use]
     pub fn of(direction: Vector) -> Option<Self> {
         let is_finite = direction.iter().all(|component| component.is_finite());
@@ -104,9 +104,9 @@ fn along(vector: Vector, axis: [i64; 3]) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TexelAddress {
     pub face: CubeFace,
-    /// Column from the left edge of the face, including guard texels.
+    /// Column from the left edge of the face, including guard texels (a margin that repeats the neighbouring face).
     pub column: u32,
-    /// Row from the upper edge of the face, including guard texels.
+    /// Row from the upper edge of the face, including guard texels (a margin that repeats the neighbouring face).
     pub row: u32,
 }
 
@@ -131,7 +131,8 @@ impl TexelAddress {
     }
 }
 
-/// Number of texels of a face, with and without guard texels. These numbers define the direction of each texel.
+/// Number of texels of a face, with and without guard texels (a margin that repeats the neighbouring face). These
+/// numbers define the direction of each texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaceGeometry {
     /// Texels along an edge, including guard texels.
@@ -141,7 +142,8 @@ pub struct FaceGeometry {
 }
 
 impl FaceGeometry {
-    /// Returns the number of texels along an edge without guard texels. These texels cover 90 degrees.
+    /// Returns the number of texels along an edge, without the guard texels at both ends. These inner texels cover 90
+    /// degrees.
     #[must_use]
     pub const fn inner(&self) -> u32 {
         self.texels - 2 * self.guard
@@ -167,7 +169,8 @@ impl FaceGeometry {
         Some((face, [right, down]))
     }
 
-    /// Returns the texel that a direction hits. This texel is never a guard texel. Returns `None` for the zero vector.
+    /// Returns the texel that a direction hits. This texel is never a guard texel (a copy of a texel of the
+    /// neighbouring face). Returns `None` for the zero vector.
     #[must_use]
     pub fn texel(&self, direction: Vector) -> Option<TexelAddress> {
         let (face, place) = self.place(direction)?;

@@ -23,7 +23,8 @@ pub(crate) struct Optics {
 }
 
 impl Optics {
-    /// Returns the table of viewing vectors. The lens was checked when the display was built.
+    /// Returns the table of viewing vectors. No error is possible, because the lens was checked when the display was
+    /// built.
     fn table(&self) -> &LensTable {
         let ArpConfig { lens, timing, .. } = &self.config;
         self.table.get_or_init(|| LensTable::of_checked(lens, &self.config.picture(), timing.vector_bits))

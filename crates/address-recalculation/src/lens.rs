@@ -7,7 +7,7 @@ use std::io::BufRead;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// Widest angle of a flat picture or a radial lens, in degrees. Other pipelines have the same limit.
+/// Widest angle of a flat picture or a radial lens, in degrees. All displays with flat pictures have the same limit.
 const WIDEST_FLAT_DEG: f64 = 170.0;
 
 /// The lens between the picture and the eye.
@@ -54,8 +54,8 @@ impl LensPicture {
         libm::tan(self.horizontal_deg.to_radians() / 2.0)
     }
 
-    /// Returns the squared distance of a pixel from the middle. The unit is the distance of the left and right ends of
-    /// the middle line.
+    /// Returns the squared distance of a pixel from the middle. The unit is the distance from the picture's middle to
+    /// the left or right end of the middle line.
     fn rho_squared(&self, x: u32, y: u32) -> f64 {
         let [right, down] = self.offset(x, y).map(|p| p / (f64::from(self.width) / 2.0));
         right * right + down * down
@@ -182,8 +182,8 @@ fn wrong_lens(expected: impl fmt::Display, found: impl fmt::Display) -> SettingE
     SettingError::value("arp.lens", expected, found)
 }
 
-/// Returns the error for a line of a file of viewing vectors, counted from 1. If data are missing, `line` is the line
-/// after the last one.
+/// Returns the error for a line of a file of viewing vectors, counted from 1. If data are missing, `line` is the number
+/// of lines plus 1.
 fn wrong_table(line: usize, expected: &str, found: impl fmt::Display) -> FileError {
     FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("arp.lens table, line {line}"))
 }

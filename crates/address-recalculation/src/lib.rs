@@ -17,15 +17,16 @@
 //! # Stages, in the order of the signal
 //!
 //! 1. **Table.** The table has a viewing vector of length 1 for each pixel, in signed words. The vectors include the
-//!    effect of the [`Lens`]: flat, radial, equidistant, or from a file. A lens that folds the picture over itself is
-//!    refused.
+//!    effect of the [`Lens`]: flat, radial, equidistant, or from a file. A lens that shows two pixels in the same
+//!    direction is refused.
 //! 2. **Latch.** The orientation register ([`OrientationLatch`]) accepts matrices from the host's own port
 //!    ([`AddressRecalculationPipeline::load_orientation`]) or over the ring ([`orientation_message`]). A matrix that is
 //!    not a rotation is refused and counted, and the previous matrix stays valid. The display reads (latches) the
 //!    matrix once per field, per line or per pixel ([`Latch`]). The matrix is read before the first pixel of the field
 //!    or line is displayed, earlier by the duration of all stages.
 //! 3. **Rotate.** Nine products and six sums rotate the vector. The results keep all bits.
-//! 4. **Face.** The longest component selects the face. On ties, x precedes y, and y precedes z ([`CubeFace`]).
+//! 4. **Face.** The longest component selects the face. Among equally long components, x precedes y, and y precedes z
+//!    ([`CubeFace`]).
 //! 5. **Divide.** Dividers compute (1 + u) / 2 and (1 + v) / 2, one bit per stage. Results are rounded down, and 1
 //!    becomes all ones.
 //! 6. **Address.** The position is the quotient, plus half of its last bit, times the size of the face. The upper bits

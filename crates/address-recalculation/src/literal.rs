@@ -62,7 +62,7 @@ pub struct ReferencePipeline {
     vector_bits: u64,
     matrix_bits: u64,
     stages: Vec<Stage>,
-    /// The pixel in each stage, or `None`. The first stage is first.
+    /// The pixel in each stage, in the order of the stages. `None` marks a stage without a pixel.
     inside: VecDeque<Option<Registers>>,
 }
 

@@ -69,8 +69,8 @@ impl<'a> Addressing<'a> {
     /// Computes the footprints (the four texels and their weights) of up to [`BATCH`] pixels together, and returns
     /// true.
     ///
-    /// Returns false and computes nothing if the words are too wide. The same holds if there are so few pixels that
-    /// computing them one by one is faster.
+    /// Returns false and computes nothing if the words are too wide. The same holds if there are so few pixels that a
+    /// computation pixel by pixel is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;
         if is_worth_it {
@@ -265,7 +265,7 @@ const PIECE: usize = 32;
 #[derive(Clone, Debug)]
 struct Composed {
     colours: Vec<u32>,
-    /// For each group of [`PIECE`] texels, true if its texels and the following texel are computed.
+    /// For each group of [`PIECE`] texels, true if all texels of the group and the following texel are computed.
     is_done: Vec<bool>,
 }
 

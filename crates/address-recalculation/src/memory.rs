@@ -24,7 +24,7 @@ pub(crate) struct StoredRegion {
 /// The regions of a buffer that have arrived in the current update. All other regions are empty.
 pub(crate) type Regions = BTreeMap<u16, Arc<StoredRegion>>;
 
-/// Properties of a memory: size of its faces, format of its texels, and whether it stores depth.
+/// Properties of a memory: the size of its faces, the format of its texels, and the presence of depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MemoryKind {
     pub(crate) face_texels: u32,
@@ -41,7 +41,8 @@ impl MemoryKind {
         words * REGION_TEXELS as u32 / MESSAGE_WORDS
     }
 
-    /// Writes the selected regions of a buffer into faces.
+    /// Computes the texels of a buffer's regions and writes them into `faces`. `wanted` has true for each region to
+    /// write.
     pub(crate) fn draw(self, regions: &Regions, wanted: &[bool], faces: &mut FaceSet) {
         for (number, region) in regions.iter().filter(|(number, _)| wanted[usize::from(**number)]) {
             let words = region.words.get_or_init(|| region.source.pixels());
@@ -189,7 +190,8 @@ impl DisplayMemory {
         Ok(())
     }
 
-    /// Requests to show a buffer. The buffer becomes visible at the next retrace at which all its regions are complete.
+    /// Requests to show a buffer. The buffer becomes visible at the first retrace after `now` at which all its regions
+    /// are complete.
     pub(crate) fn ask(&mut self, buffer: u8, together: u8, now: Time) {
         self.request = Some(SwapRequest { asked_at: now, buffer, together });
     }

@@ -15,23 +15,25 @@
 //!   angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or sphere), is
 //!   animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight can be drawn
 //!   later ([`time_until_visible_s`]).
-//! - **Objects** ([`Objects`]): each object is in the slowest memory that keeps its image right. Memory k is drawn
-//!   every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are shown
+//! - **Objects** ([`Objects`]): each object is in the least often drawn memory that keeps its image right. Memory k is
+//!   drawn every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are shown
 //!   together.
-//! - **Cells** ([`Cells`]): the floor of the world is divided into square cells. The ring of a cell around the home
-//!   cell determines the cell's memory. Memory 0 holds the inner rings, and memory 1 holds one ring. Each further
-//!   memory holds `ring_growth` times as many rings as the previous memory.
+//! - **Cells** ([`Cells`]): the floor of the world is divided into square cells. The home cell is the cell that
+//!   contained the eye when cells were last assigned to memories. All cells at one distance from the home cell form a
+//!   ring, which lies in one memory. Memory 0 holds the inner rings, and memory 1 holds one ring. Each further memory
+//!   holds `ring_growth` times as many rings as the previous memory.
 //! - **Due memories**: a memory must be drawn again when the eye has moved too far since the memory's last update. The
 //!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is searched among all
 //!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a
-//!   memory also makes all faster memories due (cascade).
-//! - **New home cell**: when the eye has left the home cell and the slowest memory is due, cells are assigned to
-//!   memories anew. All memories whose cells have changed are then shown together.
+//!   memory also makes all more often drawn memories due (cascade).
+//! - **New home cell**: when the eye has left the home cell and the least often drawn memory is due, cells are assigned
+//!   to memories anew. All memories whose cells have changed are then shown together.
 //! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells. Each line is cut once for all
 //!   triangles that share it, so the parts have bit-identical vertices along a cut. A segment is the part of a mesh in
 //!   one cell.
-//! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of the two
-//!   eye positions. The vertex then has the same direction and depth in both memories.
+//! - **Warping** ([`RegionWarp`]): a vertex on the border to the less often drawn memory is moved. The displacement is
+//!   the difference of the two eye positions from which the memories were drawn. The vertex then has the same direction
+//!   and depth in both memories.
 //!
 //! Units are metres, seconds and radians, except in names that contain `deg`. Axes are right-handed with y up. Results
 //! are bit-identical on every host.

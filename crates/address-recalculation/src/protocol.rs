@@ -18,7 +18,7 @@ const BEGIN: Word = 0x0041_5042;
 /// First word of a request to swap at the same retrace as other memories.
 const TOGETHER: Word = 0x0041_5054;
 
-/// First word of an orientation.
+/// First word of a message that sets the orientation.
 const MATRIX: Word = 0x0041_504D;
 
 /// Returns the division of six faces into regions of 128 x 128 texels. The faces lie one below the other, in the order
@@ -39,7 +39,8 @@ pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32
     Some(RegionId(((face as u32 * across + row) * across + column) as u16))
 }
 
-/// Returns the words that begin an update of a buffer with the given regions. All other regions will be empty.
+/// Returns the words that begin an update of a buffer. `regions` are the regions that will arrive. All other regions
+/// will be empty.
 #[must_use]
 pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[Word]> {
     let count = region_grid(face_texels).regions();

@@ -9,7 +9,8 @@ pxpl5_sim::parameters::parameter_table! {
     pub struct ArpTiming {
         /// Number of display memories per eye. Each memory has two buffers of six faces with depth.
         display_memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2: memories 0 to 3";
-        /// Number of texels along an edge of a face, including guard texels. The number must be a multiple of 128.
+        /// Number of texels along an edge of a face, including guard texels (a margin that repeats the neighbouring
+        /// face). The number must be a multiple of 128.
         face_texels: 256, "texels", Assumed, 128..=2048, "not printed; a port of the ring can fill faces of 256 texels 25 times a second; 512 for ideal faces";
         /// Number of texels on each side of a face that repeat the content of the neighbouring face.
         guard_texels: 1, "texels", Assumed, 0..=8, "not printed; with 1, every footprint lies on its face";

@@ -7,7 +7,7 @@ use crate::tears::TearWidths;
 use pxpl5_scene::Scene;
 use serde::Serialize;
 
-/// Name and settings of each variant. A variant takes all other settings from the plan.
+/// Name and settings of each variant. A variant takes all other settings from the `plan` of [`compare`].
 const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
     ("full", &[("policy", "full")]),
     ("objects", &[("policy", "objects"), ("segment", "off")]),

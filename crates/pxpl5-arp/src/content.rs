@@ -7,7 +7,7 @@ use address_recalculation::priority::{CellAssignment, RegionWarp};
 use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 
-/// The data from which a display memory is drawn. Its cube faces are drawn later, when they are read.
+/// The data from which a display memory is drawn. The memory's cube faces are drawn later, when the faces are read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Content {
     /// Position of the eye from which the memory is drawn.
@@ -48,7 +48,8 @@ impl Content {
     }
 }
 
-/// Returns the warp that joins a memory to the next slower memory. `places` are the two eye positions.
+/// Returns the warp that joins a memory to the next less often drawn memory. `places` are the eye positions from which
+/// the two memories were drawn.
 pub(crate) fn warp(
     settings: &crate::settings::WalkSettings,
     dealing: &CellAssignment,

@@ -27,7 +27,7 @@
 //!
 //! # Not here
 //!
-//! - Lighting and materials. The caller gives corners with shaded colours.
+//! - Lighting and materials. The corners of triangles already have shaded colours.
 //! - Spheres.
 //! - The decision when a face is drawn (see module `address_recalculation::priority`).
 

@@ -25,7 +25,7 @@ pub struct WalkReport {
     pub triangles: u64,
     /// Number of segments (parts of objects) into which the borders of cells cut the scene.
     pub segments: u64,
-    /// Length of the viewer's walk, in frames of the fastest memory.
+    /// Length of the viewer's walk, in frames of the most often drawn memory.
     pub frames: u64,
     /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,

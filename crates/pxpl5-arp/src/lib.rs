@@ -12,12 +12,12 @@
 //! - [`World`] cuts a scene at the borders of cells, once.
 //! - [`Simulation::frame`] asks the policy which memories are due for an update at a position of the eye, and passes
 //!   the work to the renderer.
-//! - An ideal renderer draws within the same frame. A renderer of limited speed draws memories in ascending order. The
-//!   renderer shows complete updates in the next frame and counts incomplete updates.
+//! - An ideal renderer draws within the same frame. A renderer of limited speed draws memories in ascending order of
+//!   their indices. The renderer shows complete updates in the next frame and counts incomplete updates.
 //! - A memory holds the data from which it is drawn ([`Content`]). Its faces are drawn only when they are read
 //!   ([`WalkFaces`]).
-//! - [`walk()`] counts the updates, draws and tears (gaps between memories) of a whole walk. [`ArpReport`] writes them as
-//!   JSON.
+//! - [`walk()`] counts the updates, draws and tears (gaps between memories) of a whole walk. [`ArpReport`] contains
+//!   these results in the form of a JSON report.
 //! - [`WalkOutcome`] holds the results of one plan. [`compare()`] simulates a walk with every policy and kind of
 //!   warping.
 //! - [`figures`] compares the papers' figures with the simulated figures. [`pictures`] draws pictures.

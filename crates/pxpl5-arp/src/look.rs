@@ -86,8 +86,8 @@ impl WalkFaces {
     }
 }
 
-/// Returns a picture of the given width from values of its pixels in row order. `colour` converts each value to a
-/// colour.
+/// Returns a picture of `width` pixels across. `pixels` has one value for each pixel in row order. `colour` converts
+/// each value to a colour.
 pub(crate) fn picture<T>(width: u32, pixels: &[T], colour: impl Fn(&T) -> u32) -> RgbImage {
     let height = pixels.len() as u32 / width;
     RgbImage::from_fn(width, height, |x, y| rgb(colour(&pixels[(y * width + x) as usize])))

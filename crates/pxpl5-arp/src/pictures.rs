@@ -39,7 +39,8 @@ pub enum ArpPicture {
 /// Number of frames of the viewer's walk that the pictures show.
 const FRAMES: u64 = 1_800;
 
-/// For each experiment: its name, the figures of the paper that it redraws, and the names of our pictures.
+/// For each experiment: its name, the figures of the papers that the experiment redraws, and the names of the project's
+/// pictures.
 pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
     ("E2", "2, 12 and 14", &["faces-0", "faces-1", "faces-2", "faces-3", "faces-whole", "memories"]),
     ("E7", "13 and 15 to 17", &["tears", "unsegmented", "warped", "difference"]),
@@ -73,7 +74,7 @@ pub fn all(experiments: &Experiments) -> Result<Vec<ArpPicture>, SettingError> {
 ///
 /// # Errors
 ///
-/// Returns a [`SettingError`] if settings are invalid, or if they do not match the cells of the world.
+/// Returns a [`SettingError`] if settings are invalid, or if the settings have other cells than the world.
 pub fn of_walk(
     mut world: World,
     path: &Walk,
@@ -113,7 +114,7 @@ pub fn of_walk(
     Ok(pictures)
 }
 
-/// Distance along the path from the eye to the point that it looks at, in metres, as in [`Walk`].
+/// Distance along the path from the eye to the point at which the eye looks, in metres, as in [`Walk`].
 const AHEAD_M: f64 = 1.5;
 
 /// Returns the orientation of a head that looks along the path. The head is `way_m` metres from the start of the path.
@@ -238,7 +239,7 @@ fn gaps(
     Ok(pictures)
 }
 
-/// Runs a walk over a range of frames and returns its final state.
+/// Simulates a walk over a range of frames. Returns the simulation after the last of these frames.
 fn shown<'a>(
     world: &'a World,
     settings: &WalkSettings,

@@ -35,8 +35,8 @@ const CHOICES: [&str; 10] = [
 
 /// Settings of a walk by path. Some defaults depend on other settings.
 ///
-/// A *cascade* lets an update of a memory also update all faster memories. By default, only walks with warped cells
-/// have a cascade, and only the policy `cells` cuts objects. `priority.threshold` in pixels or texels overrides
+/// A *cascade* lets an update of a memory also update all more often drawn memories. By default, only walks with warped
+/// cells have a cascade, and only the policy `cells` cuts objects. `priority.threshold` in pixels or texels overrides
 /// `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkPlan {

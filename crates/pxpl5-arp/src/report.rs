@@ -39,8 +39,8 @@ pub struct ArpReport {
     /// Widths of the tears (gaps where different memories meet), in texels (90 degrees divided by the texels of a
     /// face's edge). Null if no memories meet.
     pub tears_px: TearsReport,
-    /// Time from reading a known orientation to displaying the pixel, in ms, averaged over all pixels. The time does
-    /// not include tracker and host.
+    /// Time from reading the head's orientation to displaying the pixel, in ms, averaged over all pixels. The times of
+    /// tracker and host are not included.
     pub rotation_latency_ms: WalkLatency,
     /// Latency of translation through memory 0, in ms. Null without an update.
     ///
@@ -166,8 +166,8 @@ fn rotation(display: &ArpConfig) -> WalkLatency {
     WalkLatency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
 }
 
-/// Returns the latency of translation in three parts: drawing the update, the wait after it is first shown, and the
-/// scan.
+/// Returns the latency of translation in three parts: drawing the update, the wait after the update is first shown, and
+/// the scan until the pixel is displayed.
 fn translation(memory: Option<&MemoryTally>, settings: &WalkSettings) -> WalkLatency {
     let memory = memory.filter(|memory| memory.shown_frames > 0);
     let mean_ms = |frames: fn(&MemoryTally) -> u64| {

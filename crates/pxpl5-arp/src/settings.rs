@@ -14,7 +14,8 @@ pub enum PolicyKind {
     Full,
     /// Each object is in the least often updated memory that keeps its image error below the threshold.
     Objects,
-    /// The floor is divided into square cells. Each cell is assigned to a memory by its distance from the user's cell.
+    /// The floor is divided into square cells. Each cell is assigned to a memory by its distance from the viewer's
+    /// cell.
     #[default]
     Cells,
 }
@@ -44,15 +45,16 @@ pub enum SourceKind {
     /// A renderer that draws memories one after the other at a limited rate. Updates are shown in the next frame at the
     /// earliest.
     Timed {
-        /// Number of triangles drawn per second. A triangle counts once, even if it covers several faces.
+        /// Number of triangles drawn per second. A triangle counts once, even if the triangle covers several faces.
         triangles_per_s: f64,
     },
 }
 
 /// Distances of the near and the far plane along a face's axis, in metres.
 ///
-/// Both limits are assumed. The near limit is less than 1 m (for the gallery's path) divided by the square root of 3.
-/// The far limit exceeds the size of the hall. A step of depth is 0.24 mm at 20 m.
+/// Both limits are assumed. Walls are at least 1 m away from the gallery's path, which is at least 1 m / sqrt(3) along
+/// the axis of a face. The near limit is less than this distance. The far limit exceeds the size of the hall. A step of
+/// depth is 0.24 mm at 20 m.
 const NEAR_M: f64 = 0.1;
 const FAR_M: f64 = 100.0;
 
@@ -62,10 +64,10 @@ pub struct WalkSettings {
     pub policy: PolicyKind,
     /// True if objects are cut into segments at the borders of cells.
     pub is_segmented: bool,
-    /// Rule by which the displacement by warping decreases with the distance from the border to a slower memory.
-    /// [`Falloff::None`] disables warping, so gaps appear at cuts.
+    /// Rule by which the displacement by warping decreases with the distance from the border to a less often drawn
+    /// memory. [`Falloff::None`] disables warping, so gaps appear at cuts.
     pub falloff: Falloff,
-    /// True if an update of a memory makes all faster memories due for an update.
+    /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,
     /// Parameters of the policies.
     pub numbers: PriorityTiming,
@@ -74,7 +76,8 @@ pub struct WalkSettings {
 }
 
 impl WalkSettings {
-    /// Settings with objects cut but not warped, cells of the size fitted to table 1, and an ideal renderer.
+    /// Settings with objects cut but not warped, cells of the size fitted to table 1 of the paper CPR05, and an ideal
+    /// renderer.
     pub const CELLS: Self = Self {
         policy: PolicyKind::Cells,
         is_segmented: true,
@@ -85,7 +88,8 @@ impl WalkSettings {
         source: SourceKind::Ideal,
     };
 
-    /// The settings of [`Self::CELLS`] with warping. An update of a memory then also updates all faster memories.
+    /// The settings of [`Self::CELLS`] with warping. An update of a memory then also updates all more often drawn
+    /// memories.
     pub const WARPED: Self = Self { falloff: Falloff::Linear, has_cascade: true, ..Self::CELLS };
 
     /// Settings with one memory, in which everything is drawn in every frame.

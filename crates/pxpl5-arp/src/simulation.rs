@@ -45,8 +45,8 @@ pub struct FrameOutcome {
     pub eye: DVec3,
     /// For each memory, true if it became due for an update.
     pub due: Vec<bool>,
-    /// For each memory, true if it has a new update. An ideal renderer shows the update from this frame on, others from
-    /// the next frame on.
+    /// For each memory, true if it has a new update. With an ideal renderer, the update is shown from this frame on.
+    /// With a renderer of limited speed, it is shown from the next frame on.
     pub swapped: Vec<bool>,
     /// For each memory, true if its update was incomplete at the retrace.
     pub missed: Vec<bool>,
@@ -105,7 +105,7 @@ impl<'a> Simulation<'a> {
         &self.settings
     }
 
-    /// Returns the contents of each memory, or `None` before its first update.
+    /// Returns the contents of each memory, or `None` for a memory without an update so far.
     #[must_use]
     pub fn shown(&self) -> &[Option<Content>] {
         &self.shown

@@ -1,4 +1,5 @@
-//! A renderer of limited speed, which draws memories in ascending order and shows only complete updates.
+//! A renderer of limited speed, which draws memories in ascending order of their indices and shows only complete
+//! updates.
 
 use crate::content::Content;
 
@@ -27,14 +28,14 @@ impl Queue {
     }
 
     /// Adds an update of a memory. If an update of this memory has begun, the new update waits until that update is
-    /// finished. Otherwise the new update replaces the earlier update.
+    /// finished. Otherwise the new update replaces the update of this memory that has not begun.
     pub(crate) fn put(&mut self, memory: usize, job: Job) {
         let has_begun = self.running[memory].as_ref().is_some_and(|running| running.left_s < running.work_s);
         let place = if has_begun { &mut self.waiting[memory] } else { &mut self.running[memory] };
         *place = Some(job);
     }
 
-    /// Draws for `seconds`, the duration of a frame, starting with the fastest memory.
+    /// Draws for `seconds`, the duration of a frame, starting with the memory that is updated most often.
     pub(crate) fn work(&mut self, mut seconds: f64) {
         for job in self.running.iter_mut().flatten() {
             let spent = job.left_s.min(seconds);

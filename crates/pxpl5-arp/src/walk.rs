@@ -25,12 +25,12 @@ pub struct MemoryTally {
     pub age_m: f64,
     /// Number of frames in which the memory showed any update.
     pub shown_frames: u64,
-    /// Age of the eye position from which the shown update was drawn, in frames. The sum covers the frames that showed
-    /// an update.
+    /// Age of the eye position from which the shown update was drawn, in frames. The ages are summed over all frames in
+    /// which the memory showed an update.
     pub age_frames: u64,
     /// Part of `age_frames` that passed before each update was first shown.
     pub drawing_frames: u64,
-    /// Number of frames that it took to draw the shown update.
+    /// Number of frames in which the renderer drew the shown update.
     drawn_in: u64,
 }
 

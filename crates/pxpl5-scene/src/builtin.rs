@@ -1,4 +1,4 @@
-//! The built-in scenes. Code generates all of them, so they are the same on every host.
+//! The built-in scenes. Code generates these scenes, so the scenes are the same on every host.
 
 mod aircraft;
 mod full_screen;

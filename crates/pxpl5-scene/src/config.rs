@@ -6,8 +6,8 @@
 /// Radius to which most built-in models are scaled, metres. The radius is measured from the centre of the model's
 /// bounding box.
 ///
-/// Assumed, 0.1 to 1: the size of a ball held at arm's length. Half a walk around this model in a few seconds gives the
-/// published mean speed of a head, 0.37 m/s.
+/// Assumed, 0.1 to 1: the size of a ball held at arm's length. A head that walks half-way around such a model in a few
+/// seconds has about the published mean speed of 0.37 m/s.
 pub const FIT_RADIUS_M: f64 = 0.25;
 
 /// Radius to which an imported model is scaled, metres. The radius is measured from the centre of the model's bounding

@@ -5,7 +5,8 @@
 //! surface stays closed.
 //!
 //! When no edge can be collapsed, whole connected pieces are removed, the smallest first. When one piece is left, its
-//! smallest triangles are removed. Spheres have no edges. Some of them are removed, evenly over their order.
+//! smallest triangles are removed. Spheres have no edges. Some spheres are removed, spread evenly over the list of
+//! spheres.
 
 mod collapse;
 mod quadric;
@@ -22,9 +23,9 @@ use surface::Surface;
 use crate::scene::{Scene, SceneParts, Structure};
 
 impl Scene {
-    /// Returns the same scene with at most `n` primitives. The scene keeps as many of them as its surfaces allow. A
-    /// closed surface has an even number of triangles, so the result can have one primitive less than an odd `n`. The
-    /// ratio of spheres to triangles stays the same.
+    /// Returns this scene, reduced to at most `n` primitives. The result has as many primitives up to `n` as the
+    /// surfaces allow. A closed surface has an even number of triangles, so the result can have one primitive less than
+    /// an odd `n`. The ratio of spheres to triangles stays the same.
     ///
     /// Structures without primitives are removed together with their edits. The same scene and number give the same
     /// result on every host.
@@ -39,8 +40,8 @@ impl Scene {
 
 /// Decimation of one scene to several numbers of primitives. Each result equals that of [`Scene::decimated`].
 ///
-/// Collapses have the same order for every number of primitives. A later call therefore continues from a state that an
-/// earlier call has passed, if its number is not larger.
+/// Edges collapse in the same order for every number of primitives. A call therefore stores an intermediate surface. A
+/// later call for no more primitives can start from this surface.
 pub struct Decimation {
     scene: Arc<Scene>,
     passed: Mutex<Option<Arc<FirstPass>>>,
@@ -85,10 +86,12 @@ impl fmt::Debug for Decimation {
     }
 }
 
-/// A state is stored when an eighth more triangles than wanted remain. A search for a limit tries sizes on both sides.
+/// Divisor of the wanted number of triangles. The intermediate surface is stored when wanted + wanted / 8 triangles
+/// remain, because a search for a limit also tries slightly larger numbers.
 const PASSED_ABOVE: usize = 8;
 
-/// Returns a scene with at most `n` primitives. `reduce` returns the surface with at most a number of triangles.
+/// Returns a scene with at most `n` primitives. `reduce` receives a number of triangles, and returns the scene's
+/// surface after edges have collapsed to about this number.
 fn decimated(scene: &Scene, n: usize, reduce: impl FnOnce(usize) -> Surface) -> Result<Scene, SettingError> {
     let triangles = scene.triangles().len();
     let spheres = scene.spheres().len();
@@ -113,12 +116,13 @@ fn decimated(scene: &Scene, n: usize, reduce: impl FnOnce(usize) -> Surface) -> 
     Ok(Scene::new(kept.of(scene.clone().into_parts()))?.with_warnings(scene.warnings().to_vec()))
 }
 
-/// Returns true if item `index` of `all` items is among the `kept` ones. The kept items are spread evenly.
+/// Chooses `kept` of `all` items, spread evenly. Returns true if the item with this index is chosen.
 const fn is_kept(index: usize, all: usize, kept: usize) -> bool {
     index * kept / all != (index + 1) * kept / all
 }
 
-/// Removes whole connected pieces, the smallest first. It ends when `wanted` triangles or a single piece remain.
+/// Removes whole connected pieces, the smallest first. The removal ends when `wanted` triangles or a single piece
+/// remain.
 fn drop_pieces(surface: &mut Surface, wanted: usize) {
     if surface.left <= wanted {
         return;
@@ -135,7 +139,8 @@ fn drop_pieces(surface: &mut Surface, wanted: usize) {
     }
 }
 
-/// Removes the smallest triangles until `wanted` remain. This is the last resort, after all other passes.
+/// Removes the smallest triangles until `wanted` remain. This is the last step, after the collapse of edges and the
+/// removal of pieces.
 fn drop_triangles(surface: &mut Surface, wanted: usize) {
     let left: Vec<u32> = surface.all().map(|(triangle, _)| triangle).collect();
     let areas: Vec<f64> = left.iter().map(|&triangle| area(surface, triangle)).collect();
@@ -143,8 +148,9 @@ fn drop_triangles(surface: &mut Surface, wanted: usize) {
     smallest_first(&areas).into_iter().take(excess).for_each(|index| remove(surface, left[index]));
 }
 
-/// Returns the indices of triangles by increasing area. Areas that agree to a thousandth count as equal, and their
-/// order spreads evenly over the surface.
+/// Returns the indices of triangles by increasing area. Areas that agree to a thousandth count as equal. Triangles of
+/// equal area are ordered by the reversed bits of their indices, which spreads the first triangles evenly over the
+/// surface.
 fn smallest_first(areas: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..areas.len()).collect();
     // The key is the exponent and ten bits of the fraction, followed by the bits of the index in reverse order.

@@ -1,4 +1,4 @@
-//! Positions of errors in model files, and errors that all importers have.
+//! Positions of errors in model files, and errors that every importer can return.
 
 use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use std::{fmt, io};

@@ -52,8 +52,8 @@ pub enum HeadPath {
         /// Mean distance from the target, metres.
         distance: f64,
     },
-    /// The head flies around `target` and always looks at it. The distance alternates between near and far, with five
-    /// approaches in two laps.
+    /// The head flies around `target` and always looks at `target`. The distance alternates between near and far, with
+    /// five approaches in two laps.
     FlyThrough {
         /// Point at which the head looks, metres, world coordinates.
         target: Vec3,
@@ -74,7 +74,7 @@ pub struct HeadMotion {
     sway: Sway,
 }
 
-/// The numbers of a head motion before they are checked.
+/// The numbers of a head motion before [`HeadMotion::new`] checks the numbers.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Unchecked {
@@ -231,7 +231,7 @@ fn check_either_sign(what: &'static str, number: f64) -> Result<(), SettingError
 }
 
 /// Returns the vector from the target to the head after a number of laps. A lap has two and a half approaches to the
-/// target, each from another side and height.
+/// target, each from a different side and height.
 fn fly_through_arm(laps: f64, nearest: f64, farthest: f64) -> DVec3 {
     let middle = (farthest + nearest) / 2.0;
     let half = (farthest - nearest) / 2.0;

@@ -118,7 +118,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Checks the given contents and creates a scene from these contents.
+    /// Checks the contents in `parts` and creates a scene from these contents.
     ///
     /// # Errors
     ///
@@ -131,7 +131,7 @@ impl Scene {
         Ok(Self { parts, warnings: Vec::new() })
     }
 
-    /// Returns the scene with these warnings about its file instead of its present warnings.
+    /// Returns the same scene with these warnings about its file. They replace all earlier warnings.
     #[must_use]
     pub fn with_warnings(mut self, warnings: Vec<String>) -> Self {
         self.warnings = warnings;
@@ -181,7 +181,7 @@ impl Scene {
         &self.parts.lighting
     }
 
-    /// Returns the motion of a head that looks at this scene. The model stays in view during runs of any length.
+    /// Returns the motion of a head that looks at this scene. The scene stays in view for any duration.
     #[must_use]
     pub fn motion(&self) -> &HeadMotion {
         &self.parts.motion
@@ -202,7 +202,7 @@ impl Scene {
         self
     }
 
-    /// Returns the contents of the scene. The caller can change them and check them again with [`Scene::new`].
+    /// Returns the contents of the scene. After changes, [`Scene::new`] can make a scene from these contents again.
     #[must_use]
     pub fn into_parts(self) -> SceneParts {
         self.parts

@@ -47,7 +47,7 @@ impl View {
     }
 }
 
-/// Numbers of a head-mounted display in metres, degrees and pixels. [`Hmd::new`] checks them.
+/// Numbers of a head-mounted display in metres, degrees and pixels. [`Hmd::new`] checks the numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HmdConfig {
@@ -124,7 +124,7 @@ pub struct Hmd {
 }
 
 impl Hmd {
-    /// Checks the numbers of a display and creates it.
+    /// Checks the numbers of a display and creates the display.
     ///
     /// # Errors
     ///
@@ -181,8 +181,8 @@ impl Hmd {
     }
 
     /// Returns the disparity, in pixels, of a point `depth_m` metres ahead: eye separation x focal length / depth. In
-    /// the left picture the point is this far to the right of its position in the right picture. The formula is for
-    /// parallel axes.
+    /// the left picture the point is farther to the right than in the right picture, by this distance. The formula is
+    /// for parallel axes.
     #[must_use]
     pub fn disparity_px(&self, depth_m: f64) -> f64 {
         self.config.eye_separation_m * self.focal_length_px() / depth_m

@@ -20,7 +20,7 @@ pub enum ClipKind {
 }
 
 impl ClipKind {
-    /// All six clips, in the order of the paper.
+    /// All six clips, in the order of the SpatialGL paper.
     pub const ALL: [Self; 6] =
         [Self::Prism, Self::UserPlanes, Self::Exact, Self::Tapered, Self::Parallel, Self::Hyperbolic];
 }
@@ -44,9 +44,9 @@ impl ProjectionKind {
 /// The hardware that draws the slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RendererKind {
-    /// The CPU of this computer, in place of the paper's GPU.
+    /// The CPU of this computer, in place of the SpatialGL paper's GPU.
     Host,
-    /// The emulated renderers of Pixel-Planes 5, which are beyond the paper.
+    /// The emulated renderers of Pixel-Planes 5, which are beyond the SpatialGL paper.
     PixelPlanes,
 }
 

@@ -1,5 +1,5 @@
-//! Comparison of all clips and projections for one scene. The comparison includes methods that the paper rejects as too
-//! expensive.
+//! Comparison of all clips and projections for one scene. The comparison includes methods that the SpatialGL paper
+//! rejects as too expensive.
 
 use crate::choices::{ClipKind, Named, ProjectionKind};
 use crate::experiment::Volume;
@@ -49,11 +49,11 @@ pub struct VariantRow {
     pub model_ms: [f64; 3],
     /// Volumes per second of the time model if processor, GPU and bus work one after the other.
     pub volumes_hz_serial: f64,
-    /// Volumes per second of the time model if processor, GPU and bus work at the same time.
+    /// Volumes per second of the time model if processor, GPU and bus work at the same time on different volumes.
     pub volumes_hz_overlapped: f64,
     /// Hash of all bits of the volume.
     pub volume_hash: String,
-    /// Settings of this variant that go beyond the paper.
+    /// Settings of this variant that go beyond the SpatialGL paper.
     pub beyond_paper: Vec<&'static str>,
     /// Time in which this computer drew the volume, in seconds.
     pub host_seconds: f64,
@@ -72,7 +72,7 @@ pub struct VolumeComparison {
     pub triangles: u64,
     /// Width of the rings in `brightness_by_radius`, pixels.
     pub ring_px: u32,
-    /// Seed of the jitter's random sequence.
+    /// Seed of the random eyes and shears of the jittered projection.
     pub seed: u64,
     /// One row for each variant.
     pub variants: Vec<VariantRow>,
@@ -100,8 +100,8 @@ struct Variant {
     coverage: Coverage,
 }
 
-/// Returns all variants. The first 18 combine each of six clips with each of three projections. Further variants use
-/// the hyperbolic clip and an orthographic projection, with more samples and with connected coverage.
+/// Returns all variants. The first 18 combine each of six clips with each of three projections. The remaining variants
+/// use the hyperbolic clip and an orthographic projection, with more samples and with connected coverage.
 fn variants() -> Vec<Variant> {
     let sampled = |clip, projection| Variant { clip, projection, samples: 1, coverage: Coverage::Sampled };
     let mut all: Vec<Variant> = ClipKind::ALL
@@ -219,7 +219,8 @@ impl Variant {
 }
 
 impl VolumeComparison {
-    /// Divides the lit pixels of each row by the lit pixels of the exact clip with the same projection, ring by ring.
+    /// Computes, for each variant and each ring, the number of lit pixels divided by the number with the exact clip and
+    /// the same projection.
     fn set_brightness_ratios(&mut self) {
         let exact: Vec<(ProjectionKind, Vec<u64>)> = self
             .variants

@@ -1,4 +1,4 @@
-//! A volume, drawn from a scene with given settings.
+//! A volume that is drawn from a scene with the settings of an experiment.
 
 use crate::choices::RendererKind;
 use crate::pixel_planes::{ArrayKind, PixelPlanesRenderer, SliceBounds, SliceTraffic};
@@ -11,7 +11,7 @@ use spatialgl::{
 };
 use std::time::Instant;
 
-/// A drawn volume, with the settings, display and recording from which it was drawn.
+/// A drawn volume, with the settings, the display and the recorded graphics commands from which it was drawn.
 #[derive(Clone, Debug)]
 pub struct Volume {
     /// Settings with which the volume was drawn.
@@ -33,7 +33,8 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Draws a scene with its middle on the axis and its farthest corner at 0.9 of the radius.
+    /// Draws a scene. The middle of the scene is on the axis, and its farthest corner is at 0.9 times the radius of the
+    /// display.
     ///
     /// # Errors
     ///

@@ -6,14 +6,14 @@
 //!
 //! # Behaviour
 //!
-//! - The volume stands upright before the head. The middle of the volume is `viewer.distance_mm` ahead of the start of
-//!   the motion, and the +z axis points towards the head. Both displays show the same scene at the position of the
-//!   volume.
+//! - The volume stands upright in front of the head. The middle of the volume is `viewer.distance_mm` ahead of the
+//!   start of the motion, and the +z axis points towards the head. Both displays show the same scene at the position of
+//!   the volume.
 //! - Errors are evaluated at [`POINTS`] vertices of the scene, for both eyes. For the head-mounted display, the error
 //!   is the angle between the drawn and the true position of a point. The point was drawn for the pose one latency ago.
 //!   For the volume, the error is the angle between a point and the voxel that shows the point in the nearest slice.
-//! - Dither makes the level of a colour correct only on average over a cell of the dither matrix. The study reports the
-//!   visual angle of this cell.
+//! - Dither makes the level of a colour correct only on average over the square of pixels that the dither matrix
+//!   covers. The study reports the visual angle of this square.
 //! - In pictures, each eye looks at the middle of the volume, upright. The picture of the head-mounted display is drawn
 //!   for the pose of the eye one latency ago. This picture is then shifted by the error of its middle.
 //!
@@ -59,7 +59,7 @@ pub struct HeadSample {
     pub hmd_mean_deg: Option<f64>,
     /// Largest angle between the drawn and the true position of a point on the head-mounted display, in degrees.
     pub hmd_worst_deg: Option<f64>,
-    /// Mean distance between drawn and true positions on the head-mounted display, in its pixels.
+    /// Mean distance between drawn and true positions on the head-mounted display, in pixels of this display.
     pub hmd_mean_px: Option<f64>,
     /// Mean distance between drawn and true positions on the head-mounted display, in millimetres at the points'
     /// distance.
@@ -71,7 +71,7 @@ pub struct HeadSample {
     /// Mean distance between a point and the voxel that shows the point, in millimetres perpendicular to the line of
     /// sight.
     pub voxel_mean_mm: f64,
-    /// Visual angle of a cell of the dither matrix at the middle of the volume, in degrees.
+    /// Visual angle of the square of pixels that the dither matrix covers, at the middle of the volume, in degrees.
     pub dither_cell_deg: f64,
 }
 
@@ -107,7 +107,7 @@ pub struct HeadStudyConfig {
     pub instants: u32,
 }
 
-/// A moving head before a volume, for the comparison of the volume with a head-mounted display.
+/// A moving head in front of a volume, for the comparison of the volume with a head-mounted display.
 #[derive(Debug)]
 pub struct HeadComparison<'a> {
     volume: &'a Volume,
@@ -116,7 +116,7 @@ pub struct HeadComparison<'a> {
     /// Matrix from the world coordinates of the motion, in metres, to the coordinates of the volume, in pixels.
     into_volume: DMat4,
     latency_ps: u64,
-    /// Points of the scene, each with the voxel that shows it, in pixels of the volume.
+    /// Points of the scene, each with the voxel that shows the point, in pixels of the volume.
     points: Vec<[DVec3; 2]>,
 }
 
@@ -134,7 +134,7 @@ impl Volume {
 }
 
 impl<'a> HeadComparison<'a> {
-    /// Places a volume before a moving head.
+    /// Places a volume in front of a moving head.
     ///
     /// # Errors
     ///
@@ -176,7 +176,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the length is out of range, if there are fewer than two instants, or if the
+    /// Returns a [`SettingError`] if the duration is out of range, if there are fewer than two instants, or if the
     /// head-mounted view is invalid.
     pub fn study(&self, question: &HeadStudyConfig) -> Result<HeadStudy, SettingError> {
         let view = self.view()?;
@@ -195,7 +195,8 @@ impl<'a> HeadComparison<'a> {
         })
     }
 
-    /// Returns the instants of a study, evenly spaced and starting one latency after the beginning.
+    /// Returns the evenly spaced instants of a study. The first instant is one latency after the beginning of the
+    /// motion.
     fn instants(&self, question: &HeadStudyConfig) -> Result<Vec<u64>, SettingError> {
         let HeadStudyConfig { seconds, instants, .. } = *question;
         let wrong = |what, expected: &str, found: String| SettingError::value(what, expected, found);
@@ -346,7 +347,7 @@ fn moved(image: &SliceImage, by: DVec2) -> RgbImage {
 }
 
 /// Returns the matrix from world coordinates in metres to coordinates of an upright volume in pixels. The volume stands
-/// before the head.
+/// in front of the head.
 fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     let ahead = head.orientation * DVec3::NEG_Z;
     let yaw = DQuat::from_rotation_y(libm::atan2(-ahead.x, -ahead.z));
@@ -363,8 +364,8 @@ fn around(place: DVec3) -> [f64; 2] {
     [libm::atan2(place.x, place.z).to_degrees(), libm::atan2(place.y, level).to_degrees()]
 }
 
-/// Returns vertices of the scene that the display can show, each with the voxel that shows it. The vertices are evenly
-/// spread over the scene's list of vertices.
+/// Returns vertices of the scene that the display can show, each with the voxel that shows the vertex. The vertices are
+/// evenly spread over the scene's list of vertices.
 fn points(volume: &Volume) -> Vec<[DVec3; 2]> {
     let shown: Vec<DVec3> = volume
         .commands

@@ -19,7 +19,7 @@ pxpl5_sim::parameters::parameter_table! {
         eye_distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "the paper gives no value";
         /// Radius of the disc in which the random eye lies.
         eye_radius: f64 = 0.5, "radii", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper gives no value";
-        /// Greatest shift of a point by the shear, at the face of the slice's slab.
+        /// Greatest shift of a point by the shear, at the near or far plane of the slice.
         shear_px: f64 = 0.5, "px", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper states a shift of less than a pixel";
     }
 }
@@ -69,7 +69,7 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 pxpl5_sim::parameters::parameter_table! {
-    /// The viewer before the display, and the head-mounted display with which the volume is compared.
+    /// The viewer in front of the display, and the head-mounted display with which the volume is compared.
     pub struct ViewerNumbers {
         /// Diameter of the displayed volume.
         diameter_mm: f64 = 254.0, "mm", Assumed, 200.0..=500.0 in 1.0..=100000.0, "the paper gives no value; 768 px over 10 inches in SPIE 4297";

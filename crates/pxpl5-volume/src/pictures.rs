@@ -8,7 +8,7 @@ use pxpl5_sim::parameters::SettingError;
 use spatialgl::perspecta::{Camera, PictureLight, ViewOptions, film, view_planes, view_undithered};
 use spatialgl::{SpatialDisplay, Strobes, Tiling, Workers};
 
-/// Number of thumbnails per row of a sheet: 22 x 18 thumbnails show the paper's 396 slices.
+/// Number of thumbnails per row of a sheet: 22 x 18 thumbnails show the SpatialGL paper's 396 slices.
 pub const SHEET_COLUMNS: u32 = 22;
 
 /// Distance from one thumbnail of a sheet to the next, in pixels.

@@ -1,5 +1,6 @@
-//! Slices drawn by the renderers of Pixel-Planes 5, which is **beyond the paper**. The hyperbola that clips a triangle
-//! to a slice is a quadratic on the triangle's plane. The renderers' trees can evaluate quadratics.
+//! Drawing of slices by the renderers of Pixel-Planes 5, an addition **beyond the SpatialGL paper**. The function that
+//! clips a triangle to a slice is a quadratic on the triangle's plane, and its zeros form a hyperbola. The multiplier
+//! trees of the renderers can evaluate quadratics at all pixels.
 //!
 //! ```text
 //!  corners of a slice --snap to 1/16 px--> SliceTriangle (38 words, 238 clocks) --ring--> 36 regions of 128 x 128 pixels
@@ -8,9 +9,9 @@
 //! ```
 //!
 //! The emulated pixel arrays draw the slices, and their instructions determine the clocks. Two methods compute the
-//! number of volumes per second. [`SliceBounds`] has the time that each part of the machine needs if it never waits.
-//! [`simulate()`] sends the messages of the volume through the ring and the boards, event by event, and is never faster
-//! than the bounds.
+//! number of volumes per second. [`SliceBounds`] has the time that each part of the machine needs if the part never
+//! waits. [`simulate()`] sends the messages of the volume through the ring and the boards, event by event, and is never
+//! faster than the bounds.
 
 mod bounds;
 mod command;

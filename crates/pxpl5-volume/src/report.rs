@@ -23,7 +23,7 @@ pub struct VolumeReport {
     pub clip: String,
     /// Name of the projection.
     pub projection: &'static str,
-    /// Seed of the jitter's random sequence.
+    /// Seed of the random eyes and shears of the jittered projection.
     pub seed: u64,
     /// Name of the renderer that drew the slices.
     pub renderer: &'static str,
@@ -39,7 +39,7 @@ pub struct VolumeReport {
     pub passes: u64,
     /// Number of primitives drawn, summed over all slices and passes.
     pub draws: u64,
-    /// Number of primitives that would be drawn without sorting them into bins.
+    /// Number of primitives that would be drawn without bins.
     pub draws_unbinned: u64,
     /// Number of entries in all bins. A primitive has an entry in each bin that it touches.
     pub bin_memberships: u64,
@@ -48,7 +48,8 @@ pub struct VolumeReport {
     pub fragments_generated: Option<u64>,
     /// Number of fragments that lie in the volume of their slice, or `None` for the renderers of Pixel-Planes 5.
     pub fragments_accepted: Option<u64>,
-    /// Number of pixels added to close gaps in the intersections of surfaces with slices, which is beyond the paper.
+    /// Number of pixels added to close gaps in the intersections of surfaces with slices. Added pixels are beyond the
+    /// SpatialGL paper.
     pub fragments_added: u64,
     /// Number of slices on which nothing was drawn.
     pub slices_empty: u64,
@@ -92,15 +93,15 @@ pub struct VolumeReport {
     pub outside_volume: u64,
     /// Hash of all bits of the volume, in hexadecimal digits.
     pub volume_hash: String,
-    /// Settings whose numbers differ from the paper's values.
+    /// Settings whose numbers differ from the SpatialGL paper's values.
     pub overrides: Vec<Override>,
-    /// Settings that go beyond the paper.
+    /// Settings that go beyond the SpatialGL paper.
     pub beyond_paper: Vec<&'static str>,
     /// Time in which this computer drew the volume, in seconds.
     pub host_seconds: f64,
 }
 
-/// The cost of a volume on Pixel-Planes 5, which is beyond the paper.
+/// The cost of a volume that the renderers of Pixel-Planes 5 draw. This is an addition to the SpatialGL paper.
 #[derive(Clone, Debug, Serialize)]
 pub struct PixelPlanesReport {
     /// Counts of clocks, commands, words and sent tiles.
@@ -180,14 +181,14 @@ pub struct ModelTimes {
     pub bus_unpacked: ModelPart,
 }
 
-/// A setting whose number differs from the paper's value.
+/// A setting whose number differs from the SpatialGL paper's value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Override {
     /// Path of the number, as after `--set`.
     pub path: String,
-    /// Value of the number in this volume.
+    /// Value of the number with which the volume was drawn.
     pub value: Value,
-    /// Value or range that the paper gives.
+    /// Value or range that the SpatialGL paper gives.
     pub papers: Value,
 }
 
@@ -305,7 +306,7 @@ impl DisplayReport {
 }
 
 impl VolumeSettings {
-    /// Returns the settings whose numbers differ from the paper's values.
+    /// Returns the settings whose numbers differ from the SpatialGL paper's values.
     #[must_use]
     pub fn overrides(&self) -> Vec<Override> {
         let changed = self.numbers().into_iter().filter(|(_, entry)| entry.value != entry.info.papers);

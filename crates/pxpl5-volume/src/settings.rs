@@ -12,8 +12,8 @@ use spatialgl::{
 
 /// All settings that determine a volume, and the numbers of its time model.
 ///
-/// [`Self::paper`] has the values of the paper. Values that the paper does not give are assumed, each within a stated
-/// range.
+/// [`Self::paper`] has the values of the SpatialGL paper. Values that the paper does not give are assumed, each within
+/// a stated range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeSettings {
     /// Number of slices, width, height and spin of the display.
@@ -34,7 +34,7 @@ pub struct VolumeSettings {
     pub jitter: JitterNumbers,
     /// Eye of the perspective projection.
     pub eye: EyeNumbers,
-    /// Seed of the jitter's random sequence.
+    /// Seed of the random eyes and shears of the jittered projection.
     pub seed: u64,
     /// Method of sorting primitives into bins.
     pub binning: Binning,
@@ -42,7 +42,7 @@ pub struct VolumeSettings {
     pub bin_tolerance: BinTolerance,
     /// Size of tiles, and number of slices per batch of queries.
     pub tile: TileNumbers,
-    /// Number of samples and size of the dither matrix.
+    /// Number of samples per pixel, and size of the dither matrix.
     pub draw: DrawNumbers,
     /// Rule for the pixels of a slice that a primitive covers.
     pub coverage: Coverage,
@@ -56,7 +56,7 @@ pub struct VolumeSettings {
     pub renderer: RendererKind,
     /// Rates and times of the host and its GPU.
     pub gpu: GpuTiming,
-    /// Position of the viewer before the display. The position has no influence on the volume.
+    /// Position of the viewer in front of the display. The position has no influence on the volume.
     pub viewer: ViewerNumbers,
 }
 
@@ -64,7 +64,7 @@ pub struct VolumeSettings {
 pub(crate) type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
 impl VolumeSettings {
-    /// Returns the settings of the paper: its display, the hyperbolic clip and jittered eyes.
+    /// Returns the settings of the SpatialGL paper: its display, the hyperbolic clip and jittered eyes.
     #[must_use]
     pub const fn paper() -> Self {
         Self {
@@ -221,7 +221,7 @@ impl VolumeSettings {
         self.renderer.name()
     }
 
-    /// Returns the features of these settings that go beyond the paper.
+    /// Returns the features of these settings that go beyond the SpatialGL paper.
     #[must_use]
     pub fn beyond_paper(&self) -> Vec<&'static str> {
         let mut beyond = Vec::new();

@@ -1,5 +1,5 @@
-//! Binning: finds for each primitive the groups of slices that can show it. This is done once per volume, from the
-//! signs of a few plane equations.
+//! Binning finds, for each primitive, the groups of slices that can show the primitive. Binning takes place once per
+//! volume, and only uses the signs of a few plane equations.
 //!
 //! The code of a vertex has one bit per plane, which is set on the positive side. The `and` of a primitive's codes
 //! gives the planes with the whole primitive on their positive side. The complement of the `or` gives the planes with
@@ -37,7 +37,7 @@ pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
     /// The test of a region uses only the two planes that bound the region, so a primitive gets into more bins than
-    /// with all planes. This is the first version in the paper.
+    /// with all planes. This is the first version in the SpatialGL paper.
     TwoPlanes,
     /// The test of each region uses all planes of the layout.
     #[default]
@@ -59,8 +59,8 @@ pub enum BinTolerance {
     /// The distance by which the display's clip enlarges the slice volumes. With this tolerance, no fragment is lost.
     #[default]
     OfTheClip,
-    /// Zero, as in the paper's codes: zero is positive, and no vertex counts as lying on both sides. These codes lose
-    /// fragments if the clip enlarges the slice volumes.
+    /// No tolerance, as in the SpatialGL paper. A vertex in the plane counts as lying only on the plane's positive
+    /// side. These codes lose fragments if the clip enlarges the slice volumes.
     Codes,
     /// A fixed distance in pixels, which does not depend on the clip.
     Pixels(f64),
@@ -90,7 +90,8 @@ impl BinLayout {
         Self { planes, regions, tolerance }
     }
 
-    /// Returns the paper's code of a point: bit i is set if plane i is not negative.
+    /// Returns the SpatialGL paper's code of a point: bit i is set if the equation of plane i is not negative at the
+    /// point.
     #[must_use]
     pub fn code(&self, point: [f64; 3]) -> u32 {
         let bits = self.planes.iter().enumerate().map(|(i, plane)| u32::from(distance(plane, point) >= 0.0) << i);
@@ -164,7 +165,8 @@ impl Codes {
 /// second is true if any part of the primitive lies on this side.
 ///
 /// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
-/// plane is therefore drawn by the slices on both sides, because the half-open rule may assign it to either side.
+/// plane is therefore drawn by the slices on both sides, because the half-open rule may assign the triangle to either
+/// side.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {
         BinTolerance::Codes => return (least >= 0.0, most >= 0.0),

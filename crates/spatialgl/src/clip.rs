@@ -65,7 +65,7 @@ impl HalfWedge {
 }
 
 impl SliceClip {
-    /// All six methods with the default offset and bias, in the order of the paper.
+    /// All six methods with the default offset and bias, in the order of the SpatialGL paper.
     pub const ALL: [Self; 6] = [
         Self::Prism,
         Self::UserPlanes,
@@ -88,7 +88,7 @@ impl SliceClip {
         }
     }
 
-    /// Returns the distance of the near and far planes from the slice, in pixels (h_max of the specification).
+    /// Returns the distance of the near and far planes from the slice, in pixels.
     #[must_use]
     pub fn reach(self, wedge: HalfWedge) -> f64 {
         let face = wedge.radius * wedge.sin;

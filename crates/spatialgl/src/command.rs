@@ -27,9 +27,9 @@ pxpl5_sim::parameters::named!(Combine, "way to combine slices", Combine::ALL);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {
     Triangle,
-    /// A line. The number is its width in pixels of the image.
+    /// A line, with its width in pixels of the image.
     Line(f64),
-    /// A point. The number is its size in pixels of the slice.
+    /// A point, with the side of its square in pixels of the slice.
     Point(f64),
 }
 

@@ -72,7 +72,7 @@ pub enum Topology {
     LineStrip,
     /// Each group of three vertices is a triangle.
     Triangles,
-    /// Each vertex from the third on forms a triangle with the two vertices before it.
+    /// Each vertex from the third on forms a triangle with the two preceding vertices.
     TriangleStrip,
     /// Each vertex from the third on forms a triangle with the first vertex and the previous vertex.
     TriangleFan,
@@ -90,7 +90,7 @@ pub struct TwoSidedLight {
 }
 
 /// The drawing state and the current recording of draw calls. [`DrawContext::present`] returns the recording and starts
-/// a new one. The drawing state does not change.
+/// a new recording. The drawing state does not change.
 #[derive(Clone, Debug)]
 pub struct DrawContext {
     /// Matrix from object to world coordinates. The matrix must scale uniformly if there is a light.
@@ -166,7 +166,7 @@ impl DrawContext {
         Ok(())
     }
 
-    /// Ends the current recording of draw calls and returns it.
+    /// Ends the current recording of draw calls and returns the recording.
     #[must_use]
     pub fn present(&mut self) -> CommandBuffer {
         std::mem::take(&mut self.recording)

@@ -16,7 +16,7 @@ pub struct Halftone {
 }
 
 impl Halftone {
-    /// Creates the thresholds of a matrix of this size.
+    /// Creates the thresholds of a dither matrix with `size` rows and columns.
     ///
     /// # Errors
     ///

@@ -83,7 +83,7 @@ pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, f
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Counts the samples in each row of a slice's image.
+/// Counts all samples and the shown samples in each row of a slice's image.
 fn rows_of_slice(
     view: &SliceView,
     commands: &CommandBuffer,
@@ -141,8 +141,8 @@ impl Around {
         Self { size, near }
     }
 
-    /// Calls `each` for every sample of a curve inside the image, with the row of the sample and true if the sample is
-    /// shown.
+    /// Calls `each` for every sample of a curve inside the image. The arguments of `each` are the row of the sample,
+    /// and a boolean that is true if the sample is shown.
     fn samples(&self, view: &SliceView, ends: [[f64; 3]; 2], mut each: impl FnMut(u32, bool)) {
         let [from, to] = ends.map(|end| pixel_of(view, end, self.size));
         let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
@@ -190,7 +190,8 @@ pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
 /// point of any scene.
 ///
 /// A column of pixels is tested at its centre, at half of the volume's height, on both sides of the axis. The column
-/// belongs to the dead zone if no slice accepts this point. Returns `None` if no slice accepts any column.
+/// belongs to the dead zone if no slice accepts either of the two points. Returns `None` if no slice accepts any
+/// column.
 #[must_use]
 pub fn dead_zone_radius(display: &dyn SpatialDisplay) -> Option<u32> {
     let to_world: Vec<_> = display.views().iter().map(|view| view.view.inverse()).collect();

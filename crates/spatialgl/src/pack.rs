@@ -1,11 +1,12 @@
-//! Packing of projector pixels of three bits into 32-bit words: eight per word as in the paper, or ten for comparison.
+//! Packing of projector pixels of three bits into 32-bit words: eight per word as in the SpatialGL paper, or ten for
+//! comparison.
 
 use serde::{Deserialize, Serialize};
 
-/// Number of three-bit pixels in one word of [`pack_dense`] (number P10 of the specification): 32 / 3, rounded down.
+/// Number of three-bit pixels in one word of [`pack_dense`] (derived): 32 / 3, rounded down.
 pub const DENSE_PIXELS: usize = 10;
 
-/// Number of pixels in one word as published (number P9 of the specification).
+/// Number of pixels in one word (published in the SpatialGL paper).
 pub const PIXELS_PER_WORD: u32 = 8;
 
 /// The order of the eight pixels in a byte.
@@ -36,7 +37,7 @@ pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
     (column & 1 | column >> 7 & 2 | column >> 14 & 4) as u8
 }
 
-/// Returns a word in which the bits of each byte have this order.
+/// Returns a packed word with the bits of each byte in the order `order`.
 #[must_use]
 pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     match order {
@@ -45,15 +46,15 @@ pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     }
 }
 
-/// Packs ten three-bit pixels into each word, with the first in bits 0 to 2. The last word may hold fewer. This packing
-/// is for comparison only.
+/// Packs ten three-bit pixels into each word, with the first pixel in bits 0 to 2. The last word may hold fewer pixels.
+/// This packing is for comparison only.
 #[must_use]
 pub fn pack_dense(pixels: &[u8]) -> Vec<u32> {
     let word = |pixels: &[u8]| pixels.iter().rev().fold(0, |word, pixel| word << 3 | u32::from(pixel & 7));
     pixels.chunks(DENSE_PIXELS).map(word).collect()
 }
 
-/// Returns the first `count` pixels of densely packed words.
+/// Returns the first `count` pixels of words that [`pack_dense`] made.
 #[must_use]
 pub fn unpack_dense(words: &[u32], count: usize) -> Vec<u8> {
     let pixels = words.iter().flat_map(|word| (0..DENSE_PIXELS).map(move |i| (word >> (3 * i) & 7) as u8));

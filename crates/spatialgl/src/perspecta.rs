@@ -9,9 +9,9 @@
 //! # Behaviour
 //!
 //! - A volume is N slices with one bit each for red, green and blue. A volume arrives as maps and tiles
-//!   ([`volume_messages`]) in the frame store that is not shown. A map makes those tiles dark that will not be sent. A
-//!   swap request takes effect at the first later strobe 0 at which all announced tiles have arrived. A partly written
-//!   slice is therefore never shown.
+//!   ([`volume_messages`]) in the frame store that is not shown. A map is a message that lists the tiles that will be
+//!   sent, and makes all other tiles dark. A swap request takes effect at the first later strobe 0 at which all
+//!   announced tiles have arrived. A partly written slice is therefore never shown.
 //! - Strobe k of revolution n lights at the time (n + k / N) / f, for f revolutions per second. In terms of
 //!   [`Display`](pxpl5_wire::display::Display), a period is a revolution and a surface is a slice. Each pixel of a
 //!   slice lights when its strobe begins.

@@ -1,5 +1,5 @@
-//! Projections from the coordinates of a slice to its image. No projection moves the points of the slice itself (s =
-//! 0).
+//! Projections from the coordinates of a slice to its image. No projection moves the points of the slice itself, at
+//! distance s = 0.
 
 use glam::{DMat4, DVec4};
 use pxpl5_sim::mix;
@@ -13,7 +13,7 @@ pub type Size = [u32; 2];
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Projection {
-    /// Projection along s. Surfaces perpendicular to the slice become lines.
+    /// Parallel projection along the normal of the slice. Surfaces perpendicular to the slice become lines.
     Orthographic,
     /// Projection with a shear from an eye at (u, v, distance), in pixels of the slice's coordinates. All slices have
     /// the same eye.
@@ -39,13 +39,13 @@ pub struct Jitter {
     pub eye_distance: f64,
     /// Radius of the disc in which the random eye lies, in radii of the display. Assumed 0.5, 0 to 1.
     pub eye_radius: f64,
-    /// Greatest shift of a point by the shear, at the face of the slice's slab, in pixels. Assumed 0.5, 0 to 1.
+    /// Greatest shift of a point by the shear, at the near or far plane of the slice, in pixels. Assumed 0.5, 0 to 1.
     pub shear_px: f64,
 }
 
 impl Jitter {
     /// Returns the assumed jitter with this seed. The eye is four display radii away, within a disc of half a radius.
-    /// The shear shifts points at the slab's face by at most half a pixel.
+    /// The shear shifts points at the slice's near and far planes by at most half a pixel.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { seed, eye_distance: 4.0, eye_radius: 0.5, shear_px: 0.5 }
@@ -181,8 +181,8 @@ pub(crate) fn matrix_of_rows(rows: [[f64; 4]; 4]) -> DMat4 {
     DMat4::from_cols(x, y, z, w).transpose()
 }
 
-/// Returns the rows of the matrix that transforms eye coordinates to homogeneous window coordinates. `projection` transforms
-/// eye coordinates to clip coordinates.
+/// Returns the rows of the matrix that transforms eye coordinates to homogeneous window coordinates. `projection`
+/// transforms eye coordinates to clip coordinates.
 pub(crate) fn window_of(projection: &DMat4, size: Size) -> [[f64; 4]; 4] {
     let rows = projection.transpose();
     let w = rows.w_axis;

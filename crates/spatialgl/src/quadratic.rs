@@ -1,5 +1,6 @@
-//! The hyperbolic clip on the plane of a triangle, as a quadratic in screen coordinates. Hardware that evaluates
-//! quadratics can use this form, for example the renderers of Pixel-Planes 5. **Beyond the paper.**
+//! The hyperbolic clip on the plane of a triangle, as a quadratic in screen coordinates. This clip tests the product of
+//! the distances from both boundary planes of the slice, plus a bias. Hardware that evaluates quadratics can use this
+//! form, for example the renderers of Pixel-Planes 5. **Beyond the SpatialGL paper.**
 
 use crate::clip::HalfWedge;
 
@@ -8,8 +9,7 @@ use crate::clip::HalfWedge;
 ///
 /// Q is A B + b, with A B = u^2 S^2 - s^2 C^2 on the triangle's plane s = a u + c v + d. S and C are the sine and the
 /// cosine of half the angle between slices. Coordinates are pixels of the slice, and values are square pixels. The
-/// projection is orthographic. A shear maps (u, v) affinely, and a perspective eye divides by w^2. Both projections
-/// also give quadratics.
+/// projection is orthographic. Projections with a shear or from a perspective eye also give quadratics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipQuadratic {
     /// Coefficient of u^2, dimensionless.

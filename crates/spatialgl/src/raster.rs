@@ -24,11 +24,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coverage {
-    /// A primitive covers the pixels whose centres lie inside it.
+    /// A primitive covers the pixels whose centres lie inside the primitive.
     #[default]
     Sampled,
     /// The pixels of `Sampled`, plus a line of adjacent pixels along the intersection with the slice. **Beyond the
-    /// paper**: the paper calls for this coverage, but states that GPUs do not offer it.
+    /// SpatialGL paper**, which calls for this coverage but states that GPUs do not offer it.
     Connected,
 }
 
@@ -48,11 +48,13 @@ pub struct SliceStats {
     pub generated: u64,
     /// Number of fragments that lie in the slice's volume.
     pub accepted: u64,
-    /// Number of pixels added to close gaps in the intersections of surfaces with the slice, which is beyond the paper.
+    /// Number of pixels added to close gaps in the intersections of surfaces with the slice. Added pixels are beyond
+    /// the SpatialGL paper.
     pub added: u64,
 }
 
-/// The part of a recording that one slice draws: the primitives of its bin, in the order of drawing.
+/// The part of the recorded draw calls that one slice draws: the primitives of the slice's bin, in the order of
+/// drawing.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceWork<'a> {
     /// Recording whose primitives are drawn.
@@ -61,7 +63,7 @@ pub struct SliceWork<'a> {
     pub coverage: Coverage,
 }
 
-/// A renderer of slices. The image that it receives is in the state after [`SliceImage::clear`].
+/// A renderer of slices. [`SliceImage::clear`] has cleared the image in which a slice is drawn.
 pub trait SliceRenderer: Send + Sync {
     /// Draws one slice with all its passes.
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats;

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Choice of the slices of a turn that are drawn. The other slices are mirrored copies.
+/// Choice of the slices of a turn that are drawn. Slices that are not drawn are mirrored copies of drawn slices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strobes {
@@ -27,7 +27,7 @@ pub enum Strobes {
     #[default]
     Each,
     /// The slices of the first half turn are drawn. The slices of the second half turn are mirror images of these
-    /// slices, including the jitter. **Beyond the paper.**
+    /// slices, including the jitter. **Beyond the SpatialGL paper.**
     Mirror,
 }
 
@@ -58,8 +58,8 @@ pub struct VolumeConfig {
 }
 
 impl VolumeConfig {
-    /// Returns the paper's algorithms. The bins have a tolerance, so no fragments are lost, and Bayer's matrix has 8 x
-    /// 8 elements.
+    /// Returns the SpatialGL paper's algorithms. The bins have a tolerance, so no fragments are lost, and Bayer's
+    /// matrix has 8 x 8 elements.
     ///
     /// # Panics
     /// Never panics, because the matrix has a valid size.

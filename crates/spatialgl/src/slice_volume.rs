@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The rule for a point exactly on a boundary plane of a wedge. The paper's rule "signs equal" is ambiguous there.
+/// The rule for a point exactly on a boundary plane of a wedge. The SpatialGL paper's rule "signs equal" is ambiguous
+/// there.
 ///
 /// The values `a` and `b` are the signed distances from the two boundary planes. Both are positive in the + lobe: the
 /// half of the double wedge on the +u side.
@@ -10,14 +11,14 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
     /// Each boundary plane belongs to the slice that begins with this plane, so every point off the axis is in exactly
-    /// one slice. This rule is our own.
+    /// one slice. This rule is not from the SpatialGL paper.
     #[default]
     HalfOpen,
-    /// The rule as printed in the paper: the product of the distances is positive. No slice contains its boundary
-    /// planes or the axis.
+    /// The rule as printed in the SpatialGL paper: the product of the distances is positive. No slice contains its
+    /// boundary planes or the axis.
     ProductPositive,
-    /// The rule as printed in the paper: the signs are equal, and zero counts as positive. A slice contains both planes
-    /// of the positive lobe (half of the double wedge), no plane of the negative lobe, and the axis.
+    /// The rule as printed in the SpatialGL paper: the signs are equal, and zero counts as positive. A slice contains
+    /// both planes of the positive lobe (half of the double wedge), no plane of the negative lobe, and the axis.
     SameSign,
     /// Both planes belong to both lobes (halves of the double wedge), as with user clip planes. The product of the
     /// distances is not negative.
@@ -74,7 +75,7 @@ pub enum WedgeTest {
     /// Two user clip planes for each lobe (half of the double wedge), with one drawing pass per lobe. Fragments outside
     /// the planes are not generated.
     UserPlanes(TieRule),
-    /// Both distances are interpolated, and one test compares their signs.
+    /// The distances from both boundary planes are interpolated, and one test compares their signs.
     Shader(TieRule),
     /// Both planes are moved outwards by this number of pixels before the product of the distances is tested.
     Parallel(f64),
@@ -88,11 +89,11 @@ pub enum WedgeTest {
 pub enum SliceVolume {
     /// All points between the near and far planes.
     Frustum,
-    /// A slab low <= s < high parallel to the slice, in pixels.
+    /// A slab low <= s < high parallel to the slice, where s is the distance from the slice in pixels.
     Slab {
-        /// Lower limit of the slab's s, inclusive.
+        /// Lower limit of the distance s in the slab, inclusive.
         low: f64,
-        /// Upper limit of the slab's s, exclusive.
+        /// Upper limit of the distance s in the slab, exclusive.
         high: f64,
     },
     /// A double wedge around the axis y: its planes, and its test.
@@ -122,7 +123,7 @@ impl SliceVolume {
         matches!(self, Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } | Self::Slab { .. })
     }
 
-    /// Returns the s of the plane in which the slice is shown: 0, or the middle of a slab.
+    /// Returns the coordinate s, in pixels, of the plane in which the slice is shown: 0, or the middle of a slab.
     pub(crate) const fn middle(&self) -> f64 {
         match self {
             Self::Slab { low, high } => (*low + *high) / 2.0,
@@ -130,7 +131,8 @@ impl SliceVolume {
         }
     }
 
-    /// Returns the two values of a vertex that the test compares. Both are linear in space and can be interpolated.
+    /// Returns the two values of a vertex that the test of the slice volume compares. Both values are linear in space
+    /// and can be interpolated.
     #[inline(always)]
     #[must_use]
     pub(crate) fn attributes(&self, world: [f64; 3], u: f64, s: f64) -> [f64; 2] {
@@ -171,8 +173,8 @@ fn along(plane: [f64; 2], world: [f64; 3]) -> f64 {
     world[0] * plane[0] + world[2] * plane[1]
 }
 
-/// The test of one sample in one pass. Its inputs are w and the interpolated attributes p and q, all multiplied by one
-/// positive factor.
+/// The test of one sample in one pass. Its inputs are the homogeneous coordinate w and the interpolated values p and q
+/// of the slice volume. All three are multiplied by the same positive factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SampleTest {
     All,

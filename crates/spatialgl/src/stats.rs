@@ -27,7 +27,8 @@ pub struct VolumeStats {
     pub fragments_generated: u64,
     /// Number of fragments that lie in the volume of their slice.
     pub fragments_accepted: u64,
-    /// Number of pixels added to close gaps in the intersections of surfaces with slices, which is beyond the paper.
+    /// Number of pixels added to close gaps in the intersections of surfaces with slices. Added pixels are beyond the
+    /// SpatialGL paper.
     pub fragments_added: u64,
     /// Number of slices on which nothing was drawn.
     pub slices_empty: u64,

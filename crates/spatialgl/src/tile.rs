@@ -16,8 +16,7 @@ pub struct Tiling {
 }
 
 impl Tiling {
-    /// Tiles of 32 x 32 pixels (number P16 of the specification, published), with queries after every 4 slices (P18,
-    /// published).
+    /// Tiles of 32 x 32 pixels and queries after every 4 slices, both published in the SpatialGL paper.
     pub const PAPER: Self = Self { tile: Some(32), batch: 4 };
 
     /// Setting without tiles: every pixel of every slice is packed and sent.

@@ -16,7 +16,7 @@ pxpl5_sim::parameters::parameter_table! {
         vertex_mvertices: 600, "Mvertex/s", Published, 600..=600 in 1..=MAX, "GeForce 6800 Ultra";
         /// Rate of transfers from the GPU to the host, and also from the host to the projector.
         readback_mb_s: 200, "MB/s", Assumed, 100..=1000 in 1..=MAX, "AGP has a low rate from the GPU to the host";
-        /// Time of one occlusion query, not counting the pixels that it fills.
+        /// Time of one occlusion query, without the time to fill the query's pixels.
         query_ns: 2_000, "ns", Assumed, 500..=10000 in 0..=MAX, "a call of the driver";
         /// Time of the driver calls for one pass of one slice.
         call_ns: 2_000, "ns", Assumed, 500..=10000 in 0..=MAX, "a call of the driver";

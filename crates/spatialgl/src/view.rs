@@ -1,4 +1,4 @@
-//! The interface between a display and the pipeline: views and slice volumes, without the machinery of the display.
+//! The interface between a display and the pipeline: views and slice volumes, without other properties of the display.
 
 use crate::bin::BinLayout;
 use crate::projection::{Size, window_of};
@@ -22,7 +22,8 @@ pub struct SliceView {
     /// True if the nearest surface hides farther surfaces. This suits a display that is seen from one side only.
     pub hides: bool,
     pub(crate) window: [[f64; 4]; 4],
-    /// Slightly enlarged range of s in which anything can be drawn, or `None` if the range is unknown.
+    /// Slightly enlarged range of distances from the slice in which anything can be drawn, or `None` if the range is
+    /// unknown.
     pub(crate) reach: Option<[f64; 2]>,
     /// Number of samples along a side of a pixel. The number exceeds 1 while a supersampled image is drawn.
     pub(crate) magnification: f64,
@@ -73,8 +74,8 @@ pub enum PixelFormat {
     Rgb8,
 }
 
-/// A volumetric or flat display, in the form that the pipeline uses. A display does not depend on triangles, and the
-/// pipeline uses no other property of a display.
+/// A volumetric or flat display, in the form that the pipeline uses. A display does not depend on the triangles that it
+/// shows. The pipeline uses no other property of a display.
 pub trait SpatialDisplay: Send + Sync {
     /// Returns the slices, in the order in which they are shown.
     fn views(&self) -> &[SliceView];

@@ -3,7 +3,7 @@
 /// A task that does not depend on any other task.
 pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
 
-/// An executor of tasks, which may run them in any order and on any threads.
+/// An executor of tasks, which may execute the tasks in any order and on any threads.
 pub trait Workers: Sync {
     /// Executes all tasks and returns when they are done.
     fn run(&self, tasks: Vec<Task<'_>>);

@@ -12,7 +12,7 @@ pub(super) const fn unsigned(value: u64, bits: u64) -> u64 {
 
 /// Multiplies two signed words by adding partial products. The product has as many bits as both words together.
 ///
-/// Each bit of the second word adds a partial product. The sign bit subtracts one.
+/// Each bit of the second word adds a partial product. The sign bit subtracts a partial product.
 pub(super) fn multiply(first: i64, second: i64, bits: [u64; 2]) -> i64 {
     let width = bits[0] + bits[1];
     let sign = bits[1] - 1;

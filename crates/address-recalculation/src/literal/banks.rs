@@ -3,7 +3,7 @@
 use crate::face::{CubeFace, TexelAddress};
 use crate::texel::{DEPTH_FARTHEST, FaceSet, TexelFormat, narrowed, widened};
 
-/// Colour and depth as a bank stores them. With 16-bit formats, the fields hold the short words.
+/// Colour and depth as a bank stores them. With 16-bit formats, `depth` and `colour` hold words of 16 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cell {
     /// Stored bits of the depth. All bits are one for an empty texel.

@@ -6,7 +6,7 @@ use super::registers::{Candidate, Registers};
 use crate::composition::{Composition, CompositionOrder};
 use crate::face::TexelAddress;
 
-/// Reads the four banks of all memories.
+/// Reads the four texels of a pixel from the four banks of each memory.
 pub(super) fn read(
     registers: &mut Registers,
     memories: &[BankedMemory],

@@ -1,5 +1,5 @@
-//! The policy `cells`: the floor is divided into square cells of unlimited height. A cell's distance from the user's
-//! cell determines its display memory.
+//! The policy `cells`: the floor is divided into square cells of unlimited height. The distance of a cell from the
+//! viewer's cell determines the cell's display memory.
 
 use crate::priority::config::PriorityTiming;
 use crate::priority::update::Update;
@@ -11,9 +11,9 @@ use std::collections::BTreeSet;
 /// A square of the floor, identified by its column (along x) and its row (along z).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cell {
-    /// Column: the x coordinate of the cell's lower border, divided by the side of a cell.
+    /// Column: the least x coordinate in the cell, divided by the side of a cell.
     pub x: i64,
-    /// Row: the z coordinate of the cell's lower border, divided by the side of a cell.
+    /// Row: the least z coordinate in the cell, divided by the side of a cell.
     pub z: i64,
 }
 
@@ -49,10 +49,11 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     near.saturating_add(after - before)
 }
 
-/// Assignment of cells to memories by rings: all cells at the same distance from the home cell form a ring.
+/// Assignment of cells to memories by rings. The home cell contained the eye at the time of the assignment, and all
+/// cells at the same distance from it form a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
-    /// The home cell, which is the centre of all rings.
+    /// The home cell, which contained the eye at the time of the assignment and is the centre of all rings.
     pub home: Cell,
     /// Side of a cell (square of the floor) in metres.
     pub side_m: f64,
@@ -74,7 +75,7 @@ impl CellAssignment {
     }
 
     /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The value does not apply to
-    /// the slowest memory, which has no outer limit.
+    /// the last memory (the least often drawn), which has no outer limit.
     ///
     /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`CellAssignment::ring_growth`].
     #[must_use]
@@ -87,17 +88,17 @@ impl CellAssignment {
 
     /// Returns the distance, in metres, between a position and the border at which memory k = `memory` begins.
     ///
-    /// The distance is 0 on the border and outside of the border. For memory 0, which begins at the eye, the distance
-    /// is always 0.
+    /// The cells of the memory lie outside this border. For a position on or outside the border, the distance is 0. For
+    /// memory 0, which begins at the eye, the distance is always 0.
     #[must_use]
     pub fn distance(&self, place: DVec3, memory: usize) -> f64 {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }
 
-    /// Returns the horizontal distance, in metres, between a position and the border of memory k = `memory` to the
-    /// slower memory k + 1. The distance is 0 outside the border.
+    /// Returns the horizontal distance, in metres, between a position and the border of memory k = `memory` to memory k
+    /// + 1, which is drawn less often. The distance is 0 outside the border.
     ///
-    /// Returns `None` for the slowest memory, which has no such border.
+    /// Returns `None` for the last memory (the least often drawn), which has no outer border.
     #[must_use]
     pub fn to_slower(&self, place: DVec3, memory: usize) -> Option<f64> {
         (memory + 1 < self.memories).then(|| self.inside_block(place, self.last_ring(memory)))
@@ -138,8 +139,8 @@ pub struct Cells {
 impl Cells {
     /// Creates the policy for a world. `occupied` lists the cells that contain parts of the scene.
     ///
-    /// With `has_cascade`, an update of a memory makes all faster memories due for an update as well. Warping requires
-    /// such a cascade.
+    /// With `has_cascade`, an update of a memory makes all memories that are drawn more often due for an update as
+    /// well. Warping requires such a cascade.
     #[must_use]
     pub fn new(timing: &PriorityTiming, occupied: impl IntoIterator<Item = Cell>, has_cascade: bool) -> Self {
         let memories = timing.memories as usize;
@@ -182,8 +183,8 @@ impl Cells {
         self.threshold.way(self.distances(eye).get(memory).copied().unwrap_or(0.0))
     }
 
-    /// Returns, for each memory, the distance from the eye that determines when the memory is due, in metres. This
-    /// distance leads to the border of the memory's block of cells, or to the memory's nearest occupied cell.
+    /// Returns, for each memory, the distance from the eye that determines when the memory is due, in metres. The
+    /// distance is measured to the border of the memory's block of cells, or to the memory's nearest occupied cell.
     fn distances(&self, eye: DVec3) -> Vec<f64> {
         if !self.to_held_cells {
             return (0..self.dealing.memories).map(|memory| self.dealing.distance(eye, memory)).collect();
@@ -233,7 +234,8 @@ impl Cells {
         Update { due, together, deals_anew: deals_anew && !is_first }
     }
 
-    /// Assigns cells to memories around another home cell. Returns, for each memory, true if its cells have changed.
+    /// Assigns cells to memories around another home cell. Returns, for each memory, true if the cells of the memory
+    /// have changed.
     fn deal(&mut self, home: Cell) -> Vec<bool> {
         let before = self.dealing;
         self.dealing.home = home;

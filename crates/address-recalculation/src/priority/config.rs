@@ -7,19 +7,19 @@ pxpl5_sim::parameters::parameter_table! {
     pub struct PriorityTiming {
         /// Largest accepted angle between the displayed and the correct direction of a point.
         theta_deg: f64 = 0.3515625, "deg", Assumed, 0.09..=0.88 in 1e-9..=90.0, "CPR05 2.2: the spacing of pixels in the display memory, not printed; 90/256, so that tears are 3.75 pixels of 60/640 deg (CPR05 5: a few). Range: one such pixel to five texels of 90/512 deg";
-        /// Number of rings of cells (squares of the floor) around the user's cell in the fastest memory.
+        /// Number of rings of cells (squares of the floor) around the viewer's cell in the most often drawn memory.
         inner_rings: 1, "rings", Derived, 0..=2 in 0..=100, "with 0, the second memory of table 1 would be as fast as the first";
-        /// Number of rings of each memory, divided by the number of rings of the next faster memory. Memory 1 holds one
-        /// ring.
+        /// Number of rings of each memory, divided by the number of rings of the memory that is drawn twice as often.
+        /// Memory 1 holds one ring.
         ring_growth: 2, "1", Derived, 1..=2 in 1..=8, "CPR05 2.2: each memory has half the rate of the one before, so it may begin twice as far away; 1 gives equal rings";
-        /// Distance that determines when a memory is due. The value 0 selects the distance to the border of the
-        /// memory's block. The value 1 selects the distance to the memory's nearest occupied cell.
+        /// Distance that determines when a memory is due. The value 0 selects the distance to the border of the block
+        /// of cells that the memory holds. The value 1 selects the distance to the memory's nearest occupied cell.
         to_held_cells: 0, "1", Assumed, 0..=1, "not printed; `pxpl5 arp interpretations` ranks both";
         /// Side of a cell, which is a square of the floor.
         cell_m: f64 = 2.5, "m", Derived, 1.0..=100.0 in 1e-3..=1e6, "fitted to one rate of table 1";
         /// Distance from a border within which warping moves vertices. The distance is at most the side of a cell.
         falloff_m: f64 = 0.0, "m", Assumed, 0.0..=100.0 in 0.0..=1e6, "not printed; 0 means the side of a cell";
-        /// Frames per second, which is the rate of the fastest memory.
+        /// Frames per second, which is the rate of the most often drawn memory.
         frame_hz: f64 = 60.0, "Hz", Published, 60.0..=60.0 in 1.0..=1000.0, "CPR05 4.2";
         /// Number of display memories with different rates.
         memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2";

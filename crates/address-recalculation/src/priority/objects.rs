@@ -1,4 +1,4 @@
-//! The policy `objects`: each object is in the slowest display memory that keeps the object's image right.
+//! The policy `objects`: each object is in the least often drawn display memory that keeps the object's image right.
 
 use crate::priority::config::PriorityTiming;
 use crate::priority::update::Update;
@@ -9,8 +9,8 @@ use crate::priority::validity::level;
 pub struct Objects {
     frame_s: f64,
     memories: usize,
-    /// For each object, the index of its memory and the time at which its image becomes wrong. `None` before its first
-    /// drawing.
+    /// For each object, the index of its memory and the time at which the object's image becomes wrong. `None` for an
+    /// object that was never drawn.
     objects: Vec<Option<(usize, f64)>>,
     moved: u64,
     draws: u64,
@@ -41,8 +41,8 @@ impl Objects {
     /// object from now on, in seconds.
     ///
     /// An object changes its memory only in a frame that draws both the old and the new memory. Memory k can be drawn
-    /// in every 2^k-th frame. The memory is skipped if the images of all its objects stay right until its next such
-    /// frame.
+    /// in every 2^k-th frame. The memory is not drawn in this frame if the images of all its objects stay right for
+    /// another 2^k frames.
     pub fn frame(&mut self, frame: u64, periods_s: &[f64]) -> Update {
         let mut together = vec![false; self.memories];
         // Move objects between memories first.

@@ -1,11 +1,12 @@
-//! Segmentation: a mesh is cut once at the borders of cells, so that only its near parts must be drawn often.
+//! Segmentation: a mesh is cut once at the borders of cells, so that only the parts near the viewer must be drawn
+//! often.
 
 use crate::priority::cells::{Cell, CellAssignment, border, column};
 use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 
-/// Largest coordinate, in metres, of a world that the function can cut.
+/// Largest coordinate, in metres, of a mesh that [`Segmentation::new`] can cut.
 const FARTHEST_M: f64 = 1e6;
 
 /// Largest number of pieces that the triangles of one mesh may be cut into.
@@ -29,8 +30,8 @@ pub struct CutVertex {
 pub struct Segmentation {
     /// The vertices of the mesh, followed by the vertices that cuts have created.
     pub vertices: Vec<DVec3>,
-    /// Origin of each vertex that a cut has created, in the same order. The origin serves to interpolate colours and
-    /// normals.
+    /// Origin of each vertex that a cut has created, in the order of `vertices`. The origin serves to interpolate
+    /// colours and normals.
     pub cuts: Vec<CutVertex>,
     /// The triangles in each cell, with the orientation of the original triangles.
     pub segments: BTreeMap<Cell, Vec<[u32; 3]>>,
@@ -59,8 +60,8 @@ impl Segmentation {
         Ok(Self { vertices: cutter.vertices, cuts: cutter.cuts, segments })
     }
 
-    /// Returns the memory that must hold the uncut mesh: the fastest memory of all cells that the mesh touches. Returns
-    /// `None` for an empty mesh.
+    /// Returns the memory that must hold the uncut mesh: the most often drawn memory of all cells that the mesh
+    /// touches. Returns `None` for an empty mesh.
     #[must_use]
     pub fn fastest_memory(&self, dealing: &CellAssignment) -> Option<usize> {
         self.segments.keys().map(|cell| dealing.memory(*cell)).min()

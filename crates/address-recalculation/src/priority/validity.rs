@@ -19,10 +19,10 @@ pub struct Threshold {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Translation {
-    /// 2 d sin(theta / 2), as drawn in a figure of the paper.
+    /// 2 d sin(theta / 2) for a point at distance d, as in a drawing in the papers on priority rendering.
     #[default]
     Chord,
-    /// d sin(theta), the shortest movement of the eye that can change the direction of a point by theta.
+    /// d sin(theta), the shortest movement of the eye that can change the direction of a point at distance d by theta.
     Sine,
 }
 
@@ -30,7 +30,7 @@ pub enum Translation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SizeRule {
-    /// The angle of a disc perpendicular to the line of sight.
+    /// The angle that a disc with the object's radius covers, perpendicular to the line of sight.
     #[default]
     Disc,
     /// The angle of the bounding sphere's outline.
@@ -88,7 +88,7 @@ impl ValidityPeriod {
 
 impl Threshold {
     /// Returns a threshold of `theta_deg` degrees with the default rules: chord, disc and nearest point. These rules
-    /// are the closest to the paper.
+    /// are the closest to the papers on priority rendering.
     #[must_use]
     pub fn of_degrees(theta_deg: f64) -> Self {
         let distance = Distance::Nearest;
@@ -160,8 +160,8 @@ fn time_of(way_m: f64, speed: f64) -> f64 {
     if speed == 0.0 { f64::INFINITY } else { way_m / speed.abs() }
 }
 
-/// Returns the index of the slowest of `memories` memories that can hold an image with the validity period `period_s`.
-/// Memory k is drawn every 2^k frames.
+/// Returns the index of the least often drawn of `memories` memories that can hold an image with the validity period
+/// `period_s`. Memory k is drawn every 2^k frames.
 #[must_use]
 pub fn level(period_s: f64, frame_s: f64, memories: usize) -> usize {
     let rests = |k: &usize| f64::from(1_u32 << k) * frame_s <= period_s;

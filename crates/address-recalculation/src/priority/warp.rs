@@ -1,5 +1,5 @@
-//! Region warping: vertices near the border to a slower memory are moved, so that the images of both memories meet at
-//! the border.
+//! Region warping: vertices near the border to a less often drawn memory are moved, so that the images of both memories
+//! meet at the border.
 
 use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
@@ -16,7 +16,8 @@ pub enum Falloff {
     Linear,
     /// The displacement decreases smoothly to 0, with slope 0 at both ends.
     Smoothstep,
-    /// Full displacement up to the length of the falloff from the border, and no displacement beyond.
+    /// Full displacement up to a certain distance from the border (the length of the falloff), and no displacement
+    /// beyond.
     Step,
 }
 
@@ -41,7 +42,7 @@ impl Falloff {
     }
 }
 
-/// The displacement of a memory's vertices near the border to the next slower memory.
+/// The displacement of a memory's vertices near the border to the next less often drawn memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionWarp {
     falloff: Falloff,
@@ -51,7 +52,7 @@ pub struct RegionWarp {
 
 impl RegionWarp {
     /// Creates the warp of a memory. `drawn_from` is the eye position from which this memory was drawn, and
-    /// `slower_from` the eye position from which the next slower memory was drawn.
+    /// `slower_from` the eye position from which the next less often drawn memory was drawn.
     ///
     /// # Errors
     ///
@@ -64,7 +65,7 @@ impl RegionWarp {
     }
 
     /// Returns the position at which a vertex is drawn. `to_slower_m` is the vertex's distance to the border of the
-    /// slower memory, or `None` if there is no slower memory.
+    /// less often drawn memory, or `None` if there is none.
     ///
     /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same in both
     /// memories.

@@ -84,14 +84,14 @@ impl Crossing {
         Self { edge, has_edge, columns_of: -1.0 / (edge.x * columns.step), middle: -columns.first / columns.step }
     }
 
-    /// Returns true if a texel whose middle is at `x` is inside the edge.
+    /// Returns true if a texel whose middle is at `x` lies on the inner side of the edge.
     #[inline(always)]
     fn takes(&self, x: f64, row: f64) -> bool {
         let value = self.edge.x * x + row;
         value > 0.0 || (value == 0.0 && self.has_edge)
     }
 
-    /// Restricts a range of columns to the columns inside this edge.
+    /// Restricts a range of columns to the columns on the inner side of this edge.
     ///
     /// A quotient estimates the column at which the edge crosses the row. The function `takes` then determines the
     /// exact column. The rounded value of the edge function rises or falls monotonically along a row.

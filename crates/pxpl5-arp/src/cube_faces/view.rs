@@ -18,10 +18,10 @@ pub struct Corner {
 /// Counts of triangles and texels of a drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DrawCounts {
-    /// Number of triangles given to the drawing.
+    /// Number of triangles to draw, visible or not.
     pub triangles: u64,
-    /// Sum, over all triangles, of the number of faces that the triangle can touch. A real machine transforms a
-    /// triangle once for each of these faces.
+    /// Number of faces that a triangle can touch, summed over all triangles. A real machine transforms a triangle once
+    /// for each of these faces.
     pub on_faces: u64,
     /// Number of texels that triangles cover. A texel counts once for each triangle that covers it, visible or not.
     pub texels: u64,
@@ -39,7 +39,8 @@ impl DrawCounts {
 /// Size of the faces, and range of drawn depths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeView {
-    /// Number of texels along an edge of a face, including guard texels, and number of guard texels.
+    /// Number of texels along an edge of a face, and number of guard texels (a margin that repeats the neighbouring
+    /// face).
     pub geometry: FaceGeometry,
     /// Distances of the near and far plane.
     pub depth: DepthRange,

@@ -1,5 +1,5 @@
-//! Numbers that are computed from numbers printed in the paper. No simulation could change these results, so the
-//! results have no verdict.
+//! Numbers that are computed from numbers printed in the paper CPR05 (Chow, Pose and Regan, ACSC 2005). No simulation
+//! could change these results, so the results have no verdict.
 
 use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;
@@ -8,7 +8,7 @@ use pxpl5_sim::figures::Definition;
 use pxpl5_sim::parameters::Provenance;
 
 /// Number of segments (parts of objects) in each display memory, with and without cutting objects at the borders of
-/// cells (table 2).
+/// cells (table 2 of the paper CPR05).
 pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
 
 fn definition(id: &'static str, statement: String, value: f64, unit: &'static str) -> Definition {

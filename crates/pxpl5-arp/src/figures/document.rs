@@ -168,7 +168,7 @@ fn fits(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Returns the interpretations of the paper's table 1 as Markdown, ranked by their error.
+/// Returns the interpretations of table 1 of the paper CPR05 (update rates) as Markdown, ranked by their error.
 #[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
@@ -287,7 +287,8 @@ fn thresholds(text: &mut String, all: &Experiments) {
     );
 }
 
-/// Writes the consequences for table 2 of one fact: cutting does not change the number of sections.
+/// Writes a consequence for table 2 of the paper CPR05 (sections in each memory). Cutting does not change the number of
+/// sections.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
@@ -402,8 +403,8 @@ fn sizes(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Writes the ratio of size to distance above which an object's growth on the screen decides how long its image is
-/// valid (statement A8).
+/// Writes the ratio of an object's size to its distance, above which the growth on the screen limits the validity
+/// period (statement A8 of the papers).
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
         "\nStatement A8, \"about ten times the distance\", leaves two questions open. One question is which angle describes the size\n\

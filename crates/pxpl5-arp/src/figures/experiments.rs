@@ -16,8 +16,7 @@ use glam::{DMat3, DQuat, DVec3};
 use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
-/// Number of frames of each walk: two minutes, or four fifths of a round on the gallery's path. The specification asks
-/// for at least 1,800 frames.
+/// Number of frames of each walk: two minutes, or four fifths of a round on the gallery's path.
 pub const EXPERIMENT_FRAMES: u64 = 7_200;
 
 /// Settings and results of one simulated walk of the viewer.
@@ -30,7 +29,7 @@ pub struct NamedWalk {
     pub report: ArpReport,
 }
 
-/// The side of a cell (square of the floor), fitted to one update rate of table 1.
+/// The side of a cell (square of the floor), fitted to one update rate in table 1 of the paper CPR05.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellFit {
     /// Rules with which the cell side was fitted.
@@ -57,14 +56,14 @@ pub struct SlowRendererResult {
 pub struct Experiments {
     /// Two fits of the cell side in the gallery: with this project's rules, and with rings of equal width.
     pub fits: [CellFit; 2],
-    /// All interpretations of table 1.
+    /// All interpretations of table 1 of the paper CPR05 (update rates).
     pub interpretations: Interpretations,
-    /// Thresholds of the image error, each with the cell side that fits table 1.
+    /// Thresholds of the image error, each with the cell side that fits the update rates in table 1 of the paper CPR05.
     pub thresholds: Vec<ThresholdRow>,
     /// Number of segments (parts of objects) into which the fitted cells cut the gallery.
     pub segments: usize,
-    /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without the
-    /// updates of faster memories (cascade).
+    /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without a
+    /// cascade. In a cascade, an update of a memory also updates all more often drawn memories.
     pub walks: Vec<NamedWalk>,
     /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,
@@ -73,7 +72,8 @@ pub struct Experiments {
     pub reductions: [f64; 2],
     /// Times for which an object's image is valid, for several ratios of size to distance.
     pub sizes: Vec<SizeRow>,
-    /// Ratios of size to distance above which growth on the screen decides the validity, for each interpretation.
+    /// Ratios of an object's size to its distance, above which the growth of the object on the screen limits the
+    /// validity period, for each interpretation.
     pub size_limits: Vec<SizeLimit>,
     /// Largest deviation of a straight edge from a straight line, in pixels: on the screen, and through the lens.
     pub lens_px: [f64; 2],
@@ -140,7 +140,7 @@ impl Experiments {
     }
 }
 
-/// Repeats the walk with tears (gaps between memories) for renderers of decreasing speed.
+/// Repeats the walk without warping (which has tears between memories), with renderers of decreasing speed.
 fn slowed(world: &World, settings: &WalkSettings, path: &Walk) -> Result<Vec<SlowRendererResult>, SettingError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
@@ -155,7 +155,8 @@ fn slowed(world: &World, settings: &WalkSettings, path: &Walk) -> Result<Vec<Slo
 /// Threshold of experiments E3 and E4 in degrees: one texel of an ideal face.
 const THETA_DEG: f64 = 90.0 / 512.0;
 
-/// Number of point objects on a disc of 100 m around the walker, distributed evenly by area.
+/// Number of point objects on a disc around the walker with a radius of 100 m. The points are distributed evenly by
+/// area.
 const POINTS: usize = 20_000;
 
 /// Returns the factor by which priority rendering reduces draws of point objects, relative to drawing all at 60 Hz.
@@ -202,8 +203,8 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
-/// Ratio of size to distance above which growth on the screen decides the validity. The paper does not define "size"
-/// and "distance", so there is one limit for each interpretation.
+/// Ratio of an object's size to its distance, above which the growth of the object on the screen limits the validity
+/// period. The papers do not define "size" and "distance", so there is one limit for each interpretation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
     /// Name of the angle whose change is limited: the angle that the sphere's diameter covers, or the angle that the
@@ -211,11 +212,11 @@ pub struct SizeLimit {
     pub angle: &'static str,
     /// Allowed change of the angle that the radius covers, divided by the threshold for translation of the eye.
     pub factor: f64,
-    /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation still decides the
-    /// validity.
+    /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation, not growth, limits
+    /// the validity period.
     pub of_middle: f64,
-    /// Greatest ratio of the sphere's diameter to the distance of its nearest point at which translation still decides
-    /// the validity.
+    /// Greatest ratio of the sphere's diameter to the distance of its nearest point at which translation, not growth,
+    /// limits the validity period.
     pub of_nearest: f64,
 }
 
@@ -223,15 +224,15 @@ pub struct SizeLimit {
 /// sphere.
 ///
 /// The interpretations differ in the limited angle. In the first, the threshold limits the change of the angle that the
-/// diameter covers. In the second, the threshold limits the change of the radius' angle. In the third, the limit of the
-/// radius' angle is twice the threshold.
+/// diameter covers. In the second, the threshold limits the change of the angle that the radius covers. In the third,
+/// twice the threshold limits this change.
 #[must_use]
 pub fn size_limits() -> Vec<SizeLimit> {
     let kinds = [("the diameter's, by theta", 0.5), ("the radius', by theta", 1.0), ("the radius', by 2 theta", 2.0)];
     kinds.map(|(angle, factor)| size_limit(angle, factor)).to_vec()
 }
 
-/// Number of bisection steps. A double has fewer bits, so more steps change nothing.
+/// Number of bisection steps. A double has fewer bits of precision, so more steps would change no result.
 const BISECTION_STEPS: usize = 60;
 
 fn size_limit(angle: &'static str, factor: f64) -> SizeLimit {

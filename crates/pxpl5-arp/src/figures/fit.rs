@@ -1,4 +1,5 @@
-//! The side of a cell (square of the floor), fitted to one update rate of table 1. The other rates serve as checks.
+//! The side of a cell (square of the floor), fitted to one update rate in table 1 of the paper CPR05. The other rates
+//! serve as checks.
 
 use super::rules::Rules;
 use crate::walk::at_frames;
@@ -9,7 +10,7 @@ use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
-/// Mean update rates of display memories 0 to 3, in Hz, as printed (table 1).
+/// Mean update rates of display memories 0 to 3, in Hz, as printed in table 1 of the paper CPR05.
 pub const RATES_HZ: [f64; 4] = [60.0, 39.25, 28.21, 16.15];
 
 /// Index of the memory whose update rate determines the side of a cell (square of the floor).
@@ -54,8 +55,8 @@ pub(super) fn rates_hz(
     updates.into_iter().map(|count| count as f64 * numbers.frame_hz / frames as f64).collect()
 }
 
-/// Returns the cell side for which the rate of memory [`RATE_FITTED`] is nearest to table 1, and the rates of all
-/// memories.
+/// Returns the cell side for which the rate of memory [`RATE_FITTED`] is nearest to table 1 of the paper CPR05, and the
+/// rates of all memories.
 ///
 /// The side is in metres, in steps of 0.1 m.
 ///

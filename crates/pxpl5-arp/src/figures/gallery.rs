@@ -6,10 +6,10 @@ use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// Scale of the gallery in the experiments. The scaled gallery is 20 m wide: eight cells of 2.5 m. The gallery then has
-/// 191 segments; table 2 of the paper has 183 and 213.
+/// 191 segments. The two rows of table 2 of the paper CPR05 have 183 and 213.
 const HALL_SCALE: f64 = 0.5;
 
-/// Returns the scaled gallery and its path.
+/// Returns the scaled gallery, and the viewer's path through the gallery.
 pub(crate) fn gallery() -> Result<(Scene, Walk), SettingError> {
     let scene = builtin("gallery")?;
     let scene = scaled(&scene, HALL_SCALE)?;

@@ -1,9 +1,9 @@
-//! Interpretations of the paper's table 1: each open question of the paper has several answers, which are simulated and
-//! ranked.
+//! Interpretations of table 1 of the paper CPR05 (update rates). Each open question of the paper has several answers,
+//! which are simulated and ranked.
 //!
 //! If the hall and the path are measured in cells, the update rates depend only on the product of threshold and cell
-//! side. Therefore one number is fitted to three rates. A cell side stands for all pairs of threshold and cell side
-//! with the same product.
+//! side. Therefore one number is fitted to three rates. In the results, each cell side therefore represents all pairs
+//! of threshold and cell side with the same product.
 
 use super::fit::{RATES_HZ, policy_rates_hz, rates_hz};
 use super::gallery::gallery;
@@ -38,7 +38,7 @@ const GALLERY_FRAMES: u64 = 3_600;
 impl Situation {
     pub const ALL: [Self; 4] = [Self::Straight, Self::Diagonal, Self::Round, Self::Gallery];
 
-    /// Returns the name used in table headings.
+    /// Returns the name of the hall and path for table headings.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -92,7 +92,7 @@ pub struct Trial {
 
 impl Trial {
     /// Returns the root mean square of the relative errors in percent, for the update rates of the given memories
-    /// compared with table 1.
+    /// compared with table 1 of the paper CPR05.
     #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();
@@ -151,16 +151,16 @@ pub struct LeftOutRate {
     pub error_percent: f64,
 }
 
-/// All interpretations of table 1, best first.
+/// All interpretations of table 1 of the paper CPR05 (update rates), best first.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interpretations {
     /// Sets of rules with their results, in ascending order of the mean error.
     pub ranked: Vec<RankedRules>,
-    /// Predictions of each of the three update rates. Rules, hall and path are chosen by the other two rates.
+    /// Prediction of each of the three update rates. Rules, hall and path are those that fit the other two rates best.
     pub left_out: Vec<LeftOutRate>,
 }
 
-/// Smallest cell side to try, in metres. Each further cell side is [`STEP`] times the previous side.
+/// Smallest cell side to try, in metres. Each larger cell side is [`STEP`] times the next smaller side.
 const FIRST_SIDE_M: f64 = 1.4;
 const STEP: f64 = 1.06;
 const STEPS: i32 = 20;
@@ -192,7 +192,7 @@ impl Tried {
     }
 }
 
-/// Returns the indices of all compared memories except `memory`.
+/// Returns the indices of all memories whose update rates are compared with the paper, except `memory`.
 fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }
@@ -235,8 +235,9 @@ impl Interpretations {
 
     /// Returns the rules of this project with their rank, counted from 1.
     ///
-    /// With a *cascade*, an update of a memory makes all faster memories due. The ranking has two parts: rules with a
-    /// cascade, and rules without. The rank counts only within the part that contains this project's rules.
+    /// With a *cascade*, an update of a memory makes all more often drawn memories due. The ranking has two parts:
+    /// rules with a cascade, and rules without. The rank counts only within the part that contains this project's
+    /// rules.
     #[must_use]
     pub fn usual(&self) -> Option<(usize, &RankedRules)> {
         let alike = self.ranked.iter().filter(|ranked| ranked.rules.has_cascade == Rules::USUAL.has_cascade);
@@ -258,7 +259,7 @@ pub const PIXEL_DEG: f64 = 60.0 / 640.0;
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
 /// A threshold of the image error, with the cell side and the tears (gaps between memories) that follow. The product of
-/// threshold and cell side is fixed, because it fits table 1.
+/// threshold and cell side is fixed, because it fits the update rates in table 1 of the paper CPR05.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
     /// The threshold of the image error as text, in pixels of the display or texels of an ideal face.
@@ -267,15 +268,16 @@ pub struct ThresholdRow {
     pub theta_deg: f64,
     /// Side of a cell in metres.
     pub cell_m: f64,
-    /// Widest tear (gap between two memories) if each update is shown as soon as it is due, in pixels of the display.
+    /// Widest tear (gap between two memories) if each update is shown in the frame in which the update is due, in
+    /// pixels of the display.
     pub at_once_px: f64,
-    /// Widest tear (gap between two memories) if the update of the slower memory is shown one frame of walking too
-    /// late, in pixels of the display.
+    /// Widest tear (gap between two memories) if the update of the less often drawn memory is shown one frame of
+    /// walking too late, in pixels of the display.
     pub frame_late_px: f64,
 }
 
 /// Returns several thresholds, given in pixels or texels, with their consequences. `fitted_cell_m` is the cell side
-/// that fits table 1 at the default threshold.
+/// that fits table 1 of the paper CPR05 at the default threshold.
 #[must_use]
 pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
     let product = fitted_cell_m * PriorityTiming::PAPERS.theta_deg;

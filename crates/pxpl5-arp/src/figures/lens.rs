@@ -5,7 +5,8 @@ use address_recalculation::{ArpConfig, FaceSet, Lens, Lookup, Orientation};
 use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 
-/// Returns the bend of an upright edge on the screen and as seen through the lens, in pixels of the picture's middle.
+/// Returns the bend of an upright edge, on the screen and as seen through the lens. The unit is the size of a pixel in
+/// the middle of the picture.
 ///
 /// The edge lies 20 degrees to the right. The bend is the largest distance of the edge from the straight line between
 /// its ends.

@@ -16,7 +16,8 @@ pub fn row(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2]
     FigureRow { basis, cause, ..FigureRow::new(id, statement.to_owned(), unit, both, accepted) }
 }
 
-/// Creates a row for a number that cannot be reproduced. `holds` is true if its shape agrees.
+/// Creates a row for a number that cannot be reproduced. `holds` is true if the shape of its curve or table agrees with
+/// the paper.
 #[must_use]
 pub fn shape(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2], holds: bool) -> FigureRow {
     FigureRow { is_met: holds, ..row(id, statement, unit, both, Basis::Shape) }

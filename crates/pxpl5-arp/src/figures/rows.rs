@@ -40,8 +40,8 @@ fn composition(all: &Experiments) -> Vec<FigureRow> {
     vec![row("fig. 2", statement, "texels", [0.0, all.composite_differs as f64], Basis::Free)]
 }
 
-/// Compares the paper's statement A8 ("about ten times the distance") with the limits of size for spheres. The distance
-/// of a sphere is measured to its nearest point.
+/// Compares statement A8 of the papers on the size of objects ("about ten times the distance") with the limits of size
+/// for spheres. The distance of a sphere is measured to its nearest point.
 fn sizes(all: &Experiments) -> Vec<FigureRow> {
     let limits = all.size_limits.iter().map(|limit| limit.of_nearest);
     let [least, most] = [limits.clone().fold(f64::INFINITY, f64::min), limits.fold(0.0, f64::max)];

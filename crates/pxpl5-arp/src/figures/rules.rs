@@ -1,19 +1,19 @@
-//! Rules of priority rendering that the paper leaves open.
+//! Rules of priority rendering that the paper CPR05 (Chow, Pose and Regan, ACSC 2005) leaves open.
 
 use address_recalculation::priority::PriorityTiming;
 use serde::Serialize;
 
-/// One set of answers to the questions about priority rendering that the paper leaves open.
+/// One set of answers to the questions about priority rendering that the paper CPR05 leaves open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rules {
-    /// Number of rings of cells around the user's cell in memory 0.
+    /// Number of rings of cells around the viewer's cell in memory 0.
     pub inner_rings: u64,
-    /// Number of rings in a memory, divided by the number of rings in the next faster memory.
+    /// Number of rings in a memory, divided by the number of rings in the next more often drawn memory.
     pub ring_growth: u64,
     /// True if distances are measured to cells that hold segments (parts of objects). False if distances are measured
     /// to the border of a block of cells.
     pub to_held_cells: bool,
-    /// True if an update of a memory makes all faster memories due for an update.
+    /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,
 }
 

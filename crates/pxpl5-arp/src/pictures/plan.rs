@@ -48,7 +48,7 @@ fn head(width: f64, height: f64) -> String {
     )
 }
 
-/// Draws the cells seen from above, coloured by memory, with partitions, path, eye and the user's cell. The direction
+/// Draws the cells seen from above, coloured by memory, with partitions, path, eye and the viewer's cell. The direction
 /// -z is at the top.
 #[must_use]
 pub fn cells_svg(world: &World, simulation: &Simulation<'_>, path: &Walk, eye: DVec3) -> String {

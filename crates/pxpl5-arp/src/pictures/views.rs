@@ -56,8 +56,8 @@ impl MemoryViews<'_> {
 
     /// Returns a picture of the error that each pixel has because its memory was drawn from an older eye position.
     ///
-    /// Black means no error, and white means two pixels or more, in pixels of the picture's middle. A scale is drawn
-    /// below the picture.
+    /// Black means no error, and white means an error of two pixels or more. The unit is the size of a pixel in the
+    /// middle of the picture. A scale is drawn below the picture.
     ///
     /// # Errors
     ///
@@ -77,8 +77,8 @@ impl MemoryViews<'_> {
         }))
     }
 
-    /// Returns the error of one pixel for [`Self::errors`]: the angle between the displayed and the correct direction
-    /// of the point that the pixel's ray hits, in radians.
+    /// Returns the error of one pixel for [`Self::errors`], in radians. The error is the angle between the displayed
+    /// and the correct direction of the point that the pixel's ray hits.
     ///
     /// Returns `None` if the ray hits nothing.
     fn off(&self, simulation: &Simulation<'_>, view: &CubeView, ray: DVec3, eye: DVec3) -> Option<f64> {

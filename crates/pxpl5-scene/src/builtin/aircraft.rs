@@ -3,7 +3,7 @@
 //!
 //! The length is along z with the nose at +z. +y is up, and +x is the left of the aircraft. Lengths are roughly metres.
 //! The finished aircraft is scaled to the radius of the scene `mig` and uses the same flight path. Every part is a
-//! closed solid that reaches into its neighbour.
+//! closed solid that overlaps the next part.
 
 use glam::DVec3;
 

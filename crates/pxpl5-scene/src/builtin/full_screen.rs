@@ -12,7 +12,8 @@ const NEAR_M: f64 = 1.0;
 const FAR_M: f64 = 2.0;
 
 /// Tangent of the half angle that the triangles cover in each direction from each eye. The value 1 gives a field of
-/// view of 90 degrees. Head-mounted displays have 60 degrees in this project, and the faces of a cube have 90.
+/// view of 90 degrees. In this project, head-mounted displays have a field of view of 60 degrees, and faces of a cube
+/// have 90 degrees.
 const COVERED: f64 = 1.0;
 
 /// Distance of each eye from the centre of the head, metres: half of the greatest distance between two eyes, 74 mm.

@@ -25,7 +25,7 @@ const EYE_M: f64 = 1.7;
 const BESIDE_M: f64 = 1.0;
 const THICKNESS_M: f64 = 0.1;
 
-/// Beginning and end of a partition, as fractions of the straight part of the path beside it.
+/// Beginning and end of a partition, as fractions of the length of the straight part of the path beside the partition.
 const BESIDE_LEG: [f64; 2] = [0.2, 0.8];
 
 /// Corners of the path, x and z in metres. The straight parts are slanted, so the head's distances to the borders of
@@ -193,7 +193,7 @@ fn frame(solid: &mut Solid, number: usize, place: usize) {
     solid.end_structure(&format!("frame {number}.{place}"), None);
 }
 
-/// Adds a bench beside the path, on the side without the partition.
+/// Adds a bench beside the middle of straight part `number` of the path, on the side without the partition.
 fn bench(solid: &mut Solid, number: usize) {
     let leg = leg(number);
     let middle = leg.from + leg.along * (leg.length / 2.0) - leg.left * (2.0 * BESIDE_M);

@@ -82,7 +82,7 @@ fn push_parallel(mesh: &mut Mesh, down: f64) {
     }
 }
 
-/// Adds a vertex where a ray from inside the head meets the surface, and returns its index.
+/// Adds a vertex where a ray from inside the head meets the surface. Returns the index of the vertex.
 fn push_hit(mesh: &mut Mesh, ray: Ray) -> u32 {
     let point = ray.hit();
     mesh.push(point, normal(point), colour(point))
@@ -127,8 +127,8 @@ impl Ray {
         }
     }
 
-    /// Returns the outermost point of the surface on the ray. The search steps inwards from outside until it is inside
-    /// the head, and then bisects the last step.
+    /// Returns the outermost point of the surface on the ray. The search starts outside the head and steps inwards
+    /// along the ray. When a step ends inside the head, this step is bisected.
     fn hit(&self) -> DVec3 {
         let mut outside = 24.0;
         let mut inside = 24.0;
@@ -190,7 +190,7 @@ fn colour(point: DVec3) -> Colour {
 // Each function below returns the approximate distance of a point from a painted patch, in centimetres, positive
 // outside.
 
-/// Returns the distance of a point from the axis of the gaze, which is slightly lowered, in centimetres.
+/// Returns the distance of a point from the axis of the gaze, in centimetres. The axis points slightly downwards.
 fn off_axis(p: DVec3) -> f64 {
     DVec3::new(p.x - EYE.x, p.y - EYE.y + 0.05, 0.0).length()
 }

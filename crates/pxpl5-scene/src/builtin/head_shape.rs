@@ -125,8 +125,8 @@ fn ellipsoid(p: DVec3, centre: DVec3, radii: DVec3) -> f64 {
     if slope > 0.0 { reach * (reach - 1.0) / slope } else { -radii.min_element() }
 }
 
-/// Returns the distance from a rounded rod along a segment, whose radius changes linearly from `from` at `a` to `to` at
-/// `b`.
+/// Returns the distance from a rounded rod between the points `a` and `b`. The rod's radius changes linearly from
+/// `from` at `a` to `to` at `b`.
 fn capsule(p: DVec3, a: DVec3, b: DVec3, from: f64, to: f64) -> f64 {
     let ap = p - a;
     let ab = b - a;

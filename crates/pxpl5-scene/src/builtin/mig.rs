@@ -74,7 +74,8 @@ fn finish(mut solid: Solid) -> Scene {
 }
 
 /// Returns the motion of a head around the aircraft. The nearest point is within the span of the wings, where the
-/// aircraft overflows the view. The farthest point is five radii away, where the aircraft appears small.
+/// aircraft overflows the view. The farthest point is five radii of the aircraft away, where the aircraft appears
+/// small.
 pub(super) fn fly_through() -> HeadMotion {
     let path = HeadPath::FlyThrough {
         target: glam::Vec3::ZERO,
@@ -125,7 +126,7 @@ fn fuselage(solid: &mut Solid) {
     solid.cone(&deep_intake, DVec3::new(0.0, -0.07, 5.35), DARK);
 }
 
-/// Returns the same cross-section with its points in reverse order, as seen from its other side.
+/// Returns `section` with its points in reverse order, as seen from the other side of the cross-section.
 fn reversed(mut section: Vec<DVec3>) -> Vec<DVec3> {
     section.reverse();
     section
@@ -168,8 +169,8 @@ impl Cut {
     }
 }
 
-/// Adds a wing or fin between cross-sections that run from root to tip. `turned` reverses the points of each
-/// cross-section, as a surface on the right side needs.
+/// Adds a wing or fin between cross-sections that run from root to tip. If `turned` is true, the points of each
+/// cross-section are reversed, because a surface on the right side is a mirror image.
 fn surface(solid: &mut Solid, sections: Vec<Vec<DVec3>>, turned: bool, colour: Colour, tip: Colour) {
     let sections: Vec<Vec<DVec3>> = if turned { sections.into_iter().map(reversed).collect() } else { sections };
     let first = solid.mesh.positions.len();

@@ -81,7 +81,7 @@ fn backbone(atoms: &[Atom], shift: DVec3) -> Vec<Residue> {
     residues
 }
 
-/// Returns the positions of all atoms with this name, one for each residue, Ångström.
+/// Returns the positions of all atoms with this name, one for each residue, moved by `shift`. Lengths are in Ångström.
 fn positions(atoms: &[Atom], name: &str, shift: DVec3) -> Vec<DVec3> {
     let named = atoms.iter().filter(|a| a.name == name);
     named.map(|a| a.position + shift).collect()
@@ -143,7 +143,7 @@ fn spline(p: [DVec3; 4], t: f64) -> DVec3 {
     p.iter().zip(weights).map(|(&p, w)| p * (w / 6.0)).sum()
 }
 
-/// Returns the colour at a fraction of the sequence blue, cyan, green, yellow, red.
+/// Returns a colour of the sequence blue, cyan, green, yellow, red. `place` runs from 0 for blue to 1 for red.
 fn rainbow(place: f64) -> Colour {
     const STOPS: [[f64; 3]; 5] =
         [[40.0, 70.0, 240.0], [30.0, 200.0, 230.0], [50.0, 210.0, 70.0], [250.0, 220.0, 40.0], [235.0, 40.0, 40.0]];

@@ -10,7 +10,8 @@ use crate::scene::{Frame, Scene};
 const WALL_M: f64 = 2.0;
 
 /// Returns the corners of the room, a regular tetrahedron. The corners are three times as far from the viewer as the
-/// walls. The first corner is behind the viewer, so the wall between the other three is straight ahead.
+/// walls. The first corner is behind the viewer, so the wall between the second, third and fourth corner is straight
+/// ahead.
 fn corners() -> [DVec3; 4] {
     // The three corners of the wall ahead lie on a circle with a radius of sqrt(8) times the wall's distance.
     let ring = WALL_M * 8f64.sqrt();

@@ -105,7 +105,7 @@ impl Solid {
         self.append(part);
     }
 
-    /// Changes the colour of those vertices in `range` for whose position `chosen` returns true.
+    /// Calls `chosen` with the position of each vertex in `range`. If the result is true, the vertex gets `colour`.
     pub(super) fn paint(&mut self, range: Range<usize>, colour: Colour, chosen: impl Fn(DVec3) -> bool) {
         for vertex in range {
             if chosen(self.mesh.positions[vertex]) {

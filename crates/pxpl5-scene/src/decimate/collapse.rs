@@ -61,19 +61,20 @@ pub(super) struct Decimator {
     pub(super) surface: Surface,
     quadrics: Vec<Quadric>,
     changes: Vec<u32>,
-    /// Least number of triangles that any collapse tried so far would have left. Up to this wanted number, all decisions
-    /// so far are the same.
+    /// Least number of triangles that any collapse tried so far would have left. All decisions so far are the same for
+    /// every wanted number up to this number.
     least_left: usize,
 }
 
-/// Rules of the first pass, which allow no damage.
+/// Rules of the first pass. No collapse may turn a triangle over or leave fewer triangles than wanted.
 const FIRST: Rules = Rules { may_flip_triangles: false, may_overshoot: false };
 
-/// Rules of the later passes. They allow more damage: the second too few triangles, the third also folded triangles.
+/// Rules of the last two passes. Both passes may leave fewer triangles than wanted. The last pass may also turn
+/// triangles over.
 const LATER: [Rules; 2] =
     [Rules { may_flip_triangles: false, may_overshoot: true }, Rules { may_flip_triangles: true, may_overshoot: true }];
 
-/// A decimation within its first pass over the surface.
+/// A decimation that is in its first pass over the surface. The pass can pause and continue later.
 #[derive(Clone)]
 pub(super) struct FirstPass {
     decimator: Decimator,
@@ -87,7 +88,8 @@ impl FirstPass {
         Self { decimator, queue }
     }
 
-    /// Returns true if the pass has come to this state for every wanted number of triangles up to `wanted`.
+    /// Returns true if a decimation to `wanted` triangles also leads to the present surface and can continue from
+    /// there.
     pub(super) const fn serves(&self, wanted: usize) -> bool {
         wanted <= self.decimator.least_left
     }
@@ -103,7 +105,7 @@ impl FirstPass {
         self.decimator.pass(&mut self.queue, pause, wanted, FIRST);
     }
 
-    /// Completes all passes, and returns the surface.
+    /// Executes all passes until at most `wanted` triangles remain or no edge can be collapsed. Returns the surface.
     pub(super) fn end(mut self, wanted: usize) -> Surface {
         let whole = self.decimator.surface.triangles.len();
         if self.left() > wanted {
@@ -157,7 +159,7 @@ impl Decimator {
         }
     }
 
-    /// Returns the collapses of all edges.
+    /// Returns the possible collapses of all edges, the cheapest first.
     fn queue(&self) -> BinaryHeap<Candidate> {
         let mut queue = BinaryHeap::new();
         for point in 0..self.surface.places.len() as u32 {
@@ -232,8 +234,8 @@ impl Decimator {
         borders.is_empty() || (borders.len() == 2 && borders.contains(&onto))
     }
 
-    /// Returns true if a triangle is still valid after one of its points moves: it equals no other triangle and is not
-    /// folded over.
+    /// Returns true if a triangle is still valid after one of its points moves. A valid triangle equals no other
+    /// triangle and is not folded over.
     fn may_move(&self, points: [u32; 3], from: u32, onto: u32, may_flip_triangles: bool) -> bool {
         let moved = points.map(|point| if point == from { onto } else { point });
         let is_same = |(_, other): (u32, [u32; 3])| moved.iter().all(|point| other.contains(point));

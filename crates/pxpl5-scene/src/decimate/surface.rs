@@ -50,7 +50,7 @@ impl Surface {
         surface
     }
 
-    /// Creates a point for every distinct position of these vertices.
+    /// Creates a point for every distinct position of the vertices in a range.
     fn weld(&mut self, vertices: std::ops::Range<usize>) {
         let mut points: BTreeMap<[u32; 3], u32> = BTreeMap::new();
         for vertex in vertices {
@@ -130,7 +130,7 @@ impl Surface {
         }
     }
 
-    /// Removes a triangle with these points.
+    /// Removes a triangle. `points` are the three points of the triangle.
     pub(super) fn remove(&mut self, triangle: u32, points: [u32; 3]) {
         for point in points {
             self.around[point as usize].retain(|other| *other != triangle);

@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
         Numbers::of(self.document, accessor, components, kinds)
     }
 
-    /// Adds all vertices of a primitive with normals, and the triangles between them.
+    /// Adds a primitive that has normals: all its vertices, and the triangles between these vertices.
     fn push_smooth(
         &mut self,
         vertices: &PrimitiveVertices<'_>,
@@ -326,7 +326,7 @@ impl<'a> Reader<'a> {
 /// Number of bytes of a point with its normal and its colour.
 const BYTES_OF_POINT: usize = 2 * size_of::<glam::Vec3>() + 3;
 
-/// Returns the nodes that are the child of no node.
+/// Returns the indices of all nodes without a parent.
 fn roots_of(nodes: &[Node]) -> Vec<usize> {
     let mut is_child = vec![false; nodes.len()];
     for child in nodes.iter().flat_map(|node| node.children.iter().flatten()) {
@@ -359,7 +359,8 @@ fn transform(source: &Source<'_>, number: usize, node: &Node) -> Result<DMat4, F
     Ok(DMat4::from_scale_rotation_translation(scale, rotation, translation))
 }
 
-/// Returns false for a triangle with a corner twice. Strips use such triangles to join their parts.
+/// Returns true if the three corners are different vertices. Triangle strips contain triangles with equal corners to
+/// join separate parts.
 fn is_triangle([a, b, c]: [u32; 3]) -> bool {
     a != b && b != c && c != a
 }
@@ -416,7 +417,7 @@ fn encoded(linear: f64) -> u8 {
 
 /// The corners of the triangles of a primitive.
 struct Corners<'a> {
-    /// `None` if the corners are all vertices in their order.
+    /// Indices of the vertices at the corners. `None` if the corners are all vertices in their order.
     indices: Option<Numbers<'a>>,
     vertices: usize,
     mode: Mode,

@@ -8,12 +8,12 @@ use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Lighting, Scene, SceneParts, Sphere, Vertex, bounding_sphere};
 use crate::sway::Sway;
 
-/// A mesh before it is scaled.
+/// A mesh in the coordinates of a file, before the mesh is scaled.
 #[derive(Default)]
 pub(crate) struct Mesh {
     pub(crate) positions: Vec<DVec3>,
-    /// Normals of the vertices, of any length. A zero vector stands for a missing normal. The list is empty until the
-    /// first normal is given.
+    /// Normals of the vertices, of any length. A zero vector stands for a missing normal. The list is empty until a
+    /// vertex with a normal is added.
     pub(crate) normals: Vec<DVec3>,
     pub(crate) colours: Vec<[u8; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
@@ -61,7 +61,7 @@ impl Mesh {
         sums
     }
 
-    /// Returns the vertices of a scene, rounded to single precision.
+    /// Returns the vertices of the mesh for a scene, rounded to single precision.
     pub(crate) fn vertices(&self) -> Vec<Vertex> {
         let positions = self.positions.iter().zip(&self.normals).zip(&self.colours);
         positions

@@ -73,8 +73,8 @@ impl Places {
     }
 }
 
-/// Index of a point, and a number that distinguishes the vertices at this point ([`Detail`]). The type is short,
-/// because a file can have many times more corners than points.
+/// Index of a point, and a number that distinguishes the vertices at this point ([`Detail`]). The type has only 8
+/// bytes, because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
 /// The meaning of the second number of a [`Corner`]. This number distinguishes vertices at one point.
@@ -110,8 +110,8 @@ impl Vertices {
     }
 }
 
-/// Adds an item to a list. The list grows by an eighth instead of doubling, because it may contain most of a file and
-/// must not waste memory.
+/// Adds an item to a list. The list grows by an eighth instead of doubling, because the list may contain most of a file
+/// and must not waste memory.
 pub(super) fn push_with_slow_growth<T>(list: &mut Vec<T>, item: T) {
     if list.len() == list.capacity() {
         list.reserve_exact(list.len() / 8 + 1024);
@@ -119,7 +119,7 @@ pub(super) fn push_with_slow_growth<T>(list: &mut Vec<T>, item: T) {
     list.push(item);
 }
 
-/// A mesh as its file contains it, before it is scaled.
+/// A mesh with the coordinates of its file, before the mesh is scaled.
 pub(super) struct Model {
     pub(super) places: Places,
     /// Unit normals from the file. A zero vector stands for a missing normal. The list is empty until the first
@@ -173,8 +173,8 @@ impl Model {
         }
     }
 
-    /// Returns the normal of a polygon, or zero for a polygon without area. The triangles from index `first` on are the
-    /// polygon's and share its first corner.
+    /// Returns the normal of a polygon, or zero for a polygon without area. The triangles from index `first` on form
+    /// the polygon and share its first corner.
     pub(super) fn polygon_normal(&self, first: usize) -> Vec3 {
         direction(polygon::normal(&self.triangles[first..], |vertex| self.places.at(self.point(vertex as usize))))
     }
@@ -215,7 +215,7 @@ impl Model {
         Err(crate::error::nothing_to_draw(name, expected))
     }
 
-    /// Makes a scene of the mesh. The bytes of the file may be freed before this.
+    /// Makes a scene from the mesh. The bytes of the file may be freed before this call.
     pub(super) fn into_scene(
         mut self,
         name: &str,
@@ -305,7 +305,8 @@ impl Model {
         (self.shaded() / 8).max(1 << 16)
     }
 
-    /// Computes a mean normal for every vertex without a normal, for `count` groups of vertices from group `first` on.
+    /// Computes the mean normals of `count` groups of vertices, from group `first` on. Each vertex without a normal
+    /// gets the mean normal of its group.
     fn complete_normals(&self, vertices: &mut [Vertex], fit: &Fit, first: usize, count: usize) {
         let mut sums = vec![DVec3::ZERO; count.min(self.shaded() - first)];
         for triangle in &self.triangles {
@@ -384,7 +385,7 @@ fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), FileE
 }
 
 /// Greatest number of bytes per vertex in the hash table. A slot has five bytes, and between 7/16 and 7/8 of the slots
-/// are used. While the table grows, it needs half as much again.
+/// are used. While the table grows, it needs half as much memory again.
 const TABLE_BYTES: usize = 17;
 
 /// Keeps the items whose element in `keep` is true, and frees the unused memory. An empty list stays empty.

@@ -106,7 +106,7 @@ pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, FileError> {
 #[derive(Default)]
 struct Alternates<'a> {
     /// For each position of the chain with alternate locations (columns 22 to 27), the name of the first residue there.
-    /// Residues of other names at this position belong to another molecule.
+    /// A residue with a different name at the same position belongs to another molecule.
     residues: HashMap<&'a [u8], &'a [u8]>,
     /// Position in the chain and name of every atom with alternate locations.
     atoms: HashSet<(&'a [u8], &'a [u8])>,
@@ -140,8 +140,8 @@ fn atom(source: &Source<'_>, at: FilePlace, line: &[u8]) -> Result<Atom, FileErr
     })
 }
 
-/// Symbols of two letters of further elements, which occur in no residue of [`RESIDUES`]. Symbols that begin with H are
-/// left out: in an atom's name, H and a second letter stand for a hydrogen at a certain position.
+/// Symbols, two letters long, of elements that occur in no residue of [`RESIDUES`]. Symbols that begin with H are left
+/// out: in an atom's name, H and a second letter stand for a hydrogen at a certain position.
 const OTHER_SYMBOLS: [&str; 48] = [
     "LI", "BE", "NE", "AL", "SI", "AR", "SC", "TI", "CR", "NI", "CU", "GA", "GE", "AS", "KR", "RB", "SR", "ZR", "NB",
     "MO", "RU", "RH", "PD", "AG", "CD", "IN", "SN", "SB", "TE", "XE", "CS", "BA", "LA", "CE", "PR", "SM", "EU", "GD",
@@ -155,8 +155,8 @@ const RESIDUES: [&str; 38] = [
     "DOD", "WAT", "ACE",
 ];
 
-/// Returns the element of an atom. Most files state it in columns 77 and 78. Other files have a line number or nothing
-/// in these columns. The element then follows from the atom's name in columns 13 to 16.
+/// Returns the element of an atom. Most files state the element in columns 77 and 78. Other files have a line number or
+/// nothing in these columns. The element then follows from the atom's name in columns 13 to 16.
 fn element_of(line: &[u8]) -> Element {
     let symbol = text(columns(line, 77, 78));
     if !symbol.is_empty() && symbol.bytes().all(|byte| byte.is_ascii_alphabetic()) {

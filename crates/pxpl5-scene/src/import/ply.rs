@@ -229,8 +229,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Returns an error for a list that is too long, before it is copied. If corners of one or two bytes repeat, a copy
-    /// would take many times the memory of the file.
+    /// Returns an error if a list is too long. The check comes before the list is copied, because the copy of a long
+    /// list with corners of one or two bytes would take many times the memory of the file.
     fn check_list(&self, at: FilePlace, length: usize) -> Result<(), FileError> {
         if length <= self.longest_list {
             return Ok(());
@@ -304,7 +304,8 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Returns the vertex for a corner. If faces have colours, points with several colours have several vertices.
+    /// Returns the vertex for a corner. If faces have colours, a point has one vertex for each colour of the faces
+    /// around the point.
     fn vertex(
         &mut self,
         at: FilePlace,
@@ -557,8 +558,8 @@ fn number(property: &Property) -> Option<f64> {
     })
 }
 
-/// The corners of a face in the integer type of the file. Converting corners of one byte each would multiply the
-/// memory.
+/// The corners of a face in the integer type of the file. A conversion of one-byte corners to a wider type would
+/// multiply the memory.
 struct FaceRow {
     corners: Property,
     colour: [u8; 3],

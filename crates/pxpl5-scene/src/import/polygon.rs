@@ -8,22 +8,22 @@ use glam::{DVec2, DVec3};
 /// per corner, so the memory stays near [`crate::config::MEMORY_FLOOR_BYTES`].
 pub(super) const MOST_CORNERS: usize = 1 << 15;
 
-/// Least sine of the angle at which an edge counts as turning back. Assumed, 1e-7 to 1e-4. In single precision, points
-/// of a straight line deviate by up to 6e-8.
+/// Largest sine of the angle between successive edges at which both edges count as lying on one line. Assumed, 1e-7 to
+/// 1e-4. In single precision, points of a straight line deviate by up to 6e-8.
 const STRAIGHT: f64 = 1e-6;
 
 /// The result of cutting a polygon into triangles.
 pub(super) enum Cut {
-    /// The polygon is convex, so triangles that all share its first corner cover it.
+    /// The polygon is convex. The triangles that all share its first corner cover exactly the polygon.
     Fan,
-    /// The polygon is concave. These triangles cover it, with the same orientation as the polygon.
+    /// The polygon is concave. These triangles cover exactly the polygon and have the same orientation.
     Ears(Vec<[u32; 3]>),
     /// The polygon is concave and has more than [`MOST_CORNERS`] corners, so it is not cut correctly.
     TooLong,
 }
 
-/// Cuts a polygon into triangles that do not extend beyond it. `fan` has triangles that all share the first corner, and
-/// `place` returns the position of a corner.
+/// Cuts a polygon into triangles that do not extend beyond the polygon. `fan` has triangles that all share the first
+/// corner, and `place` returns the position of a corner.
 pub(super) fn cut(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Cut {
     // A triangle is always convex.
     if fan.len() < 2 {
@@ -89,8 +89,8 @@ fn is_convex(fan: &[[u32; 3]], flat: impl Fn(u32) -> DVec2) -> bool {
     true
 }
 
-/// A projection of a polygon onto a plane of two coordinate axes. The direction of view is the third axis, the axis
-/// nearest to the normal, from the side where the polygon is anticlockwise.
+/// A projection of a polygon along one of the three coordinate axes: the axis with the smallest angle to the polygon's
+/// normal. In the projection, the corners run anticlockwise.
 struct Projection {
     origin: DVec3,
     /// Factor that brings the farthest corner near a distance of 1. Otherwise squares of very small or large numbers

@@ -54,7 +54,8 @@ impl<'a> Source<'a> {
         self.error(FileErrorKind::Syntax, part, expected, found)
     }
 
-    /// Returns the vector if all its coordinates are finite and within the limit, and an error otherwise.
+    /// Returns the vector if all its coordinates are finite and not larger than the limit for imported models.
+    /// Otherwise returns an error.
     pub(crate) fn coordinates(&self, at: FilePlace, v: [f64; 3]) -> Result<[f64; 3], FileError> {
         match v.into_iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {
             None => Ok(v),

@@ -1,4 +1,4 @@
-//! Figures of the paper that are counted in views of the display, or measured in drawn volumes.
+//! Figures of the SpatialGL paper that are counted in views of the display, or measured in drawn volumes.
 
 use super::printed::{TRIANGLE, display, recording};
 use pxpl5_sim::figures::FigureRow;
@@ -10,7 +10,7 @@ use spatialgl::{
     SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
-/// Returns all figures of the paper that are counted or measured.
+/// Returns all figures of the SpatialGL paper that are counted or measured.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;
@@ -131,7 +131,7 @@ fn slab(views: &[SliceView]) -> Vec<FigureRow> {
     ]
 }
 
-/// Returns the number between `low` and `high` at which a condition ceases to hold, by bisection.
+/// Returns the number at which `holds` changes from true to false, by bisection between `low` and `high`.
 fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
@@ -144,9 +144,9 @@ fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
 /// lies in a plane between bins.
 const STEPS: u32 = 3_600;
 
-/// Returns figure P14: for each region, the number of planes that bound it. Two conditions make a plane a bound. The
-/// plane's sign changes where a circle around the axis enters or leaves the region, and the layout lists the plane as a
-/// bound.
+/// Returns figure P14: for each region, the number of planes that bound the region. Two conditions make a plane a
+/// bound. The plane's sign changes where a circle around the axis enters or leaves the region, and the layout lists the
+/// plane as a bound.
 fn bounds() -> Vec<FigureRow> {
     let layout = BinLayout::double_wedges(0.0);
     let code = |step: u32| {

@@ -9,7 +9,7 @@ use pxpl5_sim::parameters::Entry;
 use std::fmt::Write as _;
 
 /// Returns the text of docs/volumetric.md. The text has every figure, the definitions, the statements without numbers,
-/// the scenes, and our own numbers with their ranges.
+/// the scenes, and the project's assumed numbers with their ranges.
 #[must_use]
 pub fn markdown(figures: &VolumeFigures) -> String {
     let mut text = String::new();
@@ -61,7 +61,8 @@ const COLUMNS: [TableColumn<FigureRow>; 8] = [
     ("", |row| if row.is_met { "met" } else { "**missed**" }.to_owned()),
 ];
 
-/// Returns the expected value as text. If the paper says "over", "about" or "most", the text includes the interval.
+/// Returns the expected value as text. If the statement of the SpatialGL paper contains "over", "about" or "most", the
+/// text includes the interval of accepted values.
 fn expected(row: &FigureRow) -> String {
     let ([low, high], value) = (row.accepted, row.published);
     let is_wide = high - low > 0.02 * value.abs().max(1e-12) + 1e-9;
@@ -157,7 +158,7 @@ fn pictures(text: &mut String) {
     );
 }
 
-/// Writes our values of the numbers that the paper does not give, with their ranges.
+/// Writes the assumed values of the numbers that the SpatialGL paper does not give, with their ranges.
 fn numbers(text: &mut String) {
     let _ = write!(
         text,

@@ -1,4 +1,4 @@
-//! Figures 4 to 12 of the paper, drawn again. The model computes every pixel of the drawings.
+//! Figures 4 to 12 of the SpatialGL paper, drawn again. The model computes every pixel of the drawings.
 //!
 //! Some drawings are plans: the display seen from above, with +x to the right and +z up. The display of the plans has
 //! few slices, so that a single slice is visible.
@@ -16,12 +16,12 @@ use spatialgl::{
     Workers,
 };
 
-/// A figure of the paper, drawn again.
+/// A figure of the SpatialGL paper, drawn again.
 #[derive(Clone, Debug)]
 pub struct FigureDrawing {
-    /// Number of the figure in the paper.
+    /// Number of the figure in the SpatialGL paper.
     pub number: u32,
-    /// Subject of the figure in the paper's caption, and meaning of the pixels.
+    /// Subject of the figure in the SpatialGL paper's caption, and meaning of the pixels.
     pub about: &'static str,
     /// The drawing itself.
     pub picture: RgbImage,
@@ -136,7 +136,7 @@ fn plan(clip: ClipKind) -> Result<RgbImage, SettingError> {
 
 /// Draws points red where the distance from the first plane is positive, and green where the distance from the second
 /// plane is positive. The lobe (half of the double wedge) with two positive distances is yellow, and the lobe with two
-/// negative distances dark.
+/// negative distances is dark.
 fn orientation() -> Result<RgbImage, SettingError> {
     let display = few(ClipKind::Exact)?;
     let spatialgl::SliceVolume::Wedge(planes, _) = display.views()[1].volume else {
@@ -149,8 +149,8 @@ fn orientation() -> Result<RgbImage, SettingError> {
     }))
 }
 
-/// Draws the wall z = 20 in slices 20, 50, 70 and 90 of 396. In each further slice, the exact volume contains fewer
-/// pixels.
+/// Draws the wall z = 20 in slices 20, 50, 70 and 90 of 396. From each of these slices to the next, the exact volume
+/// contains fewer pixels of the wall.
 fn sliver(workers: &dyn Workers) -> Result<RgbImage, SettingError> {
     let wall = [[-380.0, -64.0, 20.0], [380.0, -64.0, 20.0], [380.0, 64.0, 20.0], [-380.0, 64.0, 20.0]];
     let mut columns = Vec::new();
@@ -189,8 +189,8 @@ fn bin_plan() -> RgbImage {
     })
 }
 
-/// Draws a diagram with a row for each sector of the disc. A triangle over sectors 0, 1 and 7 (T5 of the specification)
-/// marks the sectors that it touches.
+/// Draws a diagram with a row for each sector of the disc. A test triangle over sectors 0, 1 and 7 marks the sectors
+/// that it touches.
 fn outcodes() -> RgbImage {
     let layout = BinLayout::double_wedges(0.0);
     let triangle = [[3.3, -50.2, 2.1], [9.7, -50.2, -4.4], [5.1, 60.6, 6.3]];

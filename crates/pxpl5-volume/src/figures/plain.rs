@@ -3,8 +3,8 @@
 use crate::choices::ProjectionKind;
 use crate::settings::VolumeSettings;
 
-/// Returns the paper's settings, with the hyperbolic clip and an orthographic projection. This projection has no
-/// jitter.
+/// Returns the SpatialGL paper's settings, with the hyperbolic clip and an orthographic projection. This projection has
+/// no jitter.
 pub(super) fn plain() -> VolumeSettings {
     VolumeSettings { projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() }
 }

@@ -1,4 +1,5 @@
-//! Figures of the paper that are measured on single slices: rules of the clip, bits of a pixel, stencil, jitter.
+//! Figures of the SpatialGL paper that are measured on single slices: rules of the clip, bits of a pixel, stencil,
+//! jitter.
 
 use pxpl5_sim::figures::FigureRow;
 use pxpl5_sim::parameters::Provenance;
@@ -11,14 +12,14 @@ use spatialgl::{
     VolumeConfig, VolumeFrame, WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
 };
 
-/// A triangle parallel to the axis, corners in pixels: the first triangle of the specification.
+/// A test triangle parallel to the axis. Its corners are in pixels.
 pub(super) const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
 
 /// Index of the slice in which [`TRIANGLE`] is examined. The exact volume of this slice contains 209 pixels of the
 /// triangle (derived from the area of the intersection).
 const SLICE: usize = 13;
 
-/// Returns all figures of the paper that are measured on single slices.
+/// Returns all figures of the SpatialGL paper that are measured on single slices.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let frame = draw(&exact, workers)?;
@@ -48,8 +49,8 @@ fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, Se
     render_volume(display, &recording()?, &config, &HostRenderer, workers)
 }
 
-/// Returns the two rows of figure P2. The first row counts the planes of a slice that a circle around the axis crosses,
-/// each twice. The second row counts the slices whose planes both contain the axis.
+/// Returns the two rows of figure P2. The first row counts the boundary planes of a slice that a circle around the axis
+/// crosses. A circle crosses each plane twice. The second row counts the slices whose planes both contain the axis.
 fn boundaries(display: &SweptDisplay) -> Vec<FigureRow> {
     let view = &display.views()[7];
     let steps = 100_000;
@@ -89,7 +90,7 @@ fn percent(total: usize, agreeing: usize) -> f64 {
 
 /// Returns figures P3 and P4. P3 is the percentage of grid points whose bin code agrees with the printed rule. P4 is
 /// the percentage of grid points at which the clip agrees with the printed sign of the product of distances. There are
-/// two rows for P4, with the normals of the left and of the right part of the paper's figure 5.
+/// two rows for P4, with the normals of the left and of the right part of the SpatialGL paper's figure 5.
 fn signs() -> Vec<FigureRow> {
     let layout = BinLayout::double_wedges(0.0);
     let rule = |plane: &[f64; 4], p: [f64; 3]| plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] >= 0.0;
@@ -153,7 +154,7 @@ fn stencil(frame: &VolumeFrame) -> Vec<FigureRow> {
     ]
 }
 
-/// Returns figure P19: the largest shift of a point by the shear at the face of a slice's slab, and the number of
+/// Returns figure P19: the largest shift of a point by the shear at the near or far plane of a slice, and the number of
 /// distinct eyes.
 fn jitter() -> Result<Vec<FigureRow>, SettingError> {
     let clip = SliceClip::Hyperbolic(0.25);

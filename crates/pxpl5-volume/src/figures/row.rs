@@ -5,7 +5,7 @@ use crate::experiment::Volume;
 use pxpl5_sim::figures::{Definition, FigureRow};
 use serde::Serialize;
 
-/// All figures of the paper, with the results of the model.
+/// All figures of the SpatialGL paper, with the results of the model.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeFigures {
     /// Name and version of this record's layout.
@@ -14,7 +14,7 @@ pub struct VolumeFigures {
     pub figures: Vec<FigureRow>,
     /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
     pub definitions: Vec<Definition>,
-    /// Statements of the paper without numbers, each with the measurements that test it.
+    /// Statements of the SpatialGL paper without numbers, each with the measurements that test it.
     pub shown: Vec<ShownStatement>,
     /// Scenes on which figures were measured.
     pub scenes: Vec<MeasuredScene>,

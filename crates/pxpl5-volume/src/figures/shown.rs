@@ -1,4 +1,5 @@
-//! Statements of the paper that contain no numbers. The model confirms or refutes each statement by measurements.
+//! Statements of the SpatialGL paper that contain no numbers. The model confirms or refutes each statement by
+//! measurements.
 
 use super::plain::plain;
 use crate::choices::{ClipKind, ProjectionKind};
@@ -13,10 +14,10 @@ use spatialgl::{
 };
 use std::sync::Arc;
 
-/// A statement of the paper without numbers, and the measurements that test it.
+/// A statement of the SpatialGL paper without numbers, and the measurements that test it.
 #[derive(Clone, Debug, Serialize)]
 pub struct ShownStatement {
-    /// Statement of the paper, in words.
+    /// Statement of the SpatialGL paper, in words.
     pub statement: &'static str,
     /// Measured numbers that confirm or refute the statement.
     pub evidence: String,
@@ -103,7 +104,7 @@ fn dilation() -> ShownStatement {
     }
 }
 
-/// A triangle in a plane perpendicular to the axis, corners in pixels: the third triangle of the specification.
+/// A test triangle in a plane perpendicular to the axis. Its corners are in pixels.
 const LEVEL: [[f64; 3]; 3] = [[-200.3, 10.2, -100.4], [250.6, 10.2, -150.3], [30.7, 10.2, 260.9]];
 
 fn orthographic(workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
@@ -151,7 +152,7 @@ fn noise(workers: &dyn Workers) -> Result<ShownStatement, SettingError> {
     })
 }
 
-/// Compares the parts of the modelled GPU time. Also compares the bus times with and without packing and tiles.
+/// Compares the parts of the modelled GPU time, and the bus times with and without packing and tiles.
 fn limits(volume: &Volume) -> ShownStatement {
     let stats = &volume.frame.stats;
     let model = volume.settings.time_model();

@@ -21,8 +21,8 @@ use spatialgl::{Tiling, VolumeFrame};
 /// processors  (slice triangles t_triangle + commands t_bin_entry) / processors
 /// ```
 ///
-/// A triangle of a slice takes a processor as long as a triangle of a frame. It is assumed that the hyperbola's six
-/// coefficients take as long as the coefficients of the depth.
+/// A triangle of a slice takes a processor as long as a triangle of a frame. It is assumed that the six coefficients of
+/// the clip function (a hyperbola) take as long as the coefficients of the depth.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct SliceBounds {
     /// Work of the renderers for the volume.

@@ -1,5 +1,5 @@
-//! The command that draws a triangle in a slice: three edges, the hyperbola and three colours. The renderers' trees
-//! evaluate all these functions.
+//! The command that draws a triangle in a slice: three edge functions, the clip function (a hyperbola) and three
+//! colours. The multiplier trees of the renderers evaluate all these functions.
 
 use pxpl5_renderer::Layout;
 use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse};
@@ -7,9 +7,9 @@ use pxpl5_wire::format::{COLOUR_FRACTION_BITS, SUBPIXEL_BITS};
 use pxpl5_wire::{Linear, Quadratic, Word};
 use spatialgl::{ClipQuadratic, HalfWedge, Size};
 
-/// Number of fraction bits in the hyperbola's coefficients. A coefficient contains the term S^2, where S is the sine of
-/// half the angle between slices. With the usual 16 bits, S^2 would be only 4 units. With 26 bits, S^2 is 4,224 units,
-/// and values inside a display of 768 px fit into 48 bits (derived).
+/// Number of fraction bits in the coefficients of the clip function (a hyperbola). A coefficient contains the term S^2,
+/// where S is the sine of half the angle between slices. With the usual 16 bits, S^2 would be only 4 units. With 26
+/// bits, S^2 is 4,224 units, and values inside a display of 768 px fit into 48 bits (derived).
 pub const CLIP_FRACTION_BITS: u32 = 26;
 
 /// A corner of a triangle, with its position rounded to the sub-pixel grid of the machine.
@@ -24,24 +24,25 @@ pub struct SliceCorner {
 }
 
 /// A triangle in one slice, without depth. The triangle covers the pixels that lie inside all edges and at which the
-/// hyperbola is not negative.
+/// clip function (a hyperbola) is not negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SliceTriangle {
     /// Edge functions, which are `>= 0` inside the triangle. The functions include the rule for pixels exactly on an
     /// edge.
     pub edges: [Linear; 3],
-    /// The hyperbola A B + b as a function on the triangle's plane, with [`CLIP_FRACTION_BITS`].
+    /// The clip function A B + b on the triangle's plane, with [`CLIP_FRACTION_BITS`]. A and B are the distances from
+    /// the boundary planes, and b is the bias.
     pub clip: Quadratic,
-    /// Linear functions for red, green and blue. Their number of fraction bits is the number that colours have on the
-    /// ring.
+    /// Linear functions for red, green and blue. The coefficients have as many fraction bits as colours in ring
+    /// messages.
     pub colour: [Linear; 3],
 }
 
 /// Number of steps of the sub-pixel grid per pixel.
 const STEPS: f64 = (1 << SUBPIXEL_BITS) as f64;
 
-/// Largest coefficient of the hyperbola, in units of its last fraction bit. Double precision cannot represent every
-/// integer beyond this limit.
+/// Largest coefficient of the clip function (a hyperbola), in units of the last fraction bit. Double precision cannot
+/// represent every integer beyond this limit.
 const LARGEST_COEFFICIENT: f64 = (1u64 << 53) as f64;
 
 impl SliceTriangle {
@@ -95,8 +96,8 @@ impl SliceTriangle {
         self.program(layout).iter().for_each(|instruction| instruction.encode(out));
     }
 
-    /// Returns the largest possible rounding error of the hyperbola's value at any pixel of an image, in square pixels.
-    /// Each of the six coefficients contributes half a unit.
+    /// Returns the largest possible rounding error of the clip function (a hyperbola) at any pixel of an image, in
+    /// square pixels. Each of the six coefficients contributes half a unit.
     #[must_use]
     pub fn clip_rounding_px2([width, height]: Size) -> f64 {
         let [x, y] = [width, height].map(f64::from);
@@ -118,7 +119,8 @@ fn edge(from: [i64; 2], to: [i64; 2], orientation: i64, [width, height]: Size) -
     fits.then_some(Linear { a: (a * steps) as i32, b: (b * steps) as i32, c: c as i32 })
 }
 
-/// Returns the hyperbola on the triangle's plane as a quadratic, converted from coordinates of the slice to pixels.
+/// Returns the clip function (a hyperbola) on the triangle's plane as a quadratic, converted from coordinates of the
+/// slice to pixels.
 fn clip(corners: &[SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> Option<Quadratic> {
     let [half_width, half_height] = size.map(|side| f64::from(side) / 2.0);
     let local = corners.map(|corner| {
@@ -147,8 +149,8 @@ fn clip(corners: &[SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> 
 }
 
 /// Returns a colour channel as a linear function over the triangle. Half a level is added, so that truncation of the
-/// fraction rounds to the nearest. If the gradient does not fit the words (slivers), the mean of the corners replaces
-/// it.
+/// fraction rounds to the nearest. The gradient of a very thin triangle may not fit the words. The mean of the corners
+/// then replaces the linear function.
 fn gradient(corners: &[SliceCorner; 3], area: f64, channel: usize) -> Linear {
     let one = f64::from(1 << COLOUR_FRACTION_BITS);
     let value = corners.map(|corner| corner.colour[channel]);

@@ -9,7 +9,7 @@ use pxpl5_wire::Word;
 const THRESHOLD_BITS: u8 = 8;
 
 /// Returns the location of the threshold in pixel memory: the first bits of the scratch memory. Clears and slice
-/// triangles do not change these bits. The thresholds are loaded once at start-up, so they cost no time per volume.
+/// triangles do not change these bits. The thresholds are loaded once at start-up, so loading takes no time per volume.
 ///
 /// # Panics
 /// Panics if the layout has no scratch memory. The layout of Rendering Control with Phong shading has 124 bits of

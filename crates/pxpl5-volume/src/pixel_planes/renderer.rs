@@ -28,9 +28,9 @@ pub enum ArrayKind {
 pub struct RendererWork {
     /// Number of regions that were cleared and drawn.
     pub regions: u64,
-    /// Number of slice triangles. A triangle counts once for each slice that draws it.
+    /// Number of slice triangles. A triangle counts once for each slice that draws the triangle.
     pub triangles: u64,
-    /// Number of triangle commands. A triangle counts once for each region that it touches in a slice.
+    /// Number of triangle commands. A triangle counts once for each region that the triangle touches in a slice.
     pub commands: u64,
     /// Number of omitted triangles. A triangle is omitted if it has no area on the sub-pixel grid, or if the
     /// coefficients of its planes do not fit the words.
@@ -119,8 +119,8 @@ impl PixelPlanesRenderer {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the work for each of these slices when it was last drawn. The work is zero for a slice that was never
-    /// drawn.
+    /// Returns the work for each of these slices at the time when the slice was last drawn. The work is zero for a
+    /// slice that was never drawn.
     #[must_use]
     pub fn loads(&self, views: &[SliceView]) -> Vec<SliceLoad> {
         let loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
@@ -149,7 +149,7 @@ impl PixelPlanesRenderer {
         (placed, left_out)
     }
 
-    /// Returns slightly more than half the thickness of the slice's slab at the rim, where the slab is thickest.
+    /// Returns slightly more than half the thickness of the slice's volume at the rim, where the volume is thickest.
     fn half_thickness(&self) -> f64 {
         spatialgl::SliceClip::Hyperbolic(self.bias).reach(self.wedge) + 1e-6
     }
@@ -192,7 +192,8 @@ impl PixelPlanesRenderer {
         }
     }
 
-    /// Returns the clocks of a region without triangles. Even such a region is selected, cleared and halftoned.
+    /// Returns the clocks of a region without triangles. The renderer also selects, clears and halftones an empty
+    /// region.
     fn empty_clocks(&self) -> u64 {
         self.clocks(CommandKind::SelectRegion) + self.clocks(CommandKind::Clear) + halftone_clocks(&self.layout)
     }
@@ -213,7 +214,8 @@ fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> 
     (clocks, array.read_colour(width, height))
 }
 
-/// A command and the rectangle of pixels that it can touch: left, top, right, bottom, with both ends included.
+/// A command, and the rectangle of pixels that the command can touch: left, top, right, bottom. All four sides belong
+/// to the rectangle.
 struct Placed {
     command: SliceTriangle,
     bounds: [i32; 4],

@@ -218,7 +218,7 @@ impl<'a> Machine<'a> {
         self.send_finished_slice(number, now);
     }
 
-    /// Hands the commands of the finished slice to the port if the previous slice has left.
+    /// Hands the commands of the finished slice to the port if the commands of the previous slice have left the port.
     fn send_finished_slice(&mut self, number: usize, now: Time) {
         if self.processors[number].is_sending {
             return;
@@ -418,8 +418,9 @@ fn words_of(body: &Body) -> u32 {
     if let Body::Words(words) = body { words.len() as u32 } else { 0 }
 }
 
-/// Returns the renderer's times, in which slice programs replace the commands whose codes they use. A slice triangle
-/// replaces a triangle, and the halftone replaces deferred shading.
+/// Returns the renderer's times for drawing slices. The time of a slice triangle replaces the time of a triangle, and
+/// the time of a halftone replaces the time of deferred shading. The programs for slices use the codes of the replaced
+/// commands.
 fn slice_timing(layout: &Layout) -> RendererTiming {
     RendererTiming {
         triangle_clocks: u64::from(SliceTriangle::clocks(layout)),
@@ -428,7 +429,7 @@ fn slice_timing(layout: &Layout) -> RendererTiming {
     }
 }
 
-/// Returns the time that a processor needs to compute the commands of a slice and to hand them over.
+/// Returns the time that a processor needs to compute the commands of a slice and to hand the commands to its port.
 fn making(load: &super::renderer::SliceLoad) -> Span {
     let gp = GpTiming::PAPERS;
     let commands: u64 = load.commands.iter().map(|count| u64::from(*count)).sum();

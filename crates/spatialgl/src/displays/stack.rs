@@ -32,8 +32,8 @@ impl PlaneStack {
     }
 }
 
-/// Returns the position along s at which slab `i` begins. The previous slab ends at exactly this position, so no point
-/// lies between two slabs.
+/// Returns the z, in pixels, at which slab `i` begins. Slab `i` - 1 ends at exactly the same z, so no point lies
+/// between two slabs.
 fn face(planes: u32, depth: f64, i: u32) -> f64 {
     depth * (f64::from(i) / f64::from(planes) - 0.5)
 }

@@ -51,8 +51,8 @@ pub struct SweptConfig {
 }
 
 impl SweptConfig {
-    /// Returns the display of the paper with this clip and projection: 396 slices (published) of 768 x 768 pixels
-    /// (assumed).
+    /// Returns the display of the SpatialGL paper with this clip and projection: 396 slices (published) of 768 x 768
+    /// pixels (assumed).
     #[must_use]
     pub const fn perspecta(clip: SliceClip, projection: Projection) -> Self {
         Self {
@@ -173,7 +173,8 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
     }
 }
 
-/// Returns sine and cosine of the angle that lies `half_slices` times half the angle between slices after slice 0.
+/// Returns sine and cosine of an angle around the axis. The angle is counted from slice 0, in steps of half the angle
+/// between slices.
 ///
 /// Opposite directions are exact negatives of each other at every phase, because sine and cosine are computed for only
 /// one of the two directions.
@@ -191,7 +192,7 @@ fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
 }
 
 /// Returns the boundary planes A = L_k and B = -L_(k+1) of slice k. L_k(p) is z cos b_k - x sin b_k, and the angle b_k
-/// lies half a slice before slice k.
+/// is the angle of slice k minus half the angle between slices.
 fn boundaries(config: &SweptConfig, k: u32) -> WedgePlanes {
     let (sin, cos) = direction(config, 2 * i64::from(k) - 1);
     let (next_sin, next_cos) = direction(config, 2 * i64::from(k) + 1);

@@ -10,8 +10,8 @@ use crate::{
 use pxpl5_sim::figures::{Definition, FigureRow, around};
 use pxpl5_sim::parameters::Provenance;
 
-/// Returns the row of a figure. The values that differ from the published one by at most `half_digit` count as
-/// agreement.
+/// Returns the row of a figure. A computed value agrees with the published value if the difference is at most
+/// `half_digit`.
 #[must_use]
 pub fn row(
     id: &'static str,
@@ -24,12 +24,12 @@ pub fn row(
     FigureRow { source: source(id).into(), origin: origin(id), cause: cause(id), ..row }
 }
 
-/// Returns the provenance of a number: printed in the paper if `id` begins with P, and otherwise derived.
+/// Returns the provenance of a number: printed in the SpatialGL paper if `id` begins with P, and otherwise derived.
 fn origin(id: &str) -> Provenance {
     if id.starts_with('P') { Provenance::Published } else { Provenance::Derived }
 }
 
-/// Returns the section of the paper that prints the number with this identifier.
+/// Returns the section of the SpatialGL paper that prints the number with this identifier.
 fn source(id: &str) -> &'static str {
     match id {
         "P1" => "SpatialGL Graphics Pipeline; Slice View Volume",
@@ -47,7 +47,7 @@ fn source(id: &str) -> &'static str {
     }
 }
 
-/// Returns the known cause for which the model misses the figure with this identifier, or an empty text.
+/// Returns the known reason why the model misses the figure with this identifier, or an empty text.
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {
@@ -68,7 +68,8 @@ pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
 /// Number of months in which the performance of CPUs doubles (published, P20).
 pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
 
-/// Returns the inputs of the model that the paper prints, and the numbers that follow from them by arithmetic.
+/// Returns the inputs of the model that the SpatialGL paper prints, and the numbers that follow from them by
+/// arithmetic.
 #[must_use]
 pub fn definitions() -> Vec<Definition> {
     let config = PerspectaConfig::PAPERS;
@@ -121,7 +122,8 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
     ]
 }
 
-/// Returns figures P20 and D12. D12 is the CPU's share of the time in 18 months, if CPU and GPU take equal times today.
+/// Returns figures P20 and D12. P20 states how fast processors improve. D12 is the fraction of the time that the CPU
+/// will need in 18 months, if CPU and GPU need equal times today.
 fn doubling() -> Vec<Definition> {
     // In 18 months the CPU takes half of its time. A GPU that doubles every m months takes 2^(-18/m) of its time.
     let share = |months: f64| 100.0 / (1.0 + libm::exp2(1.0 - CPU_DOUBLES_MONTHS / months));
@@ -135,7 +137,7 @@ fn doubling() -> Vec<Definition> {
     ]
 }
 
-/// Returns the figures that the model computes without drawing: trigonometry, bins, and the thickness of slabs.
+/// Returns the figures that the model computes without drawing: trigonometry, bins, and the thickness of slice volumes.
 #[must_use]
 pub fn formulas() -> Vec<FigureRow> {
     let config = PerspectaConfig::PAPERS;
@@ -145,7 +147,7 @@ pub fn formulas() -> Vec<FigureRow> {
     figures
 }
 
-/// Returns figures that compare the counts of a volume with the paper's statements about "most scenes".
+/// Returns figures that compare the counts of a volume with the SpatialGL paper's statements about "most scenes".
 #[must_use]
 pub fn measured(stats: &VolumeStats) -> Vec<FigureRow> {
     let occupied = stats.tile_occupancy_percent();
@@ -195,8 +197,8 @@ fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<FigureRow> {
     ]
 }
 
-/// Returns the mean number of planes that show a point of the display's disc. This mean is the area of one slice's slab
-/// within the disc, times the number of planes, divided by the area of the disc.
+/// Returns the mean number of planes that show a point of the display's disc. This mean is the area of one slice's
+/// volume within the disc, times the number of planes, divided by the area of the disc.
 fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
     let steps = 100_000;
     let radius = wedge.radius;
@@ -216,8 +218,8 @@ fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Checks the definitions against the printed numbers of the paper, and against D numbers computed by hand for 396
-    /// x 768 x 768 pixels.
+    /// Checks the definitions against the printed numbers of the SpatialGL paper, and against D numbers computed by
+    /// hand for 396 x 768 x 768 pixels.
     #[test]
     fn definitions_are_the_papers_numbers() {
         let all = definitions();

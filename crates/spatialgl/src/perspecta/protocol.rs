@@ -5,8 +5,8 @@
 //! tile  TILE  slice       | tile     tile size   eight pixels a word, row by row
 //! ```
 //!
-//! Empty tiles are not sent, so the map must make these tiles dark. Without this rule (derived), the store would still
-//! show old tiles: the tiles of the volume that the same store held before. Messages consist of ring words, at most
+//! Empty tiles are not sent, so the map must make these tiles dark. Without this rule (derived), the frame store would
+//! still show old tiles: the tiles of the volume that it held before. Messages consist of ring words, at most
 //! [`MAX_MESSAGE_WORDS`] per message. All messages write to the store that is not shown.
 
 use crate::{BitPlanes, Size, TileGrid, Tiling};
@@ -25,7 +25,8 @@ const HEADER_WORDS: usize = 3;
 /// A message in the form that the frame store reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum StoreMessage<'a> {
-    /// A map of the tiles that will arrive for these slices. Bit i of `bits` stands for tile i.
+    /// A map of the tiles that will arrive for `slices` slices from slice `first` on. Bit i of `bits` stands for tile
+    /// i.
     Map { first: u32, slices: u32, tile: u32, bits: &'a [Word] },
     /// The pixels of tile `number` of one slice.
     Tile { slice: u32, number: u32, tile: u32, words: &'a [Word] },

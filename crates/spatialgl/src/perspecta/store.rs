@@ -23,7 +23,7 @@ pub(crate) struct FrameStore {
     scanned: Vec<Slice>,
     /// Tiles that were announced and have not arrived: slice, tile and tile size.
     missing: BTreeSet<(u32, u32, u32)>,
-    /// Arrival time of the last swap request, and the buffer that it requested.
+    /// Arrival time of the last swap request, and the requested buffer.
     requested: Option<(Time, u8)>,
     pub(crate) tiles: u64,
 }
@@ -35,7 +35,7 @@ pub(crate) enum StoreReceipt {
     SliceComplete(u32),
     /// The message was a map, a swap request, or a tile that does not complete its slice.
     Part,
-    /// The store cannot use the message, for this reason.
+    /// The store cannot use the message. The text states the reason.
     Fault(&'static str),
 }
 
@@ -116,8 +116,8 @@ impl FrameStore {
         if is_complete { StoreReceipt::SliceComplete(slice) } else { StoreReceipt::Part }
     }
 
-    /// Handles strobe 0, the first flash of a revolution. Shows the store that was requested before (not at) this
-    /// instant, if all its tiles have arrived. Returns the buffer if it was swapped.
+    /// Handles strobe 0, the first flash of a revolution. A swap request from before `now` takes effect if all
+    /// announced tiles have arrived. Returns the number of the buffer that is then shown, or `None` without a swap.
     pub(crate) fn swap(&mut self, now: Time) -> Option<u8> {
         self.scanned.clone_from(&self.volumes[self.shown]);
         let is_whole = self.missing.is_empty();

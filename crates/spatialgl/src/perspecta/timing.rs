@@ -5,7 +5,7 @@ use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_sim::{Clock, Span, Time};
 
 pxpl5_sim::parameters::parameter_table! {
-    /// A screen that rotates about its vertical axis, and the projector that lights it.
+    /// A screen that rotates about its vertical axis, and the projector that lights the screen.
     pub struct PerspectaConfig {
         /// Number of slices that the projector flashes in a revolution.
         slices: 396, "slices", Published, 396..=396 in 4..=4096, "the SpatialGL paper (P1)";

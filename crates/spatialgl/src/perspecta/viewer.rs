@@ -5,15 +5,15 @@ use image::{Rgb, RgbImage};
 use pxpl5_sim::parameters::SettingError;
 use std::sync::{Mutex, PoisonError};
 
-/// Units of light of one lit pixel in one strobe (flash). With 256 x 256 units, the shares of four neighbouring picture
-/// pixels are integers.
+/// Units of light of one lit pixel in one strobe (flash). With 256 x 256 units, the parts of the light for four
+/// neighbouring picture pixels are integers.
 const FULL: u64 = 1 << 16;
 
 /// Number of slices whose light one task sums before it adds this sum to the total.
 const SLICES_PER_TASK: u32 = 33;
 
-/// The position of an eye before the display, and the size of its picture. The eye looks at the middle of the display,
-/// and y points downwards in the picture.
+/// The position of an eye in front of the display, and the size of the eye's picture. The eye looks at the middle of
+/// the display, and y points downwards in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
@@ -271,8 +271,8 @@ fn sum(
 /// The geometry of the screen during one strobe (flash), in the coordinates of the eye.
 struct Strobe {
     half: [f64; 2],
-    /// Vector of one screen pixel to the right (`across`) or upwards (`upward`), as right, up and back along the eye's
-    /// axes.
+    /// Vectors from a screen pixel to the next pixel on its right (`across`) and above (`upward`). The components are
+    /// right, up and back along the eye's axes.
     across: [f64; 3],
     upward: [f64; 3],
     /// Normal of the screen, in components along the eye's axes.
@@ -281,7 +281,7 @@ struct Strobe {
     focal: f64,
     centre: [f64; 2],
     lambert: bool,
-    /// For each half of the screen (u < 0, u >= 0), true if the cutaway hides it.
+    /// For each half of the screen (u < 0, u >= 0), true if the cutaway hides this half.
     cut: [bool; 2],
 }
 
@@ -338,7 +338,7 @@ fn is_cut(cut: Option<[f64; 2]>, angle: f64) -> bool {
 ///
 /// # Errors
 ///
-/// The same as [`view_planes`]. An error occurs already in the first picture.
+/// The same as [`view_planes`], for every picture.
 pub fn film(
     planes: &BitPlanes,
     camera: Camera,

@@ -48,7 +48,7 @@ impl SliceTransform {
         Place { x: along(x, local), y: along(y, local), z: along(z, local), w: along(w, local) }
     }
 
-    /// Converts a primitive to triangles, and calls `draw` with them in the order of drawing.
+    /// Converts a primitive to triangles, and calls `draw` with each triangle in the order of drawing.
     pub(super) fn triangles(
         &self,
         commands: &CommandBuffer,

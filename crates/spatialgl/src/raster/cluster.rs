@@ -33,8 +33,8 @@ pub(crate) struct Cluster<'a> {
 }
 
 impl<'a> Cluster<'a> {
-    /// Returns the primitives that can have a point with s in the given range. `row` is the row of the view matrix that
-    /// computes s. Omitted primitives have no such point.
+    /// Returns the primitives that can have a point whose distance s from the slice lies in a range. `row` is the row
+    /// of the view matrix that computes s. Omitted primitives have no point in this range.
     #[inline(always)]
     pub(crate) fn reaching(&self, row: &[f64; 4], [low, high]: [f64; 2]) -> ReachablePrimitives<'a> {
         // First test the sphere around the whole cluster, then the spheres of its primitives.

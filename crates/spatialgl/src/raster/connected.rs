@@ -1,5 +1,5 @@
-//! Connected rasterization, which is **beyond the paper**. This method draws adjacent pixels along the curve in which a
-//! triangle intersects the plane of the slice.
+//! Connected rasterization, which is **beyond the SpatialGL paper**. This method draws adjacent pixels along the curve
+//! in which a triangle intersects the plane of the slice.
 
 use super::SliceWork;
 use super::assemble::SliceTransform;

@@ -1,5 +1,5 @@
-//! The reference rasterizer. This rasterizer follows the specification step by step, with one primitive, one pixel and
-//! one test at a time.
+//! The reference rasterizer. This rasterizer is slow and obvious: it processes one primitive, one pixel and one test at
+//! a time.
 
 use super::assemble::SliceTransform;
 use super::connected;

@@ -1,4 +1,4 @@
-//! Supersampling, for comparison with jitter. The paper rejects supersampling as too expensive.
+//! Supersampling, for comparison with jitter. The SpatialGL paper rejects supersampling as too expensive.
 
 use super::{Coverage, SliceRenderer, SliceStats, SliceWork};
 use crate::command::Combine;

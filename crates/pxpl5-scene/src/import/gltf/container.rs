@@ -10,7 +10,7 @@ use crate::import::source::MARK;
 const MAGIC: &[u8] = b"glTF";
 /// Number of bytes of the header of a binary file: magic number, version and length.
 const HEADER: usize = 12;
-/// Number of bytes before the content of a chunk: its length and its type.
+/// Number of bytes of a chunk before its content: 4 bytes for the length and 4 for the type.
 const CHUNK: usize = 8;
 
 /// The JSON of a file, the position of the JSON in the file, and the binary chunk.
@@ -102,12 +102,13 @@ impl<'a> Chunks<'a> {
     }
 }
 
-/// Greatest number of bytes per object. The largest type of an item in a list is a node or a material. While a list
-/// grows, it takes up to three times the size of its items.
+/// Greatest number of bytes that a JSON object takes after parsing. The largest type of an item in a list is a node or
+/// a material. While a list grows, it takes up to three times the size of its items.
 const OBJECT_BYTES: usize = 3 * max(size_of::<gltf_json::Node>(), size_of::<gltf_json::Material>());
 /// Greatest number of bytes of a text in a growing list, without its characters.
 const TEXT_BYTES: usize = 3 * size_of::<String>();
-/// Greatest number of bytes of an index or a number in a growing list. Limits of an accessor are JSON values.
+/// Greatest number of bytes of an index or a number in a growing list. The largest numbers are the limits of an
+/// accessor, which are stored as JSON values.
 const NUMBER_BYTES: usize = 3 * size_of::<gltf_json::Value>();
 
 const fn max(a: usize, b: usize) -> usize {

@@ -44,7 +44,7 @@ pub(super) struct Numbers<'a> {
 }
 
 impl<'a> Numbers<'a> {
-    /// Finds the numbers of the accessor with an index.
+    /// Finds the numbers of the accessor with the index `index`.
     ///
     /// `components` are the allowed numbers of components of an item. `kinds` are the allowed types of components.
     ///
