@@ -26,10 +26,10 @@
 //! - All slaves draw in the same region context of a renderer. A region's commands may need several messages. These
 //!   messages reserve the renderer's port until the last message, which copies the region. No other slave can therefore
 //!   draw into the region.
-//! - Every second field uses the same lines of the frame buffer. For any number of slaves, a strip is therefore ordered
-//!   only after the beam has scanned the strip's lines in the second previous field.
-//! - A strip is skipped if the beam reaches the strip before a slave can begin to draw it. The lines of the earlier
-//!   field then stay on the screen.
+//! - Every second field uses the same lines of the frame buffer. For any number of slaves, a strip of field n is
+//!   therefore ordered only after the beam has scanned the same lines in field n - 2.
+//! - A strip is skipped if the beam reaches the strip before a slave can begin to draw it. The lines of field n - 2
+//!   then stay on the screen.
 //! - *Frameless* rendering ([`DrawingSchedule::Roam`]) draws blocks in a random order. Each order to a slave contains
 //!   the newest view. The blocks go directly into the visible buffer.
 //!
@@ -41,7 +41,8 @@
 //!   stores the positions of triangles at the start and at the end of the field.
 //! - For a strip between two views, code interpolates the triangles between these two positions. The strip begins with
 //!   a separate pass that uses the interpolated matrices.
-//! - Code finds the primitives in a strip or block by their bounding boxes, and sends them like the bin of a region.
+//! - Code finds the primitives in a strip or block by their bounding boxes, and sends the primitives' commands like the
+//!   bin of a region.
 //! - Code assembles the master's orders.
 //!
 //! With i860 code, the time from the order of a field to the field's first strip is a constant. The number of blocks in

@@ -53,8 +53,8 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
     parts.map(list).collect()
 }
 
-/// Returns a message that copies regions to a frame buffer. The source of each region is the pixel-memory context that
-/// its order states.
+/// Returns a message that copies regions to a frame buffer. Each element of `copies` names a region, and the context of
+/// pixel memory that holds the region.
 #[must_use]
 pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> CommandList {
     let runs =
@@ -224,7 +224,7 @@ fn bytes(kind: CommandKind, count: u32) -> u64 {
     4 * u64::from(kind.words()) * u64::from(count)
 }
 
-/// Computes the words of a region's messages on demand.
+/// Source of the words of a region's messages. The words are computed on demand.
 #[derive(Debug)]
 struct RegionWords {
     pass: Arc<Pass>,
@@ -547,7 +547,7 @@ fn rgb([r, g, b]: [u8; 3]) -> u32 {
     u32::from(r) << 16 | u32::from(g) << 8 | u32::from(b)
 }
 
-/// Computes the words of a message that only copies regions.
+/// Source of the words of a message that only copies regions.
 #[derive(Debug)]
 struct CopyWords {
     layout: Layout,

@@ -35,8 +35,8 @@ pub type MessagePieces = Vec<[Word; 2]>;
 /// Bytes of one piece in the list of pieces.
 pub(crate) const PIECE_BYTES: u32 = 8;
 pub(crate) const MESSAGE_BYTES: u32 = 16;
-/// Largest number of bin entries of a region. A message holds at least 20 commands, and needs two further pieces for
-/// its envelope.
+/// Largest number of bin entries of a region for which the list of pieces has room. A message holds at least 20
+/// commands, and needs two additional pieces for the commands at its start and its end.
 pub(crate) const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
 const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 

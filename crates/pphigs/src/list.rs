@@ -227,13 +227,13 @@ impl Share {
         (self.first..self.list.spheres.len()).step_by(self.step)
     }
 
-    /// Returns those of the share's triangles that belong to a structure. `of` is the structure's range of triangles in
+    /// Returns the triangles of this share that belong to one structure. `of` is the structure's range of triangles in
     /// the display list. The result is a range of indices among all triangles that the GP holds.
     pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.triangles, of)
     }
 
-    /// Returns those of the share's spheres that belong to a structure. `of` is the structure's range of spheres in the
+    /// Returns the spheres of this share that belong to one structure. `of` is the structure's range of spheres in the
     /// display list. The result is a range of indices among all spheres that the GP holds.
     pub(crate) fn held_places_of_spheres(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.spheres, of)
@@ -247,9 +247,9 @@ impl Share {
         self.held(&self.spheres, of)
     }
 
-    /// Returns the indices, in the display list, of those of the share's primitives that belong to a structure. `of` is
-    /// the structure's range of primitives in the display list. `positions` is the range of the share, as indices among
-    /// the primitives that the GP holds.
+    /// Returns the primitives of this share that belong to one structure, as indices in the display list. `of` is the
+    /// structure's range of primitives in the display list. `positions` is the range of the share, as indices among the
+    /// primitives that the GP holds.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         let first = self.first;
         let step = self.step;

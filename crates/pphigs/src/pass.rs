@@ -322,7 +322,7 @@ impl Pass {
         touching
     }
 
-    /// Returns the numbers of entries in a region's bin.
+    /// Returns the number of triangles and the number of spheres in a region's bin.
     #[must_use]
     pub fn counts(&self, region: RegionId) -> PrimitiveCounts {
         self.found.counts[usize::from(region.0)]
@@ -393,12 +393,12 @@ impl Pass {
         &self.bins.get_or_init(|| self.filled())[usize::from(region.0)]
     }
 
-    /// Returns the triangles at the given range of indices in a region's bin.
+    /// Returns the triangles at the indices `places` of a region's bin.
     pub(crate) fn triangles_in(&self, region: RegionId, places: &Range<u32>) -> &[BinEntry] {
         &self.bin(region).triangles[places.start as usize..places.end as usize]
     }
 
-    /// Returns the triangles that touch a region, among the triangles at a range of indices in the region's bin.
+    /// Returns the triangles that touch a region, among the triangles at the indices `places` of the region's bin.
     ///
     /// Under [`RegionBinning::Touched`] all triangles of a bin touch the region.
     pub(crate) fn triangles_touching(&self, region: RegionId, places: &Range<u32>) -> Cow<'_, [BinEntry]> {

@@ -24,13 +24,13 @@ pub enum RegionBinning {
     /// All regions (Slats prototype, TR94). An invisible triangle takes as much time as a visible triangle, but draws
     /// nothing.
     ///
-    /// Spheres go only to the touched regions. In other regions, the values of a sphere's quadratic expression would
-    /// exceed 48 bits. The prototype had no spheres.
+    /// Spheres go only to the touched regions. Elsewhere, the values of a sphere's quadratic expression would exceed
+    /// the renderers' 48 bits. The prototype had no spheres.
     All,
 }
 
 impl RegionBinning {
-    /// Both choices with their names in experiment files.
+    /// Both binning modes with their names in experiment files.
     pub const ALL: [(&str, Self); 2] = [("all", Self::All), ("touched", Self::Touched)];
 }
 

@@ -1,7 +1,7 @@
 //! TRANSFORM of six views from one eye position, such as the faces of a cube, as i860 code over the board's memory.
 //!
 //! Each primitive is transformed only for the views that it can touch. The code kernels/sort.s finds these views, and
-//! kernels/runs.s passes the primitives to the kernels. This project made the rules for both codes
+//! kernels/runs.s passes the primitives to the kernels. This project made the rules for both programs
 //! (kernels/sort_rules.md).
 
 use crate::begin::PassStartWork;

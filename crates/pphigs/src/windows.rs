@@ -175,7 +175,7 @@ impl Pass {
         Ok(of_triangles + of_spheres)
     }
 
-    /// Returns the addresses of the pass's bounding boxes (`table`) and commands (`command`).
+    /// Returns the addresses at which the pass stores its bounding boxes (`table`) and commands (`command`).
     fn room(&self, processor: &Processor, kernel: Kernel, part: MemoryPart) -> Result<Next, ProcessorFault> {
         let given = self.transformed();
         let triangles = self.most_commands(given);

@@ -118,8 +118,8 @@ impl CornerValues {
     }
 }
 
-/// Replaces the expressions by `constant` in the lanes where `there` is 0. In all other lanes, `there` must have all
-/// bits set.
+/// Replaces the expressions of some triangles by `constant`. Each lane holds the expression of one triangle, and is
+/// replaced if its element of `there` is 0. In all other lanes, `there` must have all bits set.
 #[inline(always)]
 fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> LinearLanes {
     for (i, there) in there.iter().enumerate() {
@@ -338,8 +338,8 @@ fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
 
 /// Returns the corners in clockwise order. In the lanes where `swapped` is all ones, two corners are exchanged.
 ///
-/// The code exchanges the values with masks. For a conditional expression, compilers select between addresses, which is
-/// slower.
+/// The code exchanges the values with masks. Masks are faster than a conditional expression, for which compilers select
+/// between two addresses.
 #[inline(always)]
 fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLane<i32>; 3] {
     let mut second = [0; LANES];

@@ -26,7 +26,7 @@ pub(crate) struct Lens {
     /// values times t.
     pub(crate) near: [f64; 2],
     pub(crate) far: [f64; 2],
-    /// Largest distance t along -Z at which a point counts as a point behind the eye.
+    /// Largest distance t along -Z at which a point still counts as behind the eye.
     pub(crate) least: f64,
     /// Coefficients of the depth `base + reach u`, in units of the depth expression. [`Lens`] defines u.
     pub(crate) base: f64,

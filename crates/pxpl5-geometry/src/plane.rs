@@ -38,8 +38,8 @@ pub(crate) fn rounded(value: f64) -> i32 {
     (value + ROUND).to_bits() as i32
 }
 
-/// Returns the constant plane that replaces a too steep plane. The value of the constant plane is the mean of the
-/// values `v` at the corners.
+/// Returns the constant plane that replaces a plane with a slope above [`MAX_SLOPE`]. The value of the constant plane
+/// is the mean of the values `v` at the corners.
 pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }

@@ -59,7 +59,8 @@ pub(crate) fn normal_fixed(component: f32) -> i16 {
 /// Factor from normalized depth, 0 to 1, to fixed point: the range of depths, rounded to single precision.
 pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
 
-/// Converts a depth to fixed point. The depth is given as a distance from the near plane, in units of fixed point.
+/// Converts a depth to fixed point. `beyond_near` is the distance of the depth from the near plane, in units of fixed
+/// point.
 ///
 /// The depth is rounded to the nearest unit, ties to even, and limited to the range from near to far. NaN gives the
 /// near plane.

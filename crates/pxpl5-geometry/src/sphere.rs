@@ -229,8 +229,8 @@ impl Transform {
     }
 }
 
-/// Margin around a bounding box, in pixels. The margin is greater than the shift of the silhouette because of the
-/// rounding of the quadratic expression.
+/// Margin around a bounding box, in pixels. The rounding of a sphere's quadratic expression moves the silhouette by
+/// less than this margin.
 pub(crate) const SLACK: f64 = 1.0 / 64.0;
 
 /// Returns the pixels whose centres are in the interval from `low` to `high`. Coordinate 0 is the centre of pixel 0.

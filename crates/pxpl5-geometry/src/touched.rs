@@ -156,8 +156,8 @@ impl CornerLanes {
 
 /// Results of a first search for the regions of several triangles, by the bounding boxes of the triangles.
 struct LaneTouches {
-    /// Codes as in [`Touched`]. The code is [`SEVERAL`] without an index if the edges must decide between several
-    /// regions.
+    /// Codes in the format of [`Touched`]. The code [`SEVERAL`] without an index marks a triangle whose bounding box
+    /// meets several regions. A test of the triangle's edges must then find the touched regions.
     codes: EachLane<u32>,
     any_several: bool,
     /// First and last column of pixels in each triangle's bounding box.

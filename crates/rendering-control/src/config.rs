@@ -40,7 +40,8 @@ impl RenderingControlConfig {
         self.frame_buffers.len() as u64
     }
 
-    /// Returns the first drawing of a frame, which is the picture of its first eye.
+    /// Returns the number of a frame's first drawing. A drawing is the picture of one eye. The first eye is drawn
+    /// first.
     pub(crate) fn first_of(&self, frame: PictureNumber) -> EyeDrawing {
         EyeDrawing::first_of(frame, self.eyes())
     }
@@ -49,7 +50,7 @@ impl RenderingControlConfig {
         drawing.frame(self.eyes())
     }
 
-    /// Returns the surface that shows a drawing: the display of the drawing's eye.
+    /// Returns the surface that shows a drawing (the picture of one eye).
     pub(crate) fn eye_of(&self, drawing: EyeDrawing) -> SurfaceId {
         SurfaceId(drawing.eye(self.eyes()) as u16)
     }

@@ -74,7 +74,7 @@ struct Nearest {
     paint: Paint,
 }
 
-/// The nearest primitive of every pixel while primitives are drawn.
+/// A buffer with the nearest primitive drawn so far at each pixel.
 #[derive(Debug)]
 pub(crate) struct DepthBuffer {
     width: u32,
@@ -106,8 +106,8 @@ impl DepthBuffer {
         }
     }
 
-    /// Returns the picture with a background colour. `colour` converts the stored value of a pixel to its colour.
-    /// `depth` converts a stored depth to 24 bits.
+    /// Returns the finished picture. Pixels without a primitive get the background colour. `colour` converts the stored
+    /// value of a pixel to its colour. `depth` converts a stored depth to 24 bits.
     pub(crate) fn finish(
         self,
         background: [u8; 3],

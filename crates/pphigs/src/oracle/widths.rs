@@ -7,8 +7,8 @@ use pxpl5_wire::format::{Z_BITS, Z_FRACTION_BITS};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Widths {
     z_bits: u32,
-    /// Bits of a sphere's square root, 10 to 12. A layout without a root cannot draw spheres. In this case, the value
-    /// is 12.
+    /// Bits of a sphere's square root, 10 to 12. A layout of pixel memory without bits for the root cannot draw
+    /// spheres. The value is then 12.
     pub(crate) root_bits: u32,
 }
 

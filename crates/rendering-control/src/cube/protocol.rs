@@ -24,8 +24,8 @@ pub(crate) struct Token {
     pub(crate) slaves_left: u16,
     /// Number of tokens of this update, one for each region with primitives.
     pub(crate) of: u16,
-    /// True if the last slave adds the copy command. Otherwise the region stays in pixel memory, and the renderer waits
-    /// for a copy command.
+    /// True if the last slave adds the copy command. If false, the region stays in pixel memory, and the renderer waits
+    /// for a copy command of the master.
     pub(crate) copies: bool,
 }
 
