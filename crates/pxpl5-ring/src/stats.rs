@@ -59,9 +59,9 @@ pub struct WaitingMessage {
 pub enum WaitReason {
     /// The receiver must answer the announcement of the message.
     Acceptance,
-    /// The receiver is busy with a message from the port given here.
+    /// The receiver is busy with a message from this port.
     DestinationBusy(NodeId),
-    /// The receiver is reserved for an unfinished transfer from the port given here.
+    /// The receiver is reserved for an unfinished transfer from this port.
     DestinationReserved(NodeId),
     /// A channel must become free: all channels that the message can use are occupied.
     Channel,

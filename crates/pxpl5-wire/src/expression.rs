@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 /// the offset from a pixel's corner to its centre in `c`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Linear {
-    /// Increase of the value from one pixel to the next one on the right.
+    /// Increase of the value from a pixel to its right neighbour.
     pub a: i32,
-    /// Increase of the value from one line to the next one below.
+    /// Increase of the value from a pixel to the pixel below.
     pub b: i32,
     /// Value of the expression at pixel (0, 0).
     pub c: i32,

@@ -38,7 +38,8 @@ struct ProcessorState {
     bottom: Option<Bottom>,
     /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],
-    /// For each unfinished field, the number of other GPs that have finished their share of the field.
+    /// For each unfinished field: the number of graphics processors, without the leading processor, that have finished their
+    /// share of the field.
     finished: Vec<(PeriodNumber, usize)>,
 }
 
@@ -161,8 +162,8 @@ impl Backup {
         }
     }
 
-    /// Requests that the frame buffers show the last complete field with the lines of `period` from the start of
-    /// `period` on. If the period has already begun, the function requests nothing.
+    /// Requests that, from the start of `period` on, the frame buffers show the last complete field with the same lines
+    /// (even or odd) as `period`. If the period has already begun, the function requests nothing.
     ///
     /// A later request replaces an earlier request.
     async fn ask(self, gp: &Gp, state: &SharedState, period: PeriodNumber) {
@@ -291,8 +292,8 @@ impl SlatsProcessor {
         }
     }
 
-    /// Waits until the copies of the previous field's bottom regions have started. The caller's next messages clear
-    /// these regions, so they must not be sent earlier.
+    /// Waits until the copies of the previous field's bottom regions have started. The first messages of the next field
+    /// clear these regions, so these messages must not be sent earlier.
     async fn bottom_started(&self) {
         self.gp.until("the copies of the top regions", || self.state.borrow().bottom.is_none().then_some(())).await;
     }

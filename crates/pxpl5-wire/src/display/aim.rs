@@ -33,7 +33,7 @@ pub enum Aim {
 }
 
 impl Aim {
-    /// All choices, each with its name on the command line.
+    /// All aims, each with its name on the command line.
     pub const ALL: [(&str, Self); 4] = [
         ("middle", Self::Middle),
         ("first-pixel", Self::FirstPixel),
