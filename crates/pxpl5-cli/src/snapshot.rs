@@ -32,7 +32,7 @@ pub(crate) struct SnapshotArgs {
     restore: Option<PathBuf>,
 }
 
-/// Options for executing an experiment that do not change its result.
+/// Options for the execution of an experiment. These options do not change the result.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct How<'a> {
     /// Number of worker threads for pixels. `None` means one for each core.
@@ -112,8 +112,8 @@ impl SnapshotArgs {
         Ok(Snapshot::read(text, &name)?)
     }
 
-    /// Simulates the plan. If an option requests a checkpoint, the checkpoint is saved or restored at the field that
-    /// the option or the checkpoint states.
+    /// Simulates the experiment `plan`. If an option requests a checkpoint, the checkpoint is saved or restored at the
+    /// field that the option or the checkpoint states.
     ///
     /// # Errors
     ///

@@ -70,8 +70,8 @@ const LENS: &str = "arp.lens";
 type GivenSettings = Vec<(String, String, String)>;
 
 impl WalkArgs {
-    /// Returns the scene and the plan of the walk (frames seen along a path). Prints a warning for every number outside
-    /// its documented range.
+    /// Returns the scene, and all settings of the walk (frames seen along a path). Prints a warning for every number
+    /// outside its documented range.
     ///
     /// # Errors
     ///

@@ -17,7 +17,7 @@ pub(super) struct CompareProgress {
     runs: (AtomicU64, AtomicU64),
 }
 
-/// Number of plain lines about the runs of a comparison. Further lines report the rows.
+/// Number of plain lines about the runs of a comparison. Additional lines report finished rows.
 const LINES: u64 = 10;
 
 impl CompareProgress {

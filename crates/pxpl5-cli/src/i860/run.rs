@@ -157,7 +157,7 @@ impl Run<'_> {
         text
     }
 
-    /// Returns the clocks spent between each label and the next.
+    /// Returns each label of the program, with the clocks spent from this label to the label that follows.
     fn clocks_by_label(&self) -> Vec<(&str, u64)> {
         let labels: Vec<(&str, u32)> = self.program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
         let by_label = self.cpu.watched().map(|watched| watched.by_label(&labels)).unwrap_or_default();
