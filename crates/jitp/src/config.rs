@@ -136,9 +136,9 @@ pub struct Wanted {
 pub struct JitpConfig {
     /// Ring port of the host, which forwards the tracker's reports.
     pub host: NodeId,
-    /// Ring port of the GP that follows the beam and orders strips or blocks.
+    /// Ring port of the graphics processor that follows the beam and orders strips or blocks.
     pub master: NodeId,
-    /// Ring ports of the slave GPs, at least one.
+    /// Ring ports of the slaves, at least one.
     pub slaves: Vec<NodeId>,
     /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,

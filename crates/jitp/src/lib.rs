@@ -10,9 +10,9 @@
 //!   frame buffer:             strip 0 | strip 1 ...            just before the beam
 //! ```
 //!
-//! - One GP is the [`master`](fn@master). The master synchronizes with the beam, stores the newest tracking data and
-//!   orders the strips. Slave k of n draws strips k, k + n, k + 2n and so on. For each strip, a slave has the time that
-//!   the beam needs for n strips. Every slave holds the whole display list.
+//! - One graphics processor is the [`master`](fn@master). The master synchronizes with the beam, stores the newest
+//!   tracking data and orders the strips. Slave k of n draws strips k, k + n, k + 2n and so on. For each strip, a slave
+//!   has the time that the beam needs for n strips. Every slave holds the whole display list.
 //! - A *strip* consists of one line or a few lines of a field ([`DrawingSchedule::Beam`]). The regions of a strip are
 //!   128 pixels wide. Successive regions use the renderers in turn. No second buffer is needed, because a field is
 //!   written while the beam scans the other field. If strips race the beam, each line is written just before the beam

@@ -1,4 +1,4 @@
-//! The master GP, which follows the beam, stores the newest tracking data and orders strips or blocks.
+//! The master, which follows the beam, stores the newest tracking data and orders strips or blocks.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
 use crate::ordering::OrderAssemblyWork;

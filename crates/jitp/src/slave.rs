@@ -1,4 +1,4 @@
-//! A slave GP, which draws the strips of lines or the blocks that the master orders.
+//! A slave, which draws the strips of lines or the blocks that the master orders.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends};

@@ -221,7 +221,7 @@ pub(crate) struct Destination {
 /// The struct has the addresses of the mark words, and the bit of this view.
 #[derive(Clone, Copy)]
 pub(crate) struct Marks {
-    /// Address of the mark word of the GP's first triangle.
+    /// Address of the mark word of the graphics processor's first triangle.
     pub(crate) triangles: u32,
     pub(crate) spheres: u32,
     pub(crate) bit: Word,
@@ -472,12 +472,14 @@ impl Pass {
         words
     }
 
-    /// Returns each drawn structure with the range of its triangles, as indices among the triangles that the GP holds.
+    /// Returns each drawn structure with the range of its triangles, as indices among the triangles that the graphics
+    /// processor holds.
     pub(crate) fn calls_of_triangles(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.triangles, Share::held_places)
     }
 
-    /// Returns each drawn structure with the range of its spheres, as indices among the spheres that the GP holds.
+    /// Returns each drawn structure with the range of its spheres, as indices among the spheres that the graphics
+    /// processor holds.
     pub(crate) fn calls_of_spheres(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.spheres, Share::held_places_of_spheres)
     }

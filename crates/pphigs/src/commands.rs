@@ -215,9 +215,11 @@ impl Pass {
 /// (TR94).
 pub const BIN_ENTRY_BYTES: u64 = 4;
 
-/// Bytes of a GP's memory for program, stacks and message buffers. The number is the same in every pipeline.
+/// Bytes of a graphics processor's memory for program, stacks and message buffers. The number is the same in every
+/// pipeline.
 ///
-/// Assumed: no paper gives the number. Each GP of TR94 has 8 MB, so an error of a megabyte has little effect.
+/// Assumed: no paper gives the number. Each graphics processor of TR94 has 8 MB, so an error of a megabyte has little
+/// effect.
 pub const PROGRAM_BYTES: u64 = 1 << 20;
 
 fn bytes(kind: CommandKind, count: u32) -> u64 {

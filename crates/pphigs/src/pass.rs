@@ -1,4 +1,4 @@
-//! The result of one TRANSFORM of a GP's share of the primitives, for one eye.
+//! The result of one TRANSFORM of a graphics processor's share of the primitives, for one eye.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;

@@ -7,7 +7,7 @@ use pxpl5_renderer::Layout;
 /// Shading mode: the processor that computes colours, and the points at which it computes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
-    /// The GP computes colours at the corners, and the renderers interpolate the colours.
+    /// The graphics processor computes colours at the corners, and the renderers interpolate the colours.
     Gouraud,
     /// Lighting is computed once for the vertices, before the run. The renderers interpolate the resulting colours.
     /// Spheres have no corners, so they are lit as with [`Shading::Gouraud`].

@@ -87,8 +87,9 @@ pub(crate) fn figures<'py>(
 /// Runs all pipelines with the same settings and compares the results. Returns a dictionary whose `pipelines` has one
 /// row for each pipeline.
 ///
-/// ``confidence`` is that of all intervals. With ``until_precision``, such as 10% or 0.2px, a row gets up to
-/// ``max_seeds`` seeds. Finished rows are stored in ``folder``. If ``resume`` is true, the rows in the folder are kept.
+/// ``confidence`` is the confidence of all intervals, between 0 and 1. With ``until_precision``, such as 10% or 0.2px,
+/// a row gets up to ``max_seeds`` seeds. Finished rows are stored in ``folder``. If ``resume`` is true, the rows in the
+/// folder are kept.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting, and :class:`pxpl5.SweepError` if the folder cannot be
 /// used, is in use, or contains another comparison.
@@ -250,8 +251,8 @@ pub(crate) fn limit_over<'py>(
     python(py, &found)
 }
 
-/// Estimated number of values that a search over a setting tries: five values, and seven of a bisection. If a search
-/// tries more values, the end of the progress bar moves.
+/// Estimated number of values that a search over a setting tries: five values, and seven values of a bisection. If a
+/// search tries more values, the end of the progress bar moves.
 const VALUES: u64 = 12;
 
 /// Limit below which every whole number is exact as a real number.

@@ -8,7 +8,7 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
 /// Sends one frame after the other. For each frame, the program reads the tracker and sends the view and the edits over
-/// the host's link to all GPs. The program then waits for the end of EDIT.
+/// the host's link to all graphics processors. The program then waits for the end of EDIT.
 ///
 /// SEND of a frame must not begin before EDIT of the previous frame has finished (TR94).
 ///

@@ -7,9 +7,10 @@
 //!   renderers, frame buffers:               COPY left, COPY right          swap at the retrace
 //! ```
 //!
-//! One GP is the [`master`](fn@master), which begins each stage when the [`rules`] of TR94 permit the stage. The other
-//! GPs are slaves. Each slave runs two programs: EDIT and TRANSFORM in the foreground, and an interrupt program that
-//! receives tokens and sends bins. The [`host`](fn@host) reads the tracker and sends view and edits.
+//! One graphics processor is the [`master`](fn@master), which begins each stage when the [`rules`] of TR94 permit the
+//! stage. The other graphics processors are slaves. Each slave runs two programs: EDIT and TRANSFORM in the foreground,
+//! and an interrupt program that receives tokens and sends bins. The [`host`](fn@host) reads the tracker and sends view
+//! and edits.
 //!
 //! RENDER: the master first assigns the regions with the most bin entries to the renderers. The master creates a token
 //! for each region and sends the token to a slave. The slaves take turns as the first holder of a token. A slave with a

@@ -1,4 +1,4 @@
-//! Program of the master GP, which synchronizes host, slaves, renderers and frame buffers.
+//! Program of the master, which synchronizes host, slaves, renderers and frame buffers.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::{RegionEnd, StageOrder, Token};
@@ -70,7 +70,7 @@ struct RegionMaster {
     next_slave: usize,
 }
 
-/// Runs the program of the master GP.
+/// Runs the program of the master.
 ///
 /// # Errors
 ///

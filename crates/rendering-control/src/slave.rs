@@ -1,4 +1,4 @@
-//! Programs of a slave GP: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
+//! Programs of a slave: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
 
 use crate::config::RenderingControlConfig;
 use crate::master::copy_order;

@@ -1,4 +1,4 @@
-//! Program of the master GP, which synchronizes host, slaves, renderers and display memories.
+//! Program of the master, which synchronizes host, slaves, renderers and display memories.
 
 use crate::cube::config::CubeControlConfig;
 use crate::cube::protocol::{Token, UpdateOrder};
@@ -80,7 +80,7 @@ struct CubeMaster {
     swaps_known: u64,
 }
 
-/// Runs the program of the master GP.
+/// Runs the program of the master.
 ///
 /// # Errors
 ///

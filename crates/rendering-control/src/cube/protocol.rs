@@ -32,7 +32,7 @@ pub(crate) struct Token {
 /// The messages between host, master, slaves and renderers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum UpdateOrder {
-    /// Host to all GPs: an update.
+    /// Host to all graphics processors: an update.
     Send(FaceUpdate),
     /// Master to slaves: apply the edits of an update, then transform.
     Edit(PictureNumber),
