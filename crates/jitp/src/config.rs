@@ -74,8 +74,8 @@ pub struct Beam {
 pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 
 impl Beam {
-    /// Creates a beam. `when` returns the time at which the beam reaches a given field, row of the field and pixel.
-    /// `retrace` returns the time at which a field begins.
+    /// Creates a beam. The arguments of `when` are a field, a row of the field and a pixel of the row. `when` returns
+    /// the time at which the beam reaches the pixel. `retrace` returns the time at which a field begins.
     pub fn new(
         when: impl Fn(PeriodNumber, u32, u32) -> Time + Send + Sync + 'static,
         retrace: impl Fn(PeriodNumber) -> Time + Send + Sync + 'static,

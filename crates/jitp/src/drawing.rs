@@ -73,7 +73,7 @@ impl Ends {
     }
 }
 
-/// Returns the positions of each structure's triangles in both views.
+/// Returns the screen positions of the corners of each structure's triangles, in both views.
 fn triangle_ends(
     list: &DisplayList,
     from: &FrameView,
@@ -84,8 +84,8 @@ fn triangle_ends(
     placed.map(|(from, to)| structure_ends(list, &from, &to)).collect()
 }
 
-/// Returns the positions of one structure's triangles in both views. The result is `None` for a triangle without a
-/// position in one of the views.
+/// Returns the screen positions of the corners of one structure's triangles, in both views. The result is `None` for a
+/// triangle without a position in one of the views.
 fn structure_ends(list: &DisplayList, from: &PlacedStructure, to: &PlacedStructure) -> Vec<Option<TriangleEnds>> {
     let numbers = from.structure.triangles.clone();
     numbers.map(|number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number))).collect()
@@ -200,8 +200,8 @@ impl DrawnList {
         });
     }
 
-    /// Returns the work of interpolating the primitives near the given windows. Returns `None` if there is only one
-    /// view.
+    /// Returns the work of interpolating the primitives near `windows` (rectangles of the screen). Returns `None` if
+    /// there is only one view.
     ///
     /// The last parameter has two parts of the board's memory, `ends` and `commands`. The part `ends` holds the
     /// triangles of both views. The part `commands` receives the commands of the interpolated primitives.

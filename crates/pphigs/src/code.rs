@@ -43,7 +43,8 @@ const MOST_PIECES: u32 = 7;
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
 pub(crate) const BUDGET: u64 = 10_000;
 
-/// Returns the instruction limit of a call for the given number of primitives.
+/// Returns the largest number of instructions that one call of a kernel may execute. `primitives` is the number of
+/// primitives that the call transforms.
 pub(crate) const fn budget(primitives: u32) -> u64 {
     BUDGET + BUDGET_OF_PRIMITIVE * primitives as u64
 }

@@ -74,11 +74,11 @@ impl Work for BinHandoffWork<'_> {
 }
 
 impl BinHandoffWork<'_> {
-    /// Returns the parameters that describe the envelope.
+    /// Returns the parameters for the commands before and after a region's primitives.
     ///
     /// The first six parameters are address and length in words of three command sequences. The sequences are the start
-    /// of the region, the start of every further message, and the end of the region. The seventh parameter is the
-    /// number of words of a message without primitives and without the end of the region.
+    /// of the region, the start of every message after the first message, and the end of the region. The seventh
+    /// parameter is the number of words of a message without primitives and without the end of the region.
     fn enclosing(&self) -> [Word; 7] {
         let words = |kind: CommandKind, is_there: bool| kind.words() * u32::from(is_there);
         let contexts = self.pass.picture().layout.plan().contexts > 1;

@@ -45,8 +45,8 @@ pub(crate) const WINDOWS: u32 = 0x7_9000;
 pub(crate) const REGION_WINDOWS: u32 = 0x7_9C00;
 /// Address of the coordinates of the upper left pixel of each window (rectangle of the screen).
 pub(crate) const WINDOW_PLACES: u32 = 0x7_AE00;
-/// Address of the lists of primitives in windows (rectangles of the screen). The lists are given by start and end
-/// addresses, as bins are (see [`bins`]).
+/// Address of the lists of primitives in windows (rectangles of the screen). Each list has a start and an end address,
+/// like a bin (see [`bins`]).
 pub(crate) const WINDOW_LISTS: u32 = 0x7_B000;
 /// Address of the records of stored passes, one record for each part of memory. A stored pass is the result of a
 /// TRANSFORM without bins, which a part of memory holds for later searches.

@@ -187,8 +187,8 @@ impl Pass {
     }
 }
 
-/// Work of searching a stored pass (the result of a TRANSFORM in a part of memory) for the primitives in the given
-/// windows (rectangles of the screen).
+/// Work of searching a stored pass (the result of a TRANSFORM in a part of memory). The search finds the primitives in
+/// each window, which is a rectangle of the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowSearchWork<'a> {
     /// Part of memory that holds the result of the TRANSFORM to search.

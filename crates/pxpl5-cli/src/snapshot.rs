@@ -83,8 +83,8 @@ impl Simulated {
 const KEYS_BESIDE_SNAPSHOT: [&str; 4] = ["fields", "pixels", "measure", "output."];
 
 impl SnapshotArgs {
-    /// Returns the experiment of the checkpoint, changed by the given settings. Returns `given` if no checkpoint is
-    /// restored.
+    /// Returns the experiment of the checkpoint, changed by the settings in `given`. Returns `given` if no checkpoint
+    /// is restored.
     ///
     /// # Errors
     ///

@@ -151,8 +151,8 @@ impl SweepFolderArgs {
 }
 
 impl SweepArgs {
-    /// Returns an error if the estimated time or memory of a sweep exceeds a given limit. The check takes place before
-    /// the sweep starts.
+    /// Returns an error if the estimated time or memory of a sweep exceeds the limits of the options. The check takes
+    /// place before the sweep starts.
     fn admit(&self, sweep: &Sweep, threads: usize) -> Result<(), CliError> {
         // The estimate of hundreds of points takes seconds, so a sweep without limits skips the estimate.
         if self.max_memory.is_none() && self.max_seconds.is_none() {

@@ -129,8 +129,8 @@ impl Conic {
         }
     }
 
-    /// Rounds the conic to fixed point, for evaluation at the frame's pixels in `rectangle`. The rectangle is given by
-    /// its first and last pixel along x, and along y.
+    /// Rounds the conic to fixed point, for evaluation at the frame's pixels in `rectangle`. `rectangle` has the first
+    /// and the last pixel along x, then along y.
     ///
     /// The values are scaled by a power of two: the largest power with which the values fit into 46 bits on the whole
     /// rectangle. The coefficients are rounded with pixel (px, py) as origin, then converted exactly to pixel (0, 0) as

@@ -188,7 +188,7 @@ impl PhongLanes {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: Some(colours) }
     }
 
-    /// Returns the expressions of triangle `i`, with the given colour.
+    /// Returns the expressions of triangle `i`. `colour` is the colour of the whole triangle.
     ///
     /// # Panics
     /// Panics if `i` is not below [`LANES`].

@@ -44,7 +44,7 @@ pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
-/// Returns the distance along one axis from a corner (given in subpixels) to the centre of a pixel, in pixels.
+/// Returns the distance along one axis from a corner to the centre of a pixel, in pixels. `corner` is in subpixels.
 #[inline(always)]
 fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)

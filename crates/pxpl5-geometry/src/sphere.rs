@@ -54,7 +54,8 @@ pub struct ScreenSphere {
 impl ScreenSphere {
     /// Returns true if the bounding box of the sphere's image meets a rectangle.
     ///
-    /// The rectangle is given by its first and last pixel along x, and by its first and last frame line.
+    /// `across` has the first and the last pixel of the rectangle along x. `lines` has the first and the last frame
+    /// line of the rectangle.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         self.ellipse.bounds().is_some_and(|[x, y]| overlaps(pixels(x), across) && overlaps(pixels(y), lines))

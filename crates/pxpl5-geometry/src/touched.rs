@@ -72,8 +72,8 @@ impl Touched {
 impl Transform {
     /// Finds the regions that each triangle of a list touches. The results equal the results of [`Self::bin`].
     ///
-    /// Triangles are given by the indices of their corners. `vertices` begins with the vertex of index `first`. The
-    /// vertices must come from this view.
+    /// `triangles` has the indices of the corners of each triangle. `vertices` begins with the vertex of index `first`.
+    /// The vertices must come from this view.
     ///
     /// # Panics
     /// Panics if a corner's index is not in `vertices`.

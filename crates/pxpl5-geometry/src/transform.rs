@@ -260,8 +260,8 @@ impl Transform {
         self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
-    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines. Callers can bin the outlines into
-    /// other regions than the regions of the picture.
+    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines. With an outline, `sink` can find the
+    /// touched regions of another grid of regions.
     #[inline]
     pub fn outlines(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         self.triangle(positions, |_| [0.0; 3], stats, |outline, _| sink(&outline));

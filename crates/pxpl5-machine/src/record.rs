@@ -146,7 +146,7 @@ impl Record {
         self.display().tick(period)
     }
 
-    /// Returns the start of period `period` of the display `board`. For a board of another kind, the periods of the
+    /// Returns the start of period `period` of the display `board`. If `board` is not a display, the periods of the
     /// first display count.
     pub(crate) fn period_start(&self, board: Board, period: PeriodNumber) -> Time {
         let display = if let Board::Display(number) = board { number } else { 0 };

@@ -80,8 +80,8 @@ fn kind(array: &Bound<'_, PyAny>) -> PyResult<char> {
     array.getattr("dtype")?.getattr("kind")?.extract()
 }
 
-/// Checks that an array has two dimensions and the given number of columns. An empty array of one dimension becomes an
-/// array without rows.
+/// Checks that an array has two dimensions and `columns` columns. An empty array of one dimension becomes an array
+/// without rows.
 fn as_rows<'py>(name: &str, array: &Bound<'py, PyAny>, columns: usize) -> PyResult<Bound<'py, PyAny>> {
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
     match shape[..] {

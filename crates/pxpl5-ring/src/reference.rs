@@ -81,7 +81,7 @@ impl Receivers for Elastic {
     }
 }
 
-/// The reference model: a ring whose time advances tick by tick. The messages are given in advance.
+/// The reference model: a ring whose time advances tick by tick. All messages are known before the first tick.
 #[derive(Debug)]
 pub struct SteppedRing<'a, R> {
     timing: RingTiming,

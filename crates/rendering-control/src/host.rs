@@ -12,8 +12,9 @@ use pxpl5_wire::{PictureNumber, ViewNumber};
 ///
 /// SEND of a frame must not begin before EDIT of the previous frame has finished (TR94).
 ///
-/// `start_of` gets the time at which the host is ready for a frame. The function returns the time at which the frame
-/// begins, or `None` if no further frame begins. `view_of` returns a view whose pose is sampled at the given time.
+/// The argument of `start_of` is the time at which the host is ready for a frame. `start_of` returns the time at which
+/// the frame begins, or `None` if no more frames begin. `view_of` returns a view whose pose is sampled at the given
+/// time.
 ///
 /// # Errors
 ///

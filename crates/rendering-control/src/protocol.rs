@@ -35,7 +35,7 @@ pub(crate) enum RegionEnd {
     Held,
     /// The region goes to the renderer's backing store and stays there until the master sends a copy command.
     Stored,
-    /// The region goes through the backing store to its frame buffer, without a further command.
+    /// The region goes through the backing store to its frame buffer. The master sends no copy command.
     Copied,
 }
 

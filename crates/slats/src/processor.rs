@@ -18,8 +18,8 @@ use std::sync::Arc;
 /// Largest number of primitives in a clump. The commands of a clump for one region fit into one message (TR94).
 pub const CLUMP: usize = 30;
 
-/// First word of the message by which another graphics processor notifies the leading graphics processor that all of
-/// its clumps of a field were accepted. The number of the field follows this word.
+/// First word of a message to the leading graphics processor. With this message, the sender reports that all of its
+/// clumps of a field were accepted. The number of the field follows this word.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 
 /// First word of the message by which the leading graphics processor begins a field on the other graphics processors.

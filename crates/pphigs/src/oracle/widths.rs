@@ -1,9 +1,9 @@
-//! Widths of those parts of a pixel's memory that depend on the layout.
+//! Numbers of bits of a pixel's values, as far as the layout of pixel memory determines them.
 
 use pxpl5_renderer::Layout;
 use pxpl5_wire::format::{Z_BITS, Z_FRACTION_BITS};
 
-/// Numbers of bits of those values of a pixel that depend on the layout of pixel memory.
+/// Numbers of bits of a pixel's values, as far as the layout of pixel memory determines them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Widths {
     z_bits: u32,

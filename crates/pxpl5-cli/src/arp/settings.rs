@@ -111,7 +111,8 @@ impl WalkArgs {
         self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
     }
 
-    /// Returns the parameters of the display with cube faces, with the given lens and settings.
+    /// Returns the parameters of the display with cube faces. `lens` and `sets` are the values of the options `--lens`
+    /// and `--set`.
     ///
     /// # Errors
     ///

@@ -106,7 +106,7 @@ fn read(ram: &Ram, (address, count): (u32, usize)) -> Result<Span, String> {
     Ok(Span { address, words })
 }
 
-/// Returns the first [`CHANGED_SHOWN`] changed memory words, joined into ranges, and the number of further changed
+/// Returns the first [`CHANGED_SHOWN`] changed memory words, joined into ranges, and the number of all other changed
 /// words.
 fn changed(before: &Ram, after: &Ram) -> (Vec<Span>, usize) {
     let words = |ram: &'_ Ram| -> Vec<u32> {

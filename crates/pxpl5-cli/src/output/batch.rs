@@ -58,8 +58,8 @@ fn is_temporary(name: &OsStr) -> bool {
 }
 
 /// Removes temporary files of processes that ended without removing them. Such a file can be recognized, because no
-/// process holds its lock. The caller must hold the folder's lock. Otherwise another process may be between creating
-/// and locking a file, or replacing files.
+/// process holds its lock. The folder must be locked during the call. Without this lock, another process may be between
+/// creating and locking a file, or may be replacing files.
 pub(super) fn remove_leftover_files(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {
