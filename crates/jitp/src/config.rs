@@ -22,8 +22,8 @@ pub enum Interpolation {
     View,
 }
 
-/// The choice of the times for which the parts of a field's picture are computed. Each part shows the scene as seen by
-/// the viewer at the time of this part.
+/// The instants for which the parts of a field's picture are drawn. Each part shows the scene as seen by the viewer at
+/// one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
     /// One time for the whole field.

@@ -60,7 +60,8 @@ impl BudgetArgs {
         Self { max_memory: max_memory.unwrap_or(u64::MAX), max_seconds: max_seconds.unwrap_or(u64::MAX) }
     }
 
-    /// Returns an error if the estimate of a run, before its start, exceeds the budget.
+    /// Returns an error if the estimated memory or time of a run exceeds the budget. The check takes place before the
+    /// run starts.
     ///
     /// # Errors
     ///

@@ -408,8 +408,8 @@ impl LanePlanes {
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 
-    /// Returns, for each triangle, the plane through one value at each corner, over the frame's pixels. Planes that are
-    /// too steep are replaced by planes with a constant value, and counted in `flattened`.
+    /// Returns, for each triangle, the plane through one value at each corner, over the frame's pixels. Planes with a
+    /// slope above `MAX_SLOPE` are replaced by planes with a constant value, and counted in `flattened`.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();

@@ -186,7 +186,7 @@ fn component([a, b, c]: &[[f32; 3]; 3], number: usize) -> [f64; 3] {
     [f64::from(a[number]), f64::from(b[number]), f64::from(c[number])]
 }
 
-/// Returns the middle pixel of the corners' range along one axis, after the range is limited to a picture of `size`
+/// Returns the middle pixel of the corners' range along one axis. The range is first limited to a picture of `size`
 /// pixels.
 #[inline(always)]
 fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {

@@ -156,7 +156,8 @@ impl ToScreen {
     }
 }
 
-/// Outline of a screen triangle, and the relation between the outline's order of corners and the order of the input.
+/// Outline of a screen triangle. The struct also states how the outline's order of corners differs from the order in
+/// the display list.
 pub(crate) struct Assembled {
     pub(crate) outline: Outline,
     /// True if corners 1 and 2 were exchanged, so that the corners run clockwise.

@@ -50,7 +50,7 @@ pub(crate) const LOOK: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 ///
-/// `KeyboardInterrupt`, any exception of the callback, or `RunError` if the work panics because of a bug in the
+/// Raises `KeyboardInterrupt`, any exception of the callback, or `RunError` if the work panics because of a bug in the
 /// emulator.
 pub(crate) fn attended<T: Send + 'static>(
     py: Python<'_>,

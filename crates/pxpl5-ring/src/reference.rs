@@ -50,8 +50,8 @@ pub struct CarriedMessage {
     pub released: Time,
 }
 
-/// The receivers in the reference model. The model calls these functions for every message and word, with times at the
-/// receiver.
+/// The receivers in the reference model. The model calls these functions for every message and word. The argument `at`
+/// is the time at the receiver.
 pub trait Receivers {
     /// Returns true if the receiver is elastic: it accepts every word immediately.
     fn is_elastic(&self, destination: NodeId) -> bool;
@@ -147,7 +147,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     /// Advances tick by tick until all messages are delivered. Returns the times of each message, in the order of the
-    /// traffic.
+    /// messages in `traffic`. A tick is a step of the model's time, with the length `tick`.
     ///
     /// # Errors
     ///

@@ -189,8 +189,8 @@ impl Ring {
         &self.refusals
     }
 
-    /// Returns the number of occupied channels. After [`Ring::watch`] was called, the number is correct after every
-    /// event.
+    /// Returns the number of occupied channels. After a call of [`Ring::watch`], the number is correct after every
+    /// event. Without this call, the channel of an ended message can still count as occupied.
     #[must_use]
     pub fn busy_channels(&self) -> u32 {
         self.channels.busy()

@@ -38,8 +38,8 @@ struct ProcessorState {
     bottom: Option<Bottom>,
     /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],
-    /// For each unfinished field: the number of graphics processors, without the leading processor, that have finished their
-    /// share of the field.
+    /// For each unfinished field: the number of graphics processors that have finished their share of the field, not
+    /// counting the leading graphics processor.
     finished: Vec<(PeriodNumber, usize)>,
 }
 
