@@ -49,7 +49,7 @@ struct Between {
     view: FrameView,
 }
 
-/// The transformed display list, either for the start and the end of a field, or for one time only.
+/// The transformed display list, either for the start and the end of a field, or for one instant only.
 #[derive(Clone)]
 pub(crate) struct Ends {
     pub(crate) views: Arc<[FrameView]>,

@@ -1,8 +1,8 @@
 //! CPU work of sending a region's bin. The code lists the messages with the region's commands as pieces of memory,
 //! which the ring interface then sends.
 //!
-//! The code is kernels/token.s. It reads the bin's entries, which the code of TRANSFORM has written. The commands stay
-//! in their place in memory. In the timing table, each entry takes `token_entry_ns`.
+//! The code is kernels/token.s. This code reads the bin's entries, which the code of TRANSFORM has written. The
+//! commands themselves are not moved in memory. In the timing table, each entry takes `token_entry_ns`.
 
 use crate::commands::RegionEnvelope;
 use crate::layout::{ENVELOPES, LISTS, LISTS_END, PIECES, TOKEN_CODE, TOKEN_PARAMETERS, bins};

@@ -22,8 +22,8 @@ pub struct DisplayList {
     pub triangles: Vec<[u32; 3]>,
     /// Spheres in their structure's coordinates.
     pub spheres: Vec<WorldSphere>,
-    /// Structures, in the order of their triangles and of their spheres. The ranges of successive structures have no
-    /// gaps.
+    /// Structures, in ascending order of their ranges of triangles and of spheres. No gap separates the ranges of
+    /// successive structures.
     pub structures: Vec<DisplayStructure>,
     /// Unit vector towards the light source, in the coordinates of each structure's frame of reference (the room or the
     /// head).

@@ -371,7 +371,7 @@ impl Pass {
         self.walk.share.list.background
     }
 
-    /// Returns the light source in the eye coordinates of the first structure.
+    /// Returns the light source of the first structure, in eye coordinates.
     #[must_use]
     pub fn light(&self) -> Option<&Light> {
         self.walk.placed.first().map(|placed| &placed.light)

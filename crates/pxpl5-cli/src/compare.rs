@@ -203,8 +203,8 @@ fn edges(query: &CompareQuery, deg_per_s: f64, folder: &mut OutputFolder) -> Res
     Ok(())
 }
 
-/// Returns the machine for the pictures of a vertical edge: the machine of the comparison as the pipeline `jitp-field`
-/// configures it.
+/// Returns the machine for the pictures of a vertical edge: the machine of the comparison, configured for the pipeline
+/// `jitp-field`.
 fn machine(query: &CompareQuery) -> Result<MachineConfig, CliError> {
     let mut file = query.shared.clone();
     file.set("pipeline", "jitp-field", "compare")?;

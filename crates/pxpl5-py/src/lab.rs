@@ -332,7 +332,7 @@ pub(crate) fn rig<'py>(
     )
 }
 
-/// The measurement of the levels that is recorded in the repository.
+/// The recorded measurement of the speed and error of each level of modelling, as JSON.
 const LEVELS: &str = include_str!("../../pxpl5-cli/src/levels.json");
 
 /// Compares the levels of modelling by error and speed. Without ``experiments`` the result is the measurement that is

@@ -24,7 +24,8 @@ pub(crate) struct Token {
     pub(crate) renderer: u16,
     /// Number of slaves that have not sent their bins yet, including the slave that holds the token.
     pub(crate) slaves_left: u16,
-    /// Destination of the region's pixels at its end. The last slave adds the command for this destination.
+    /// Destination of the region's pixels after the region's last commands. The last slave adds the command for this
+    /// destination.
     pub(crate) end: RegionEnd,
 }
 

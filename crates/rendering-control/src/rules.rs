@@ -57,7 +57,7 @@ pub struct Completed {
 }
 
 impl Completed {
-    /// Returns the state at power-on. No frame or drawing has passed any stage.
+    /// Returns the progress at power-on. No frame or drawing has passed any stage.
     #[must_use]
     pub const fn none(eyes: u64) -> Self {
         Self { eyes, sent: 0, edited: 0, transformed: 0, rendered: 0, copied: 0, swapped: 0 }
