@@ -83,8 +83,8 @@ impl WebMachine {
     ///
     /// # Errors
     ///
-    /// Returns a message if a row is invalid or not later than existing rows, or if the visitor does not move the head of this
-    /// experiment.
+    /// Returns a message if a row is invalid or not later than existing rows, or if the visitor does not move the head
+    /// of this experiment.
     pub fn moved(&self, rows: &str) -> Result<(), JsError> {
         self.0.moved(rows).map_err(refused)
     }

@@ -43,8 +43,8 @@ pxpl5_sim::parameters::parameter_table! {
         active_permille: 950, "1/1000", Assumed, 800..=1000 in 1..=1000, "the rest is blanking";
         /// Time for which each pixel is switched on in each scan.
         persistence_us: 2000, "us", Assumed, 1000..=3000 in 0..=1_000_000, "low persistence is 3 ms or less (Abrash 2013, 2014)";
-        /// Time constant (first-order lag) of a pixel's brightness. The brightness follows the switching of the pixel with
-        /// this lag.
+        /// Time constant (first-order lag) of a pixel's brightness. The brightness follows the switching of the
+        /// pixel with this lag.
         response_us: 100, "us", Assumed, 10..=100 in 0..=1_000_000, "OLED switches in less than 0.1 ms";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 8, "ports", Assumed, 1..=8 in 1..=8, "the number of channels of the ring. With 1 port, at most 13 pictures of 90 regions per second reach the display";
@@ -78,8 +78,8 @@ pxpl5_sim::parameters::parameter_table! {
         active_permille: 950, "1/1000", Assumed, 800..=1000 in 1..=1000, "the flash begins when the panel is written and liquid crystals have settled";
         /// Time for which the backlight is on in each scan.
         persistence_us: 330, "us", Assumed, 330..=530 in 0..=1_000_000, "an assumed panel: 0.330 to 0.530 ms in Valve Index (2019), depending on the rate";
-        /// Time constant (first-order lag) of a pixel's brightness. The brightness follows the switching of the backlight
-        /// with this lag.
+        /// Time constant (first-order lag) of a pixel's brightness. The brightness follows the switching of the
+        /// backlight with this lag.
         response_us: 0, "us", Assumed, 0..=0 in 0..=1_000_000, "the backlight switches at once; crystals settle before it";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 8, "ports", Assumed, 1..=8 in 1..=8, "the number of channels of the ring";
@@ -110,8 +110,8 @@ pxpl5_sim::parameters::parameter_table! {
         active_permille: 1000, "1/1000", Assumed, 1..=1000, "an experiment's own";
         /// Time for which each pixel is switched on in each scan.
         persistence_us: 0, "us", Assumed, 0..=1_000_000, "an experiment's own; at most a period";
-        /// Time constant (first-order lag) of a pixel's brightness. The brightness follows the switching of the pixel with
-        /// this lag.
+        /// Time constant (first-order lag) of a pixel's brightness. The brightness follows the switching of the
+        /// pixel with this lag.
         response_us: 0, "us", Assumed, 0..=1_000_000, "an experiment's own";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 1, "ports", Assumed, 1..=8, "an experiment's own; the ring has 8 channels";

@@ -32,7 +32,7 @@ struct UpdateProgress {
     transformed: usize,
     /// Number of entries in each region's bin. The number is a sum over the slaves that have transformed the update.
     entries: Vec<u64>,
-    /// True if the display memory has received the list of the regions that will arrive.
+    /// True if the master has sent the display memory the list of the regions that will arrive.
     announced: bool,
     /// Number of regions of this update that have not arrived in the display memory. `None` before RENDER begins.
     missing: Option<u64>,
