@@ -136,7 +136,8 @@ struct Expressions {
     edges: [LinearLanes; 3],
     /// Linear expressions of depth and of three components of colour or normal, in this order.
     planes: [LinearLanes; 4],
-    /// For each triangle, the number of planes that were too steep and were replaced by planes with a constant value.
+    /// For each triangle, the number of planes that were steeper than `MAX_SLOPE` and were replaced by planes with a
+    /// constant value.
     flattened: EachLane<u8>,
 }
 

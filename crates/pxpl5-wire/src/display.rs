@@ -114,7 +114,7 @@ pub trait Display: Any + Debug + Send + Sync {
     /// Returns the time at which a period begins: a tick of the display's clock. The first period begins at time zero.
     fn tick(&self, period: PeriodNumber) -> Time;
 
-    /// Returns the number of the period that contains an instant. At a tick this is the period that begins.
+    /// Returns the number of the period that contains an instant. At a tick, the result is the period that begins.
     fn period_at(&self, time: Time) -> PeriodNumber;
 
     /// Handles one event. New events and outputs are passed to `context`.

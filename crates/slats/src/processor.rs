@@ -49,8 +49,8 @@ struct Bottom {
     chain: Chain,
     /// Field of the bottom regions.
     field: PeriodNumber,
-    /// Earliest field period in which the copies may start. Without a backup buffer, this is the period that shows the
-    /// field.
+    /// Earliest field period in which the copies may start. Without a backup buffer, the copies may start in the period
+    /// that shows the field.
     not_before: PeriodNumber,
     /// Number of renderers that copy top regions. The bottom copies start after all these renderers have acknowledged
     /// their copies.

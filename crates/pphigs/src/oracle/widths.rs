@@ -28,5 +28,5 @@ impl Widths {
     }
 }
 
-/// Number of bits of the square root for which a sphere's operands are computed.
+/// Number of bits of the square root that the computation of a sphere's operands assumes.
 pub(crate) const ROOT_BITS: u32 = 12;

@@ -30,7 +30,7 @@ struct Staged {
     lock: Option<File>,
 }
 
-/// A file name that `commit` has changed, with the path at which its previous contents are kept.
+/// A file that `commit` has put in place, with the path at which the previous contents of the file are kept.
 struct Placed {
     name: PathBuf,
     before: Option<PathBuf>,

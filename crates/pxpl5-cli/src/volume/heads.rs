@@ -1,4 +1,5 @@
-//! The command `pxpl5 volume view --head`. Compares a volume with a head-mounted display, as a moving head sees both.
+//! The command `pxpl5 volume view --head`, which compares a volume with a head-mounted display, as a moving head sees
+//! both.
 
 use super::settings::{VolumeSettingArgs, origin};
 use crate::error::CliError;
