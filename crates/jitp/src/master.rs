@@ -192,7 +192,7 @@ struct Expected {
 /// Times of recent orders, from which the master estimates the duration of the next order.
 struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
-    /// Times of the orders of the last pass over all blocks of the frame, oldest first.
+    /// Times of the orders of the last round, oldest first. In a round, every block of the frame is drawn once.
     pass: VecDeque<Time>,
     orders_of_pass: usize,
 }

@@ -134,8 +134,7 @@ impl TransformWork<'_> {
 }
 
 impl Share {
-    /// Stores all primitives of the graphics processor in a board's memory. The function also stores all primitives if
-    /// this share is only a clump.
+    /// Stores all primitives of the graphics processor in a board's memory, even if this share is only a clump.
     ///
     /// # Errors
     ///

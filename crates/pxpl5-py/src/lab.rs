@@ -255,7 +255,7 @@ pub(crate) fn limit_over<'py>(
 /// search tries more values, the end of the progress bar moves.
 const VALUES: u64 = 12;
 
-/// Limit below which every whole number is exact as a real number.
+/// Limit below which a 64-bit floating-point number represents every whole number exactly.
 const MAX_WHOLE: f64 = 1e15;
 
 /// Compares two reports, each as JSON text. Returns a dictionary with same_trace, settings, results and equal.

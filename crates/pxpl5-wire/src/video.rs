@@ -37,7 +37,7 @@ pub struct Video {
 }
 
 impl Video {
-    /// Makes the video signal described by these numbers. Returns `None` if a number is too large for a clock.
+    /// Makes the video signal that `numbers` describes. Returns `None` if a number is too large for a clock.
     #[must_use]
     pub const fn new(numbers: VideoNumbers) -> Option<Self> {
         let VideoNumbers { pixel_ps, pixel_divisor, line_pixels, frame_lines, .. } = numbers;

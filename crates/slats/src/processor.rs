@@ -36,7 +36,7 @@ struct ProcessorState {
     copied: usize,
     /// The prepared copies of the bottom regions. These copies wait until all top regions are copied.
     bottom: Option<Bottom>,
-    /// Index of the buffer with the last complete field, for even and for odd lines.
+    /// For even and for odd lines: index of the buffer with the last complete field of these lines.
     complete: [u8; 2],
     /// For each unfinished field: the number of graphics processors that have finished their share of the field, not
     /// counting the leading graphics processor.
