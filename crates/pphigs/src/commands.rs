@@ -27,8 +27,8 @@ use std::sync::Arc;
 pub struct RegionEnvelope {
     /// True if the commands begin with the selection and clearing of the region's context in pixel memory.
     pub begin: bool,
-    /// True if the region ends with the shading of all its pixels. Only pictures with Phong shading have such a
-    /// command.
+    /// True if the region ends with the shading of all its pixels. Only pictures with Phong shading have a command for
+    /// this shading.
     pub shade: bool,
     /// Copy of the region to the frame buffer at the end. `None` if the region is not copied.
     pub copy: Option<CopyOrder>,

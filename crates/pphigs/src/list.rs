@@ -30,7 +30,7 @@ pub struct DisplayList {
     pub towards_light: Vec3,
     /// Fraction of the colour that is visible in shadow, 0 to 1.
     pub ambient: f32,
-    /// Fraction of the colour that perpendicular light adds to the ambient light, 0 to 1.
+    /// Fraction of the colour that light perpendicular to the surface adds to the ambient light, 0 to 1.
     pub diffuse: f32,
     /// Background colour: red, green, blue.
     pub background: [u8; 3],

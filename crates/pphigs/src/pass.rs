@@ -87,8 +87,8 @@ struct Found {
 struct PrimitiveCounter {
     /// For each region, the number of triangles that touch only that region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// For each region, the number of touching triangles that also touch other regions, and the number of touching
-    /// spheres.
+    /// For each region, the number of triangles that touch this region and also other regions, and the number of
+    /// spheres that touch this region.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,

@@ -295,9 +295,9 @@ impl Kernel {
         words.0
     }
 
-    /// Returns the scale and the offset that convert a surface value to a plane value, for the front and for the back
-    /// of a triangle. The offset adds half a unit for rounding, and removes the constant [`ROUND_SINGLE`] that an
-    /// earlier step has added.
+    /// Returns the scale and the offset that convert a surface value to the units of plane expressions, for the front
+    /// and for the back of a triangle. The offset adds half a unit for rounding, and removes the constant
+    /// [`ROUND_SINGLE`] that an earlier step has added.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),

@@ -47,8 +47,8 @@ pub struct WaitingMessage {
     pub destination: NodeId,
     /// Length in words, without the overhead.
     pub words: u32,
-    /// Time at which the message was granted. Before the grant, time at which the message became the first of its
-    /// queue.
+    /// Time at which the message was granted. If the message is not granted yet, time at which the message became the
+    /// first of its queue.
     pub since: Time,
     /// Condition that the message waits for.
     pub reason: WaitReason,
