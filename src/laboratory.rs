@@ -100,7 +100,7 @@ pub use pxpl5_lab::{
     tracking_parameters,
 };
 
-/// Further parts of the laboratory.
+/// Names of the laboratory that few programs need: trackers, predictors, and estimates of the cost of a run.
 pub mod lab {
     /// ```
     /// use pxpl5::lab::{FileKey, PathChoice};

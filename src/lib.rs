@@ -159,7 +159,8 @@ pub use pxpl5_volume as volume;
 pub use pxpl5_wire::display;
 pub use tracking;
 
-/// Further parts of an outcome: cube faces around the viewer's head, updates, and texts about boards.
+/// Names that few readers of an outcome need: cube faces around the viewer's head, updates of display memories, and
+/// conversions.
 pub mod run {
     pub use pxpl5_run::{
         ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, FrameStarts, KEPT_SAMPLES,
@@ -169,7 +170,7 @@ pub mod run {
     };
 }
 
-/// Further parts of the evaluation of an outcome.
+/// Names that few evaluations of an outcome need, such as the parts of a [`Report`] and the use of each kind of board.
 pub mod measure {
     pub use pxpl5_measure::{
         FacesReport, GpUtilisation, MemoryReport, PICTURES_FOLLOWED, PortShare, PortUtilisation, RendererUtilisation,

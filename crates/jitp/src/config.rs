@@ -22,8 +22,8 @@ pub enum Interpolation {
     View,
 }
 
-/// The choice of the times for which the parts of a field's picture are computed. Each part shows the scene as seen by
-/// the viewer at the time of this part.
+/// The instants for which the parts of a field's picture are drawn. Each part shows the scene as seen by the viewer at
+/// one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
     /// One time for the whole field.
@@ -74,8 +74,8 @@ pub struct Beam {
 pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 
 impl Beam {
-    /// Creates a beam. `when` returns the time at which the beam reaches a given field, row of the field and pixel.
-    /// `retrace` returns the time at which a field begins.
+    /// Creates a beam. The arguments of `when` are a field, a row of the field and a pixel of the row. `when` returns
+    /// the time at which the beam reaches the pixel. `retrace` returns the time at which a field begins.
     pub fn new(
         when: impl Fn(PeriodNumber, u32, u32) -> Time + Send + Sync + 'static,
         retrace: impl Fn(PeriodNumber) -> Time + Send + Sync + 'static,
@@ -124,10 +124,10 @@ impl fmt::Debug for BlockOrder {
 pub struct Wanted {
     /// Number that the view gets: see [`JitpConfig::view_number`].
     pub number: ViewNumber,
-    /// Time limit of the reports. The view must use only reports that the host received before this time. Later reports
-    /// have not reached the master.
+    /// Instant that limits the reports: the view must use only reports that the host received before this instant.
+    /// Later reports have not reached the master.
     pub known: Time,
-    /// Time for which the view is drawn.
+    /// Instant for which the view is drawn.
     pub shown_at: Time,
 }
 
@@ -136,9 +136,9 @@ pub struct Wanted {
 pub struct JitpConfig {
     /// Ring port of the host, which forwards the tracker's reports.
     pub host: NodeId,
-    /// Ring port of the GP that follows the beam and orders strips or blocks.
+    /// Ring port of the graphics processor that follows the beam and orders strips or blocks.
     pub master: NodeId,
-    /// Ring ports of the slave GPs, at least one.
+    /// Ring ports of the slaves, at least one.
     pub slaves: Vec<NodeId>,
     /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,
@@ -148,8 +148,8 @@ pub struct JitpConfig {
     pub schedule: DrawingSchedule,
     /// Timing of the beam.
     pub beam: Beam,
-    /// Instant for which each view is drawn, chosen from the times at which the display shows the view. An example is
-    /// the middle of these times.
+    /// Rule that chooses the instant for which a view is drawn, for example the middle of the time during which the
+    /// display shows the view.
     pub aim: Aim,
     /// Division of pixel memory among contexts.
     pub layout: Layout,
@@ -204,7 +204,7 @@ impl JitpConfig {
         }
     }
 
-    /// Returns the regions of a strip.
+    /// Returns the regions of the strip with index `strip` in the grid of a field.
     pub(crate) fn strip_regions(&self, strip: u32) -> Vec<RegionId> {
         let columns = self.grid().columns();
         (strip * columns..(strip + 1) * columns).map(|region| RegionId(region as u16)).collect()
@@ -293,9 +293,9 @@ impl JitpConfig {
     /// If there are n slaves, each slave draws every n-th strip. Each slave thus has the time that the beam needs for n
     /// strips. If strips do not race the beam, the master orders the strips one field earlier.
     ///
-    /// Every second field uses the same lines of the frame buffer. A strip must not overwrite lines of the second
-    /// previous field that the beam has not scanned. A strip is therefore ordered only after the beam has scanned its
-    /// lines in this earlier field.
+    /// Field n and field n - 2 use the same lines of the frame buffer. A strip of field n is ordered only after the
+    /// beam has scanned the same lines in field n - 2. Otherwise the strip could overwrite lines that the beam has not
+    /// reached.
     pub(crate) fn lead(&self, racing: bool) -> Span {
         let first = PeriodNumber::FIRST;
         let begin = self.deadline(first, 0);

@@ -33,23 +33,23 @@ pub(crate) struct DrawnList {
     list: Arc<DisplayList>,
     viewport: Viewport,
     placed: Vec<PlacedStructure>,
-    /// Time between two views for which the list is drawn. `None` if the list has only one view.
+    /// Instant between two views for which the list is drawn. `None` if the list has only one view.
     between: Option<Between>,
     /// Triangles on the screen, computed at the first use. All strips of a conventional picture share these triangles.
     outlines: OnceLock<Vec<Outline>>,
 }
 
-/// A time between two views of a display list, and the interpolation for this time.
+/// An instant between two views of a display list, with the data to interpolate the list for this instant.
 struct Between {
     ends: Ends,
-    /// Position of this time, on a scale from the first view (0) to the second view (1).
+    /// Position of this instant on a scale from the first view (0) to the second view (1).
     part: f64,
     interpolation: Interpolation,
-    /// View at this time, with interpolated matrices.
+    /// View at this instant, with interpolated matrices.
     view: FrameView,
 }
 
-/// The transformed display list, either for the start and the end of a field, or for one time only.
+/// The transformed display list, either for the start and the end of a field, or for one instant only.
 #[derive(Clone)]
 pub(crate) struct Ends {
     pub(crate) views: Arc<[FrameView]>,
@@ -73,7 +73,7 @@ impl Ends {
     }
 }
 
-/// Returns the positions of each structure's triangles in both views.
+/// Returns the screen positions of the corners of each structure's triangles, in both views.
 fn triangle_ends(
     list: &DisplayList,
     from: &FrameView,
@@ -84,8 +84,8 @@ fn triangle_ends(
     placed.map(|(from, to)| structure_ends(list, &from, &to)).collect()
 }
 
-/// Returns the positions of one structure's triangles in both views. The result is `None` for a triangle without a
-/// position in one of the views.
+/// Returns the screen positions of the corners of one structure's triangles, in both views. The result is `None` for a
+/// triangle without a position in one of the views.
 fn structure_ends(list: &DisplayList, from: &PlacedStructure, to: &PlacedStructure) -> Vec<Option<TriangleEnds>> {
     let numbers = from.structure.triangles.clone();
     numbers.map(|number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number))).collect()
@@ -131,8 +131,8 @@ impl DrawnList {
         all
     }
 
-    /// Calls `sink` for each triangle on the screen. Triangles that cannot touch the lines `near` are left out. The
-    /// function [`near`] returns such a range of lines.
+    /// Calls `sink` for each triangle on the screen. The function leaves out triangles that cannot touch the range of
+    /// lines `near` (see the function [`near`]).
     fn each_outline(&self, near: [i32; 2], mut sink: impl FnMut(&Outline)) {
         let mut stats = SetupStats::default();
         for (i, place) in self.placed.iter().enumerate() {
@@ -147,8 +147,9 @@ impl DrawnList {
         }
     }
 
-    /// Returns the positions of the k-th triangle of a structure in both views, the position between the views, and the
-    /// mode of interpolation. Returns `None` if the triangle is not interpolated.
+    /// Returns data to interpolate the triangle with index `k` of a structure: its positions in both views, the
+    /// position of the drawn instant between the views (0 to 1), and the mode of interpolation. Returns `None` if the
+    /// triangle is not interpolated.
     fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Interpolation)> {
         let Between { ends, part, interpolation, .. } = self.between.as_ref()?;
         Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *part, *interpolation))
@@ -199,8 +200,8 @@ impl DrawnList {
         });
     }
 
-    /// Returns the work of interpolating the primitives near the given windows. Returns `None` if there is only one
-    /// view.
+    /// Returns the work of interpolating the primitives near `windows` (rectangles of the screen). Returns `None` if
+    /// there is only one view.
     ///
     /// The last parameter has two parts of the board's memory, `ends` and `commands`. The part `ends` holds the
     /// triangles of both views. The part `commands` receives the commands of the interpolated primitives.
@@ -246,8 +247,8 @@ fn span(windows: &[Window]) -> [i32; 2] {
     [top, bottom]
 }
 
-/// Returns true if a triangle stays outside a range of lines during the whole field. The range is given by two
-/// distances from the frame's top.
+/// Returns true if a triangle stays outside a range of lines during the whole field. `top` and `bottom` are the limits
+/// of the range, as distances from the frame's top.
 fn is_outside_lines(ends: &TriangleEnds, [top, bottom]: [i32; 2]) -> bool {
     let [least, greatest] = ends.y_range();
     least > bottom || greatest < top

@@ -10,9 +10,9 @@
 //!   frame buffer:             strip 0 | strip 1 ...            just before the beam
 //! ```
 //!
-//! - One GP is the [`master`](fn@master). The master synchronizes with the beam, stores the newest tracking data and
-//!   orders the strips. Slave k of n draws strips k, k + n, k + 2n and so on. For each strip, a slave has the time that
-//!   the beam needs for n strips. Every slave holds the whole display list.
+//! - One graphics processor is the [`master`](fn@master). The master synchronizes with the beam, stores the newest
+//!   tracking data and orders the strips. Slave k of n draws strips k, k + n, k + 2n and so on. For each strip, a slave
+//!   has the time that the beam needs for n strips. Every slave holds the whole display list.
 //! - A *strip* consists of one line or a few lines of a field ([`DrawingSchedule::Beam`]). The regions of a strip are
 //!   128 pixels wide. Successive regions use the renderers in turn. No second buffer is needed, because a field is
 //!   written while the beam scans the other field. If strips race the beam, each line is written just before the beam
@@ -26,10 +26,10 @@
 //! - All slaves draw in the same region context of a renderer. A region's commands may need several messages. These
 //!   messages reserve the renderer's port until the last message, which copies the region. No other slave can therefore
 //!   draw into the region.
-//! - Every second field uses the same lines of the frame buffer. For any number of slaves, a strip is therefore ordered
-//!   only after the beam has scanned the strip's lines in the second previous field.
-//! - A strip is skipped if the beam reaches the strip before a slave can begin to draw it. The lines of the earlier
-//!   field then stay on the screen.
+//! - Every second field uses the same lines of the frame buffer. For any number of slaves, a strip of field n is
+//!   therefore ordered only after the beam has scanned the same lines in field n - 2.
+//! - A strip is skipped if the beam reaches the strip before a slave can begin to draw it. The lines of field n - 2
+//!   then stay on the screen.
 //! - *Frameless* rendering ([`DrawingSchedule::Roam`]) draws blocks in a random order. Each order to a slave contains
 //!   the newest view. The blocks go directly into the visible buffer.
 //!
@@ -41,7 +41,8 @@
 //!   stores the positions of triangles at the start and at the end of the field.
 //! - For a strip between two views, code interpolates the triangles between these two positions. The strip begins with
 //!   a separate pass that uses the interpolated matrices.
-//! - Code finds the primitives in a strip or block by their bounding boxes, and sends them like the bin of a region.
+//! - Code finds the primitives in a strip or block by their bounding boxes, and sends the primitives' commands like the
+//!   bin of a region.
 //! - Code assembles the master's orders.
 //!
 //! With i860 code, the time from the order of a field to the field's first strip is a constant. The number of blocks in

@@ -1,4 +1,4 @@
-//! The master GP, which follows the beam, stores the newest tracking data and orders strips or blocks.
+//! The master, which follows the beam, stores the newest tracking data and orders strips or blocks.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
 use crate::ordering::OrderAssemblyWork;
@@ -182,8 +182,8 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 }
 
-/// Two expected durations. The first is the time from an order until its blocks are visible. The second is the time
-/// from then until other blocks replace these blocks.
+/// Two expected durations for an order of blocks: the time from the order until its blocks are visible, and the time
+/// from then on until newly drawn blocks replace these blocks.
 struct Expected {
     drawing: Span,
     standing: Span,
@@ -192,7 +192,7 @@ struct Expected {
 /// Times of recent orders, from which the master estimates the duration of the next order.
 struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
-    /// Times of the orders of the last pass over all blocks of the frame, oldest first.
+    /// Times of the orders of the last round, oldest first. In a round, every block of the frame is drawn once.
     pass: VecDeque<Time>,
     orders_of_pass: usize,
 }

@@ -60,8 +60,8 @@ fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     }
 }
 
-/// Returns the first part of `remaining`: as many primitives of `words_each` words as fit into `room_words`. Subtracts
-/// the words of these primitives from `room_words`.
+/// Returns the first primitives of `remaining`: as many primitives of `words_each` words as fit into `room_words`.
+/// Subtracts the words of these primitives from `room_words`.
 fn take_run(remaining: Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let n = (remaining.end - remaining.start).min(*room_words / words_each);
     *room_words -= n * words_each;
@@ -126,7 +126,8 @@ pub(crate) fn messages(
     lists.collect()
 }
 
-/// Computes the words of a region's messages on demand. The words of all primitives are computed only once.
+/// Source of the words of a region's messages, which are computed on demand. The words of all primitives are computed
+/// only once.
 #[derive(Debug)]
 struct RegionWords {
     drawing: Arc<DrawnList>,
@@ -187,8 +188,7 @@ impl CommandWords for RegionWords {
     }
 }
 
-/// Returns the words of some commands from `all`, the words of all commands of one kind. `numbers` is the range of the
-/// commands' indices.
+/// Returns the words of the commands with the indices `numbers`. `all` has the words of all commands of one kind.
 fn words_of<'a>(all: &'a [Word], numbers: &Range<u32>, kind: CommandKind) -> &'a [Word] {
     let [begin, end] = [numbers.start, numbers.end].map(|number| (number * kind.words()) as usize);
     debug_assert!(end <= all.len(), "as many commands as were counted");

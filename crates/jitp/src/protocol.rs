@@ -18,7 +18,7 @@ pub(crate) const REPORT_WORDS: u32 = 20;
 /// A message between the host, the master and the slaves.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum DrawingOrder {
-    /// Order to transform the whole display list for the views of a field.
+    /// Order to transform the whole display list for the view or the two views of a field.
     Field { field: PeriodNumber, views: Vec<FrameView> },
     /// Order to draw a strip, from its own view or from the views of its field.
     Strip { field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView> },

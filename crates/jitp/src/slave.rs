@@ -1,4 +1,4 @@
-//! A slave GP, which draws the strips of lines or the blocks that the master orders.
+//! A slave, which draws the strips of lines or the blocks that the master orders.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends};
@@ -161,7 +161,7 @@ impl Slave {
         self.gp.work(&WholeList { share, pass: *pass, views, viewport, layout: config.layout, part }).await
     }
 
-    /// Returns the newest field in the list of orders, and removes older fields from the list.
+    /// Returns the newest field that the master has ordered, and removes all fields from the list of orders.
     fn take_newest_order(&self) -> Option<(PeriodNumber, Vec<FrameView>)> {
         self.state.borrow_mut().ordered.drain(..).next_back()
     }
@@ -260,11 +260,11 @@ impl Slave {
         Ok(())
     }
 
-    /// Finds the primitives of the given regions, and sends the messages of all these regions as one chain.
+    /// Finds the primitives of some regions, and sends the messages of all these regions as one chain.
     ///
     /// All slaves draw in the same region context of a renderer. A region's messages therefore reserve the renderer's
-    /// port until the last message, which copies the region. Otherwise another slave could draw into the region or
-    /// clear it.
+    /// port until the last message, which copies the region. Without this reservation, another slave could draw into
+    /// the region or clear the region.
     async fn send(
         &self,
         picture: PictureNumber,

@@ -2,10 +2,10 @@
 //! list's structures for an eye.
 //!
 //! To *place* a structure is to compute its matrices and its light source in the coordinates of an eye. Both steps run
-//! i860 code in the style of compiled code (`pxpl5_geometry::kernel::place_source`). This code is the same for every
-//! version of the kernels (the code that transforms primitives). The code computes the view-dependent part of each
-//! structure's parameter block before the pass. A kernel reads a block that the simulator has computed and written. The
-//! block of the code equals this block in every word (tests/begin.rs).
+//! i860 code in the style of compiled code (`pxpl5_geometry::kernel::place_source`). All versions of the kernels (the
+//! programs that transform primitives) use the same code for these steps. The code computes the view-dependent part of
+//! each structure's parameter block before the pass. The kernels, however, read a parameter block that the simulator
+//! computes without i860 code. Both blocks are equal in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
 use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};
@@ -106,7 +106,7 @@ impl PassStartWork {
         Self { chosen: chosen.map(Arc::from), ..self }
     }
 
-    /// Returns those of an eye's structures that this work places. The result omits structures that cannot be drawn.
+    /// Returns the structures of an eye that this work places. The result omits structures that cannot be drawn.
     fn begun<'a>(&'a self, placed: &'a [PlacedStructure]) -> impl Iterator<Item = &'a PlacedStructure> {
         let is_chosen = |number: usize| self.chosen.as_ref().is_none_or(|chosen| chosen.get(number) == Some(&true));
         let chosen = placed.iter().enumerate().filter(move |(number, _)| is_chosen(*number)).map(|(_, place)| place);
@@ -145,7 +145,8 @@ pub(crate) fn beginning<'a>(eyes: impl IntoIterator<Item = &'a [PlacedStructure]
 }
 
 impl PlacedStructure {
-    /// Computes the view-dependent part of the parameter block on a board, and returns the simulated time.
+    /// Runs the i860 code on a board, which computes the view-dependent part of each structure's parameter block.
+    /// Returns the simulated time of the code.
     ///
     /// # Errors
     ///
@@ -166,8 +167,8 @@ impl PlacedStructure {
 }
 
 impl PlacedStructure {
-    /// Writes the view-independent part of the spheres' parameter block. Returns the address of the block, or 0 if the
-    /// structure draws no sphere.
+    /// Writes the part of the sphere kernel's parameter block that is the same for all views. Returns the address of
+    /// the block, or 0 if the structure draws no sphere.
     fn prepare_spheres(&self, processor: &mut Processor) -> Result<Word, ProcessorFault> {
         let Some(transform) = self.transform.as_ref().filter(|_| !self.structure.spheres.is_empty()) else {
             return Ok(0);

@@ -38,12 +38,13 @@ pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 /// polygon of up to nine corners.
 const MOST_PIECES: u32 = 7;
 
-/// Instruction limits, much higher than the needs of a primitive and of the prologue. A kernel that exceeds its limit
-/// counts as an endless loop.
+/// Largest number of instructions that a kernel may execute for one primitive. The number is much higher than the need.
+/// A kernel that exceeds its limit counts as an endless loop.
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
 pub(crate) const BUDGET: u64 = 10_000;
 
-/// Returns the instruction limit of a call for the given number of primitives.
+/// Returns the largest number of instructions that one call of a kernel may execute. `primitives` is the number of
+/// primitives that the call transforms.
 pub(crate) const fn budget(primitives: u32) -> u64 {
     BUDGET + BUDGET_OF_PRIMITIVE * primitives as u64
 }
@@ -133,8 +134,7 @@ impl TransformWork<'_> {
 }
 
 impl Share {
-    /// Stores all primitives of the graphics processor in a board's memory. The function also stores all primitives if
-    /// this share is only a clump.
+    /// Stores all primitives of the graphics processor in a board's memory, even if this share is only a clump.
     ///
     /// # Errors
     ///
@@ -162,7 +162,7 @@ impl Share {
     }
 }
 
-/// Memory that a view's output needs: bytes of all commands, and number of entries of each bin.
+/// Memory that a kernel needs for the output of one view: bytes of all commands, and number of entries of each bin.
 pub(crate) struct OutputSize {
     commands: u32,
     entries: Vec<u32>,
@@ -184,14 +184,15 @@ impl OutputSize {
     }
 }
 
-/// Addresses of a view's output: the commands, and the entries of each bin.
+/// Addresses at which a kernel writes the output of one view: the commands, and the entries of each bin.
 struct Places {
     commands: u32,
     bins: Vec<u32>,
 }
 
-/// Addresses of the next outputs of a kernel. `command` is the address of the next command. `table` is the address of
-/// the table of bins. If the kernel stores bounding boxes instead of bins, `table` is the address of the next box.
+/// Addresses at which the next call of a kernel writes its output. `command` is the address of the next command.
+/// `table` is the address of the table of bins. If the kernel stores bounding boxes instead of bins, `table` is the
+/// address of the next box.
 #[derive(Clone, Copy)]
 pub(crate) struct Next {
     pub(crate) command: u32,
@@ -199,16 +200,16 @@ pub(crate) struct Next {
 }
 
 impl Next {
-    /// Returns the addresses for the next output. After a call of a kernel, the processor's registers hold these
-    /// addresses.
+    /// Returns the addresses at which the next call of the kernel writes its output. The last call has left these
+    /// addresses in the processor's registers.
     pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }
     }
 }
 
-/// Destination of a view's output: its bin context, its index among the views in that context, and the address of its
-/// first command.
+/// Destination of a kernel's output for one view: the bin context, the index of the view among the views in this
+/// context, and the address of the view's first command.
 #[derive(Clone, Copy)]
 pub(crate) struct Destination {
     pub(crate) context: u8,
@@ -216,11 +217,11 @@ pub(crate) struct Destination {
     pub(crate) begin: u32,
 }
 
-/// Addresses of the mark words, and the bit of a mark word that is set for primitives of this view. Each primitive has
-/// one mark word.
+/// Marks that select the primitives of one view. In memory, each primitive has one mark word with a bit for each view.
+/// The struct has the addresses of the mark words, and the bit of this view.
 #[derive(Clone, Copy)]
 pub(crate) struct Marks {
-    /// Address of the mark word of the GP's first triangle.
+    /// Address of the mark word of the graphics processor's first triangle.
     pub(crate) triangles: u32,
     pub(crate) spheres: u32,
     pub(crate) bit: Word,
@@ -284,7 +285,8 @@ impl Pass {
         Ok(Some([of_left, of_right]))
     }
 
-    /// Runs the triangles of both eyes. Returns the time, and the addresses at which the output of each eye continues.
+    /// Runs the triangle kernel for both eyes. Returns the time, and the addresses at which the output of each eye
+    /// continues.
     ///
     /// For a structure that only one eye can draw, the function runs the kernel for one eye.
     fn run_triangles_for_both(
@@ -351,8 +353,8 @@ impl Pass {
         self.run_rest(processor, kernel, &places, to, triangles, marks)
     }
 
-    /// Runs the spheres of a view and records the end of each bin. The caller has already run the triangles and written
-    /// the table of bins.
+    /// Runs the sphere kernel for one view and records the end of each bin. The triangle kernel must have finished, and
+    /// the table of bins must be in memory.
     fn run_rest(
         &self,
         processor: &mut Processor,
@@ -371,7 +373,7 @@ impl Pass {
         Ok(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins })
     }
 
-    /// Runs the triangles. Returns the time, and the addresses at which the output continues.
+    /// Runs the triangle kernel. Returns the time, and the addresses at which the next call writes its output.
     pub(crate) fn run_triangles(
         &self,
         processor: &mut Processor,
@@ -400,7 +402,7 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// Runs the spheres. Returns the time, and the addresses at which the output continues.
+    /// Runs the sphere kernel. Returns the time, and the addresses at which the next call writes its output.
     pub(crate) fn run_spheres(
         &self,
         processor: &mut Processor,
@@ -436,8 +438,8 @@ impl Pass {
         self.picture().kernel(schedule)
     }
 
-    /// Returns the number of words of a triangle command and of a sphere command. Returns `None` if code cannot fill
-    /// the bins of both kinds.
+    /// Returns the number of words of a triangle command and of a sphere command. Returns `None` if i860 code does not
+    /// put both kinds of commands into bins.
     pub(crate) fn binned_words(&self, version: CodeVersion) -> Option<[u32; 2]> {
         let kernel = self.kernel(version).filter(|_| self.is_binned())?;
         Some([kernel.command_bytes() / 4, sphere_kernel(kernel).command_words() as u32])
@@ -470,12 +472,14 @@ impl Pass {
         words
     }
 
-    /// Returns each drawn structure with the range of its triangles, as indices among the triangles that the GP holds.
+    /// Returns each drawn structure with the range of its triangles, as indices among the triangles that the graphics
+    /// processor holds.
     pub(crate) fn calls_of_triangles(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.triangles, Share::held_places)
     }
 
-    /// Returns each drawn structure with the range of its spheres, as indices among the spheres that the GP holds.
+    /// Returns each drawn structure with the range of its spheres, as indices among the spheres that the graphics
+    /// processor holds.
     pub(crate) fn calls_of_spheres(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.spheres, Share::held_places_of_spheres)
     }
@@ -492,9 +496,9 @@ impl Pass {
 
     /// Returns the memory that a kernel needs for its output.
     ///
-    /// The kernel needs memory for a command of every given primitive, visible or not, and for the pieces of clipped
-    /// triangles. The kernel also needs memory for one command that it can discard. [`pxpl5_gp::Memory`] counts fewer
-    /// bytes, because it counts only visible primitives.
+    /// The kernel needs memory for a command of every primitive counted in `given`, visible or not, and for the pieces
+    /// of clipped triangles. The kernel also needs memory for one command that it can discard. [`pxpl5_gp::Memory`]
+    /// counts fewer bytes, because it counts only visible primitives.
     pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> OutputSize {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {
@@ -514,7 +518,7 @@ impl Pass {
 }
 
 /// Stores the start and end address of each bin of a context. The code that sends bins to renderers needs these
-/// addresses. The table of bins cannot keep them, because the other context overwrites the table.
+/// addresses later, when the bins of the other context may have overwritten the table of bins.
 fn note_bins(
     processor: &mut Processor,
     to: Destination,

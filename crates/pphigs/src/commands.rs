@@ -27,8 +27,8 @@ use std::sync::Arc;
 pub struct RegionEnvelope {
     /// True if the commands begin with the selection and clearing of the region's context in pixel memory.
     pub begin: bool,
-    /// True if the region ends with the shading of all its pixels. Only pictures with Phong shading have such a
-    /// command.
+    /// True if the region ends with the shading of all its pixels. Only pictures with Phong shading have a command for
+    /// this shading.
     pub shade: bool,
     /// Copy of the region to the frame buffer at the end. `None` if the region is not copied.
     pub copy: Option<CopyOrder>,
@@ -53,8 +53,8 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
     parts.map(list).collect()
 }
 
-/// Returns a message that copies regions to a frame buffer. The source of each region is the pixel-memory context that
-/// its order states.
+/// Returns a message that copies regions to a frame buffer. Each element of `copies` names a region, and the context of
+/// pixel memory that holds the region.
 #[must_use]
 pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> CommandList {
     let runs =
@@ -215,16 +215,18 @@ impl Pass {
 /// (TR94).
 pub const BIN_ENTRY_BYTES: u64 = 4;
 
-/// Bytes of a GP's memory for program, stacks and message buffers. The number is the same in every pipeline.
+/// Bytes of a graphics processor's memory for program, stacks and message buffers. The number is the same in every
+/// pipeline.
 ///
-/// Assumed: no paper gives the number. Each GP of TR94 has 8 MB, so an error of a megabyte has little effect.
+/// Assumed: no paper gives the number. Each graphics processor of TR94 has 8 MB, so an error of a megabyte has little
+/// effect.
 pub const PROGRAM_BYTES: u64 = 1 << 20;
 
 fn bytes(kind: CommandKind, count: u32) -> u64 {
     4 * u64::from(kind.words()) * u64::from(count)
 }
 
-/// Computes the words of a region's messages on demand.
+/// Source of the words of a region's messages. The words are computed on demand.
 #[derive(Debug)]
 struct RegionWords {
     pass: Arc<Pass>,
@@ -547,7 +549,7 @@ fn rgb([r, g, b]: [u8; 3]) -> u32 {
     u32::from(r) << 16 | u32::from(g) << 8 | u32::from(b)
 }
 
-/// Computes the words of a message that only copies regions.
+/// Source of the words of a message that only copies regions.
 #[derive(Debug)]
 struct CopyWords {
     layout: Layout,

@@ -40,7 +40,7 @@ impl TransformCost {
         Self { triangles: counts.triangles as u64, spheres: counts.spheres as u64, ..Self::NOTHING }
     }
 
-    /// Returns the work of starting a pass over the given structures for one eye, before its first primitive.
+    /// Returns the work of starting a pass over `structures` for one eye, before the first primitive of the pass.
     #[must_use]
     pub fn beginning<'a>(structures: impl IntoIterator<Item = &'a DisplayStructure>) -> Self {
         structures.into_iter().fold(Self::PASS, |cost, structure| Self {

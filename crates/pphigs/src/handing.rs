@@ -1,8 +1,8 @@
 //! CPU work of sending a region's bin. The code lists the messages with the region's commands as pieces of memory,
 //! which the ring interface then sends.
 //!
-//! The code is kernels/token.s. It reads the bin's entries, which the code of TRANSFORM has written. The commands stay
-//! in their place in memory. In the timing table, each entry takes `token_entry_ns`.
+//! The code is kernels/token.s. This code reads the bin's entries, which the code of TRANSFORM has written. The
+//! commands themselves are not moved in memory. In the timing table, each entry takes `token_entry_ns`.
 
 use crate::commands::RegionEnvelope;
 use crate::layout::{ENVELOPES, LISTS, LISTS_END, PIECES, TOKEN_CODE, TOKEN_PARAMETERS, bins};
@@ -35,8 +35,8 @@ pub type MessagePieces = Vec<[Word; 2]>;
 /// Bytes of one piece in the list of pieces.
 pub(crate) const PIECE_BYTES: u32 = 8;
 pub(crate) const MESSAGE_BYTES: u32 = 16;
-/// Largest number of bin entries of a region. A message holds at least 20 commands, and needs two further pieces for
-/// its envelope.
+/// Largest number of bin entries of a region for which the list of pieces has room. A message holds at least 20
+/// commands, and needs two additional pieces for the commands at its start and its end.
 pub(crate) const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
 const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 
@@ -74,11 +74,11 @@ impl Work for BinHandoffWork<'_> {
 }
 
 impl BinHandoffWork<'_> {
-    /// Returns the parameters that describe the envelope.
+    /// Returns the parameters for the commands before and after a region's primitives.
     ///
     /// The first six parameters are address and length in words of three command sequences. The sequences are the start
-    /// of the region, the start of every further message, and the end of the region. The seventh parameter is the
-    /// number of words of a message without primitives and without the end of the region.
+    /// of the region, the start of every message after the first message, and the end of the region. The seventh
+    /// parameter is the number of words of a message without primitives and without the end of the region.
     fn enclosing(&self) -> [Word; 7] {
         let words = |kind: CommandKind, is_there: bool| kind.words() * u32::from(is_there);
         let contexts = self.pass.picture().layout.plan().contexts > 1;

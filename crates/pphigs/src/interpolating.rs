@@ -38,7 +38,8 @@ pub struct TriangleEndsRecorder<'a> {
 }
 
 impl TriangleEndsRecorder<'_> {
-    /// Runs the code on a board that holds the display list. The preparation of structures for both views is included.
+    /// Runs the code on a board that holds the display list, and returns the simulated time. The time includes the
+    /// preparation of structures for both views.
     ///
     /// Returns `None` if no kernel can draw this kind of picture.
     ///

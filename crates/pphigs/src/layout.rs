@@ -8,7 +8,7 @@
 
 /// Address of the code for triangles, with its clipper. The processor's trap vectors are below this address.
 pub(crate) const CODE: u32 = 0x1000;
-/// Address of the code that finds the views that contain a primitive, among six views.
+/// Address of the code that finds the views, among six, that contain a primitive.
 pub(crate) const SORT_CODE: u32 = 0xB000;
 /// Address of the code at the beginning of a pass. This code edits structures and places them for an eye.
 pub(crate) const BEGIN_CODE: u32 = 0xC000;
@@ -45,8 +45,8 @@ pub(crate) const WINDOWS: u32 = 0x7_9000;
 pub(crate) const REGION_WINDOWS: u32 = 0x7_9C00;
 /// Address of the coordinates of the upper left pixel of each window (rectangle of the screen).
 pub(crate) const WINDOW_PLACES: u32 = 0x7_AE00;
-/// Address of the lists of primitives in windows (rectangles of the screen), in the format of the addresses at
-/// [`bins`].
+/// Address of the lists of primitives in windows (rectangles of the screen). Each list has a start and an end address,
+/// like a bin (see [`bins`]).
 pub(crate) const WINDOW_LISTS: u32 = 0x7_B000;
 /// Address of the records of stored passes, one record for each part of memory. A stored pass is the result of a
 /// TRANSFORM without bins, which a part of memory holds for later searches.

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! - [`DisplayList`]: triangles, spheres, and structures with a model matrix each.
-//! - [`Share`]: every n-th primitive. The GPs get primitives round-robin (TR94).
+//! - [`Share`]: every n-th primitive. The graphics processors get primitives round-robin (TR94).
 //! - [`FrameView`]: the host's message for a frame: viewing transforms and edits, as words.
 //! - [`send_as_tracked`]: the host program of a pipeline that uses the newest view whenever the pipeline needs a view.
 //! - [`Pass`]: the result of one TRANSFORM. The numbers of primitives in each region are computed immediately. The
@@ -22,7 +22,7 @@
 //! - [`WindowSearchWork`]: the CPU work of searching for the primitives in rectangles of the screen, without bins.
 //! - [`TriangleEndsRecorder`] and [`StripInterpolation`]: positions of triangles in two views, and commands of a strip
 //!   of lines for a view between these views, as i860 code.
-//! - [`assemble_order`]: assembly of an order, the message of a master GP to its slaves, as i860 code.
+//! - [`assemble_order`]: assembly of an order, the message of a master to its slaves, as i860 code.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
 //!

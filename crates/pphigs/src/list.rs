@@ -22,15 +22,15 @@ pub struct DisplayList {
     pub triangles: Vec<[u32; 3]>,
     /// Spheres in their structure's coordinates.
     pub spheres: Vec<WorldSphere>,
-    /// Structures, in the order of their triangles and of their spheres. The ranges of successive structures have no
-    /// gaps.
+    /// Structures, in ascending order of their ranges of triangles and of spheres. No gap separates the ranges of
+    /// successive structures.
     pub structures: Vec<DisplayStructure>,
     /// Unit vector towards the light source, in the coordinates of each structure's frame of reference (the room or the
     /// head).
     pub towards_light: Vec3,
     /// Fraction of the colour that is visible in shadow, 0 to 1.
     pub ambient: f32,
-    /// Fraction of the colour that perpendicular light adds to the ambient light, 0 to 1.
+    /// Fraction of the colour that light perpendicular to the surface adds to the ambient light, 0 to 1.
     pub diffuse: f32,
     /// Background colour: red, green, blue.
     pub background: [u8; 3],
@@ -128,24 +128,26 @@ pub struct Share {
     pub(crate) list: Arc<DisplayList>,
     first: usize,
     step: usize,
-    /// Range of the share's triangles, as indices among the triangles that the GP holds.
+    /// Range of the share's triangles, as indices among the triangles that the graphics processor holds.
     triangles: Range<usize>,
-    /// Range of the share's spheres, as indices among the spheres that the GP holds.
+    /// Range of the share's spheres, as indices among the spheres that the graphics processor holds.
     spheres: Range<usize>,
 }
 
 impl Share {
-    /// Bytes of a triangle in a GP's memory: three corners of position, normal and colour, 32 bytes each (assumed).
+    /// Bytes of a triangle in a graphics processor's memory: three corners of position, normal and colour, 32 bytes
+    /// each (assumed).
     pub const TRIANGLE_BYTES: u64 = 4 * TRIANGLE_WORDS as u64;
 
-    /// Bytes of a sphere in a GP's memory: centre, radius, colour and header (assumed).
+    /// Bytes of a sphere in a graphics processor's memory: centre, radius, colour and header (assumed).
     pub const SPHERE_BYTES: u64 = 32;
 
-    /// Returns the share of the GP with index `index` among `of` GPs. Primitives are distributed round-robin.
+    /// Returns the share of the graphics processor with index `index` among `of` graphics processors. Primitives are
+    /// distributed round-robin.
     ///
     /// # Panics
     ///
-    /// Panics if `of` is zero. A valid configuration has at least one GP.
+    /// Panics if `of` is zero. A valid configuration has at least one graphics processor.
     #[must_use]
     pub fn new(list: Arc<DisplayList>, index: usize, of: usize) -> Self {
         assert!(of > 0, "primitives need a graphics processor");
@@ -208,33 +210,33 @@ impl Share {
         Self { triangles: 0..0, spheres: 0..0, ..self.clone() }
     }
 
-    /// Returns the bytes that the share's primitives take in the GP's memory.
+    /// Returns the bytes that the share's primitives take in the graphics processor's memory.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let PrimitiveCounts { triangles, spheres } = self.counts();
         u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES
     }
 
-    /// Returns the indices, in the display list, of all triangles that the GP holds. The result is the same for every
-    /// clump of the GP.
+    /// Returns the indices, in the display list, of all triangles that the graphics processor holds. The result is the
+    /// same for every clump of the graphics processor.
     pub(crate) fn all_triangles(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.triangles.len()).step_by(self.step)
     }
 
-    /// Returns the indices, in the display list, of all spheres that the GP holds. The result is the same for every
-    /// clump of the GP.
+    /// Returns the indices, in the display list, of all spheres that the graphics processor holds. The result is the
+    /// same for every clump of the graphics processor.
     pub(crate) fn all_spheres(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.spheres.len()).step_by(self.step)
     }
 
-    /// Returns those of the share's triangles that belong to a structure. `of` is the structure's range of triangles in
-    /// the display list. The result is a range of indices among all triangles that the GP holds.
+    /// Returns the triangles of this share that belong to one structure. `of` is the structure's range of triangles in
+    /// the display list. The result is a range of indices among all triangles that the graphics processor holds.
     pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.triangles, of)
     }
 
-    /// Returns those of the share's spheres that belong to a structure. `of` is the structure's range of spheres in the
-    /// display list. The result is a range of indices among all spheres that the GP holds.
+    /// Returns the spheres of this share that belong to one structure. `of` is the structure's range of spheres in the
+    /// display list. The result is a range of indices among all spheres that the graphics processor holds.
     pub(crate) fn held_places_of_spheres(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.spheres, of)
     }
@@ -247,9 +249,9 @@ impl Share {
         self.held(&self.spheres, of)
     }
 
-    /// Returns the indices, in the display list, of those of the share's primitives that belong to a structure. `of` is
-    /// the structure's range of primitives in the display list. `positions` is the range of the share, as indices among
-    /// the primitives that the GP holds.
+    /// Returns the primitives of this share that belong to one structure, as indices in the display list. `of` is the
+    /// structure's range of primitives in the display list. `positions` is the range of the share, as indices among the
+    /// primitives that the graphics processor holds.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         let first = self.first;
         let step = self.step;
@@ -263,8 +265,8 @@ impl Share {
     }
 }
 
-/// Returns the number of primitives, among the first `all`, that the GP with index `index` holds. `gps` is the number
-/// of GPs.
+/// Returns the number of primitives, among the first `all`, that the graphics processor with index `index` holds. `gps`
+/// is the number of graphics processors.
 fn dealt(all: usize, index: usize, gps: usize) -> usize {
     all.saturating_sub(index).div_ceil(gps)
 }

@@ -1,5 +1,5 @@
-//! CPU work of assembling an order, which is the message of a master GP to its slaves. The code is kernels/order.s.
-//! This project made the rules for the code (kernels/order_rules.md).
+//! CPU work of assembling an order, which is the message of a master to its slaves. The code is kernels/order.s. This
+//! project made the rules for the code (kernels/order_rules.md).
 
 use crate::layout::{MESSAGE, ORDER_CODE, ORDER_HEAD, ORDER_VIEWS};
 use i860::Program;

@@ -1,4 +1,4 @@
-//! The result of one TRANSFORM of a GP's share of the primitives, for one eye.
+//! The result of one TRANSFORM of a graphics processor's share of the primitives, for one eye.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
@@ -87,8 +87,8 @@ struct Found {
 struct PrimitiveCounter {
     /// For each region, the number of triangles that touch only that region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// For each region, the number of touching triangles that also touch other regions, and the number of touching
-    /// spheres.
+    /// For each region, the number of triangles that touch this region and also other regions, and the number of
+    /// spheres that touch this region.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,
@@ -322,7 +322,7 @@ impl Pass {
         touching
     }
 
-    /// Returns the numbers of entries in a region's bin.
+    /// Returns the number of triangles and the number of spheres in a region's bin.
     #[must_use]
     pub fn counts(&self, region: RegionId) -> PrimitiveCounts {
         self.found.counts[usize::from(region.0)]
@@ -371,7 +371,7 @@ impl Pass {
         self.walk.share.list.background
     }
 
-    /// Returns the light source in the eye coordinates of the first structure.
+    /// Returns the light source of the first structure, in eye coordinates.
     #[must_use]
     pub fn light(&self) -> Option<&Light> {
         self.walk.placed.first().map(|placed| &placed.light)
@@ -393,12 +393,12 @@ impl Pass {
         &self.bins.get_or_init(|| self.filled())[usize::from(region.0)]
     }
 
-    /// Returns the triangles at the given range of indices in a region's bin.
+    /// Returns the triangles at the indices `places` of a region's bin.
     pub(crate) fn triangles_in(&self, region: RegionId, places: &Range<u32>) -> &[BinEntry] {
         &self.bin(region).triangles[places.start as usize..places.end as usize]
     }
 
-    /// Returns the triangles that touch a region, among the triangles at a range of indices in the region's bin.
+    /// Returns the triangles that touch a region, among the triangles at the indices `places` of the region's bin.
     ///
     /// Under [`RegionBinning::Touched`] all triangles of a bin touch the region.
     pub(crate) fn triangles_touching(&self, region: RegionId, places: &Range<u32>) -> Cow<'_, [BinEntry]> {

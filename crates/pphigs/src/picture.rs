@@ -7,7 +7,7 @@ use pxpl5_renderer::Layout;
 /// Shading mode: the processor that computes colours, and the points at which it computes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
-    /// The GP computes colours at the corners, and the renderers interpolate the colours.
+    /// The graphics processor computes colours at the corners, and the renderers interpolate the colours.
     Gouraud,
     /// Lighting is computed once for the vertices, before the run. The renderers interpolate the resulting colours.
     /// Spheres have no corners, so they are lit as with [`Shading::Gouraud`].
@@ -24,13 +24,13 @@ pub enum RegionBinning {
     /// All regions (Slats prototype, TR94). An invisible triangle takes as much time as a visible triangle, but draws
     /// nothing.
     ///
-    /// Spheres go only to the touched regions. In other regions, the values of a sphere's quadratic expression would
-    /// exceed 48 bits. The prototype had no spheres.
+    /// Spheres go only to the touched regions. Elsewhere, the values of a sphere's quadratic expression would exceed
+    /// the renderers' 48 bits. The prototype had no spheres.
     All,
 }
 
 impl RegionBinning {
-    /// Both choices with their names in experiment files.
+    /// Both binning modes with their names in experiment files.
     pub const ALL: [(&str, Self); 2] = [("all", Self::All), ("touched", Self::Touched)];
 }
 

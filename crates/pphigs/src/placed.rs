@@ -63,8 +63,8 @@ impl Clone for RecentViews {
     }
 }
 
-/// Capacity of the cache: two eyes of two views. A slower processor may still work on the frame before the newest
-/// frame.
+/// Capacity of the cache: two eyes of two views. A slow processor may still work on the previous frame while another
+/// processor works on the newest frame.
 const RECENT: usize = 4;
 
 /// Cache key of a view. The key contains all data that affect the placement of structures.

@@ -1,7 +1,7 @@
 //! TRANSFORM of six views from one eye position, such as the faces of a cube, as i860 code over the board's memory.
 //!
 //! Each primitive is transformed only for the views that it can touch. The code kernels/sort.s finds these views, and
-//! kernels/runs.s passes the primitives to the kernels. This project made the rules for both codes
+//! kernels/runs.s passes the primitives to the kernels. This project made the rules for both programs
 //! (kernels/sort_rules.md).
 
 use crate::begin::PassStartWork;
@@ -136,9 +136,9 @@ fn marks(pass: &Pass) -> [u32; 3] {
 
 /// The primitives of one structure, and the addresses that the code needs to find the views of each primitive.
 ///
-/// `held` is the range of these primitives' indices among all primitives that the GP holds. `first` is the address of
-/// the GP's first primitive, and `bytes` is the size of one primitive. `marks` is the address of the first mark word. A
-/// mark word has a bit for each view that can contain the primitive.
+/// `held` is the range of these primitives' indices among all primitives that the graphics processor holds. `first` is
+/// the address of the graphics processor's first primitive, and `bytes` is the size of one primitive. `marks` is the
+/// address of the first mark word. A mark word has a bit for each view that can contain the primitive.
 struct ViewSort {
     held: Range<usize>,
     first: u32,

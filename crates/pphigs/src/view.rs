@@ -86,7 +86,7 @@ impl FrameView {
     }
 }
 
-/// Returns the header word at index `place`, or 0 if the word is missing.
+/// Returns the header word at index `place`. Returns 0 if there is no word at this index.
 fn header_word(words: &[Word], place: usize) -> usize {
     words.get(place).map_or(0, |word| *word as usize)
 }

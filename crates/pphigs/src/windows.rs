@@ -175,7 +175,7 @@ impl Pass {
         Ok(of_triangles + of_spheres)
     }
 
-    /// Returns the addresses of the pass's bounding boxes (`table`) and commands (`command`).
+    /// Returns the addresses at which the pass stores its bounding boxes (`table`) and commands (`command`).
     fn room(&self, processor: &Processor, kernel: Kernel, part: MemoryPart) -> Result<Next, ProcessorFault> {
         let given = self.transformed();
         let triangles = self.most_commands(given);
@@ -187,8 +187,8 @@ impl Pass {
     }
 }
 
-/// Work of searching a stored pass (the result of a TRANSFORM in a part of memory) for the primitives in the given
-/// windows (rectangles of the screen).
+/// Work of searching a stored pass (the result of a TRANSFORM in a part of memory). The search finds the primitives in
+/// each window, which is a rectangle of the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowSearchWork<'a> {
     /// Part of memory that holds the result of the TRANSFORM to search.

@@ -55,12 +55,13 @@ pub(crate) struct Watch {
 }
 
 impl BudgetArgs {
-    /// Returns a budget with the given limits. `None` means no limit.
+    /// Returns a budget with the limits `max_memory` (MB) and `max_seconds`. `None` means no limit.
     pub(crate) fn of(max_memory: Option<u64>, max_seconds: Option<u64>) -> Self {
         Self { max_memory: max_memory.unwrap_or(u64::MAX), max_seconds: max_seconds.unwrap_or(u64::MAX) }
     }
 
-    /// Returns an error if the estimate of a run, before its start, exceeds the budget.
+    /// Returns an error if the estimated memory or time of a run exceeds the budget. The check takes place before the
+    /// run starts.
     ///
     /// # Errors
     ///
@@ -164,7 +165,8 @@ impl BudgetArgs {
         self.excess(before.bytes / 1e6 + megabytes, before.seconds + seconds, "simulate fewer fields")
     }
 
-    /// Returns an error message if the given memory or time exceeds its limit.
+    /// Returns an error message if `megabytes` of memory or `seconds` exceed their limits. The message contains
+    /// `advice`.
     fn excess(&self, megabytes: f64, seconds: f64, advice: &str) -> Option<String> {
         let most = self.max_memory;
         if megabytes > most as f64 {

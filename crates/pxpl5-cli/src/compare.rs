@@ -164,7 +164,7 @@ fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), Cl
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// Returns the settings shared by all rows. Keys that are not set get the defaults of a comparison.
+/// Returns the settings that all rows of the comparison share. Keys that are not set get the defaults of a comparison.
 fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
     if let Some(place) = file.place_of("pipeline") {
         return Err(CliError::usage(format!(
@@ -179,7 +179,8 @@ fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
     Ok(file)
 }
 
-/// Sets the length of the runs. Prints a warning if a recording is shorter than the settings require.
+/// Sets the length of the runs. Prints a warning if a recording of the head's motion is shorter than the settings
+/// require.
 fn set_length(query: &mut CompareQuery, quiet: bool) -> Result<(), CliError> {
     if let Some(RecordedLength { fields, asked: Some(asked) }) = query.set_length()? {
         let [asked, fields] = [asked, fields].map(|fields| count_of(fields, "field"));
@@ -202,8 +203,8 @@ fn edges(query: &CompareQuery, deg_per_s: f64, folder: &mut OutputFolder) -> Res
     Ok(())
 }
 
-/// Returns the machine for the pictures of a vertical edge: the machine of the comparison as the pipeline `jitp-field`
-/// configures it.
+/// Returns the machine for the pictures of a vertical edge: the machine of the comparison, configured for the pipeline
+/// `jitp-field`.
 fn machine(query: &CompareQuery) -> Result<MachineConfig, CliError> {
     let mut file = query.shared.clone();
     file.set("pipeline", "jitp-field", "compare")?;

@@ -66,7 +66,8 @@ pub(crate) fn run(args: DiffArgs) -> Result<(), CliError> {
     print(&text(&found, &pictures))
 }
 
-/// Reads the report of a result. A result is either a report file, or a folder whose manifest lists the report.
+/// Reads the report of a result. A result is either a report file, or a folder whose manifest (list of files) contains
+/// the report.
 fn report(path: &Path) -> Result<Value, CliError> {
     let file = if path.is_dir() { path.join(REPORT_FILE) } else { path.to_owned() };
     let name = file.display();
@@ -88,7 +89,8 @@ fn report(path: &Path) -> Result<Value, CliError> {
     }
 }
 
-/// Compares the pictures that the manifests of both folders list. A result that is a single file has no pictures.
+/// Compares the pictures of two folders. The manifest (list of files) of each folder contains the names of its
+/// pictures. A result that is a single file has no pictures.
 fn pictures(a: &Path, b: &Path) -> Result<Vec<PictureDifference>, CliError> {
     if !(a.is_dir() && b.is_dir()) {
         return Ok(Vec::new());

@@ -57,7 +57,7 @@ const TARGET: f64 = 3.125;
 const SAMPLE: f64 = 12.0;
 /// Estimated number of pixels that surfaces touch in each column of a slice.
 const ROWS: f64 = 2.0;
-/// Estimated number of further pixels that surfaces touch, over all slices together, in units of one whole picture.
+/// Estimated number of additional pixels that surfaces touch, over all slices together, in units of one whole picture.
 const AREAS: f64 = 2.0;
 /// Seconds to process one primitive for one slice.
 const SLICE_S: f64 = 30e-9;

@@ -132,7 +132,7 @@ fn text(figures: &Figures) -> String {
 const HEADER: &str =
     "#           published    simulated  unit             error  interval               provenance what\n";
 
-/// Formats rows as a table, and counts those that are missed.
+/// Formats rows as a table, and counts the rows whose published value the simulation misses.
 pub(crate) fn rows_text(rows: &[FigureRow]) -> String {
     let missed = rows.iter().filter(|row| !row.is_met).count();
     let lines: String = rows.iter().map(row_text).collect();

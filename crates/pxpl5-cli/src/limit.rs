@@ -107,8 +107,8 @@ fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     print(&if args.json { over_json(&query, &plan, &limit)? } else { over_text(&query, &plan, &limit) })
 }
 
-/// Estimated number of values that a search over a setting tries: five values, and the values of two bisections. The
-/// range of a real setting has 64 steps.
+/// Estimated number of values that a search over a setting tries: five values, and the values of two bisections. For a
+/// setting with fractions, a bisection divides the range into 64 steps.
 const VALUES: u64 = 12;
 
 /// Estimated maximum number of scene sizes that a search simulates: twice the bisection steps of the whole range.
@@ -143,7 +143,8 @@ impl LimitArgs {
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
     }
 
-    /// Returns the search over the values of a setting, and the plan of the experiment at the greatest value.
+    /// Returns the search over the values of a setting, and the checked experiment at the greatest value of the
+    /// setting.
     fn over_query(&self, key: &str) -> Result<(OverQuery, Plan), CliError> {
         let mut file = self.file()?;
         if let Some(scene) = self.test_scene() {

@@ -55,7 +55,7 @@ impl OutputFolder {
         Self::begin(path, Place::folder("--out"), Listing::Own(Manifest::new(command)))
     }
 
-    /// Returns an output folder for files that no manifest lists.
+    /// Returns an output folder for files that do not enter the manifest (list of a run's files).
     ///
     /// # Errors
     ///
@@ -167,8 +167,8 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Adds the manifest, which will be renamed before all other files. After a crash between two renames, the hashes
-    /// in the manifest show which files belong to the new run.
+    /// Adds the manifest (list of the run's files), which will be renamed before all other files. After a crash between
+    /// two renames, the hashes in the manifest show which files belong to the new run.
     fn put_manifest(&mut self) -> Result<(), CliError> {
         // A new run replaces the previous manifest; derived files extend it.
         let manifest = match &mut self.listing {
@@ -195,7 +195,7 @@ impl OutputFolder {
     }
 }
 
-/// Returns the manifest of the run that will be replaced, or `None` if the folder has no manifest.
+/// Returns the manifest (list of files) of the run that will be replaced, or `None` if the folder has no manifest.
 ///
 /// # Errors
 ///

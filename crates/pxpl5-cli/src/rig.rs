@@ -73,8 +73,8 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     if measured.agrees() { Ok(()) } else { Err(CliError::failure(verdict(&measured))) }
 }
 
-/// Returns the plan of the measurement. Pipeline, machine, tracker and seed come from the user, scene and motion from
-/// the rig.
+/// Returns the checked experiment of the measurement. Pipeline, machine, tracker and seed come from the user. Scene and
+/// motion come from the command.
 fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     if let Some(key) = file.keys().find(|key| KEYS_SET_BY_RIG.contains(key) || key.starts_with("motion.")) {
         return Err(CliError::usage(format!(

@@ -19,8 +19,8 @@ pub(crate) type Row = Vec<(String, Value)>;
 pub(crate) enum RowsKind {
     /// Results of a sweep, with one row for each point.
     Sweep,
-    /// Results of a comparison, with one row for each pipeline. A row has one value for each JSON path. Lists of plain
-    /// numbers are left out.
+    /// Results of a comparison, with one row for each pipeline. A row has one value for each path in the comparison's
+    /// JSON. Lists of plain numbers are left out.
     Comparison,
 }
 

@@ -16,7 +16,7 @@ pub(crate) struct ScenesArgs {
     json: bool,
 }
 
-/// Loads the scene of a plan. Prints warnings about parts of the scene's file that the importer changed.
+/// Loads the scene of an experiment. Prints warnings about parts of the scene's file that the importer changed.
 ///
 /// # Errors
 ///

@@ -32,7 +32,7 @@ pub(crate) struct SnapshotArgs {
     restore: Option<PathBuf>,
 }
 
-/// Options for executing an experiment that do not change its result.
+/// Options for the execution of an experiment. These options do not change the result.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct How<'a> {
     /// Number of worker threads for pixels. `None` means one for each core.
@@ -83,8 +83,8 @@ impl Simulated {
 const KEYS_BESIDE_SNAPSHOT: [&str; 4] = ["fields", "pixels", "measure", "output."];
 
 impl SnapshotArgs {
-    /// Returns the experiment of the checkpoint, changed by the given settings. Returns `given` if no checkpoint is
-    /// restored.
+    /// Returns the experiment of the checkpoint, changed by the settings in `given`. Returns `given` if no checkpoint
+    /// is restored.
     ///
     /// # Errors
     ///
@@ -112,8 +112,8 @@ impl SnapshotArgs {
         Ok(Snapshot::read(text, &name)?)
     }
 
-    /// Simulates the plan. If an option requests a checkpoint, the checkpoint is saved or restored at the field that
-    /// the option or the checkpoint states.
+    /// Simulates the experiment `plan`. If an option requests a checkpoint, the checkpoint is saved or restored at the
+    /// field that the option or the checkpoint states.
     ///
     /// # Errors
     ///

@@ -95,7 +95,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     )
 }
 
-/// Words and numbers in which the commands that sweep differ.
+/// Words and numbers that differ between the commands `pxpl5 sweep` and `pxpl5 volume sweep`.
 #[derive(Debug)]
 pub(crate) struct SweepCommand {
     /// Name of the command after `pxpl5`.
@@ -109,8 +109,8 @@ pub(crate) struct SweepCommand {
 }
 
 impl SweepFolderArgs {
-    /// Runs the missing points of a sweep and stores their rows. Ctrl-C ends the sweep, and prints the command that
-    /// continues it.
+    /// Runs the points of a sweep that have no stored row yet, and stores their rows. Ctrl-C ends the sweep, and prints
+    /// the command that continues it.
     ///
     /// # Errors
     ///
@@ -151,8 +151,8 @@ impl SweepFolderArgs {
 }
 
 impl SweepArgs {
-    /// Returns an error if the estimated time or memory of a sweep exceeds a given limit. The check takes place before
-    /// the sweep starts.
+    /// Returns an error if the estimated time or memory of a sweep exceeds the limits of the options. The check takes
+    /// place before the sweep starts.
     fn admit(&self, sweep: &Sweep, threads: usize) -> Result<(), CliError> {
         // The estimate of hundreds of points takes seconds, so a sweep without limits skips the estimate.
         if self.max_memory.is_none() && self.max_seconds.is_none() {
@@ -198,8 +198,8 @@ fn end_interrupted(again: &str) {
     std::process::exit(INTERRUPTED);
 }
 
-/// Prints the number of failed points of a shard, and the error of the first failed point. Returns the number of failed
-/// points.
+/// Prints the number of failed points of a shard (part of a sweep), and the error of the first failed point. Returns
+/// the number of failed points.
 fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
     if let Some(point) = store.failed(shard).next() {

@@ -80,8 +80,8 @@ fn window(report: &Report) -> String {
     report.window.map_or_else(|| "-".to_owned(), |window| format!("{} to {}", window.first_period, window.last_period))
 }
 
-/// Formats the table cell about due pictures, the pictures that a pipeline must show at given retraces. The cell is "-"
-/// for a pipeline whose pictures have no deadlines.
+/// Formats the table cell about due pictures. A picture is due at the retrace at which the pipeline must show the
+/// picture. The cell is "-" for a pipeline whose pictures have no deadlines.
 fn of_due(report: &Report, cell: impl Fn(&DuePictures) -> String) -> String {
     report.due.as_ref().map_or_else(|| "-".to_owned(), cell)
 }

@@ -3,7 +3,7 @@
 /// Version of the command.
 pub(crate) use pxpl5::measure::program::VERSION;
 
-/// Version and shortened commit, for people.
+/// Version and shortened commit, as shown to users.
 pub(crate) const LONG_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("PXPL5_SHORT_COMMIT"), ")");
 
 /// Returns the commit from which the command was built. Returns `None` if the build script found none.
@@ -18,7 +18,7 @@ pub(crate) const fn commit_text() -> &'static str {
     env!("PXPL5_COMMIT")
 }
 
-/// Makes all reports of this process name the commit.
+/// Adds the commit to all reports of this process.
 pub(crate) fn state_commit() {
     if let Some(commit) = commit() {
         pxpl5::measure::program::set_commit(commit);

@@ -101,7 +101,7 @@ impl Buffer {
         self.scans.lines_never_shown(&Overwritten { older, newer, video, word })
     }
 
-    /// Recomputes the indices of the arriving and the newest regions after the removal of regions.
+    /// Recomputes the lists of indices `arriving` and `newest` after the removal of regions.
     fn index(&mut self) {
         self.arriving.clear();
         self.newest.clear();

@@ -195,8 +195,8 @@ pub fn seen_at(video: &Video, time: Time, fields: &[ScannedField]) -> RgbImage {
 }
 
 /// Returns the lowest number below `count` for which `has` is false, or `count` if there is no such number. `has` must
-/// be true for all lower numbers and false for all higher numbers. The caller searches for the first pixel that the
-/// beam has not reached.
+/// be true for all lower numbers and false for all higher numbers. The display uses the function to find the first
+/// pixel that the beam has not reached.
 fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
     let (mut low, mut high) = (0, count);
     while low < high {

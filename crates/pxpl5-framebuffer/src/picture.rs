@@ -43,8 +43,8 @@ impl Canvas {
 }
 
 impl CanvasRow<'_> {
-    /// Paints those pixels of a segment that are not painted yet. The words of `image` are computed only if there are
-    /// such pixels.
+    /// Paints the pixels of a segment that are not painted yet. The words of `image` are computed only if the function
+    /// paints at least one pixel.
     pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment) {
         // If the image is too short, the remaining pixels stay black.
         for (word, pixel) in self.missing(image, segment) {

@@ -76,7 +76,7 @@ pub enum FrameBufferFault {
         /// Width and height of the frame in pixels.
         frame: [u32; 2],
     },
-    /// The number of messages given by the sender does not match the number of pixels in the region.
+    /// The sender of the message states a number of messages that does not match the number of pixels in the region.
     #[error("region {} needs {expected} messages of pixels, found {found}", target.region.0)]
     Parts {
         /// Frame buffer, region and picture of the pixels according to the sender.

@@ -11,8 +11,8 @@ pub struct FrameBufferStats {
     pub regions: u64,
     /// Number of swap requests that took effect.
     pub swaps: u64,
-    /// Number of lines that were overwritten before the beam had shown all of their pixels. Either the newer region
-    /// arrived too early, or the older region arrived too late. Otherwise the buffer was shown for only one field,
+    /// Number of lines that were overwritten before the beam had shown all of their pixels. There are three causes: the
+    /// newer region arrived too early, the older region arrived too late, or the buffer was shown for only one field,
     /// which scans only every second line.
     pub lines_never_shown: u64,
 }

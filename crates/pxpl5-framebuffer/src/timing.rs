@@ -65,7 +65,8 @@ impl VideoTiming {
     ///
     /// # Errors
     ///
-    /// The errors of [`VideoTiming::check`]. Also an error if the period of a field does not fit into a 64-bit time.
+    /// Returns the errors of [`VideoTiming::check`]. Also returns an error if the period of a field does not fit into a
+    /// 64-bit time.
     pub fn video(&self) -> Result<Video, SettingError> {
         self.check()?;
         let numbers = VideoNumbers {

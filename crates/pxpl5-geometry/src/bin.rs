@@ -89,8 +89,8 @@ impl Binner {
         self.columns
     }
 
-    /// Returns the rows of the picture whose frame lines are in a given range. A field has only every second line of
-    /// its frame.
+    /// Returns the rows of the picture that lie on the frame lines `lines`. A field has only every second line of its
+    /// frame.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
@@ -100,7 +100,8 @@ impl Binner {
         }
     }
 
-    /// Returns the regions that meet a rectangle of pixels. The rectangle's rows are given as frame lines.
+    /// Returns the regions that meet a rectangle of pixels. The rectangle has the columns `x`, and rows on the frame
+    /// lines `lines`.
     pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
         let x = x.within(self.width);
         let y = self.rows_of_lines(lines).within(self.height);
@@ -135,8 +136,8 @@ impl Binner {
 
     /// Returns the regions that a triangle touches, among the regions with pixels in the columns `x` and rows `y`.
     ///
-    /// The function takes only the positions of the corners instead of an [`Outline`]. Callers that need no depths then
-    /// do not compute depths.
+    /// The function takes only the positions of the corners instead of an [`Outline`]. A search that needs no depths
+    /// can therefore save their computation.
     #[inline(never)]
     pub(crate) fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
         let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
@@ -187,8 +188,8 @@ impl Binner {
 impl Outline {
     /// Returns true if the triangle meets the box around the pixel centres of a rectangle.
     ///
-    /// The rectangle is given by its first and last pixel along x, and by its first and last frame line. The conditions
-    /// are the same as for regions.
+    /// `across` has the first and the last pixel of the rectangle along x. `lines` has the first and the last frame
+    /// line of the rectangle. The conditions are the same as for regions.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         let x = pixels_between(&self.x);

@@ -3,14 +3,16 @@
 use crate::newton::{reciprocal_double, reciprocal_root, root, whole};
 use pxpl5_wire::Quadratic;
 
-/// Number of bits of a silhouette expression's absolute value, at all pixels of the regions that the sphere touches.
-/// With the sign, the value has 47 bits. The renderer evaluates 48 bits.
+/// Largest number of bits of the absolute value of a sphere's silhouette expression. The expression is at least 0
+/// inside the sphere's image. The limit holds at all pixels of the regions that the sphere touches. With the sign, the
+/// value has 47 bits. The renderer evaluates 48 bits.
 const VALUE_BITS: i32 = 46;
 
 /// Largest number of bits of a square root in the renderer.
 pub(crate) const ROOT_BITS: i32 = 12;
 
-/// Largest number of low bits of a silhouette expression that the square root can ignore.
+/// Largest number of low bits that a square root can ignore. The renderer takes the root of a sphere's silhouette
+/// expression, which is at least 0 inside the sphere's image.
 const MAX_ROOT_SHIFT: i32 = 24;
 
 /// Largest left shift of a square root in bits. The root is shifted before its subtraction from a depth.
@@ -127,8 +129,8 @@ impl Conic {
         }
     }
 
-    /// Rounds the conic to fixed point, for evaluation at the frame's pixels in `rectangle`. The rectangle is given by
-    /// its first and last pixel along x, and along y.
+    /// Rounds the conic to fixed point, for evaluation at the frame's pixels in `rectangle`. `rectangle` has the first
+    /// and the last pixel along x, then along y.
     ///
     /// The values are scaled by a power of two: the largest power with which the values fit into 46 bits on the whole
     /// rectangle. The coefficients are rounded with pixel (px, py) as origin, then converted exactly to pixel (0, 0) as

@@ -76,7 +76,7 @@ pub enum KernelPicture {
     Frame,
     /// An NTSC field: 640 x 240 pixels in regions of 128 x 120.
     Field,
-    /// A frame in regions of 128 x 128, for example a face of a cube or another display. The parameter block gives the
+    /// A frame of another size in regions of 128 x 128, for example a face of a cube. The parameter block gives the
     /// size of the frame.
     Grid,
 }
@@ -84,7 +84,7 @@ pub enum KernelPicture {
 /// The choice of kernel code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
-    /// Optimization level of the kernel's code: compiled or hand-written.
+    /// Optimization level of the kernel's code: without optimization, compiled or hand-written.
     pub schedule: Schedule,
     /// Kind of triangle that the kernel sets up.
     pub surface: KernelSurface,
@@ -158,8 +158,9 @@ const DUAL: [&str; 7] = [
     include_str!("../kernels/dual_end.s"),
 ];
 
-/// Source files for the right eye, for kernels that serve both eyes. With this code, each batch passes the first loop a
-/// second time. The colours of the first pass stay.
+/// Source files for the right eye, for kernels that serve both eyes. With this code, the first loop processes each
+/// batch of vertices twice, once for each eye. The right eye uses the colours that the loop has computed for the left
+/// eye.
 const RIGHT_EYE: [&str; 3] = [VERTICES, VERTICES_END, include_str!("../kernels/right_eye.s")];
 
 /// Returns an assembly source that defines constants. A constant is 1 if its condition is true, and 0 otherwise.
@@ -170,8 +171,8 @@ pub(crate) fn choices(each: &[(&str, bool)]) -> String {
 impl Kernel {
     /// Returns the kernel for a picture of triangles with separate corners.
     ///
-    /// Returns `None` if [`KernelPicture`] has no kind with these region sizes. A kernel without bins exists only for
-    /// NTSC frames and fields.
+    /// Returns `None` if [`KernelPicture`] has no kind for the regions of `viewport`. A kernel without bins exists only
+    /// for NTSC frames and fields.
     #[must_use]
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
@@ -294,9 +295,9 @@ impl Kernel {
         words.0
     }
 
-    /// Returns the scale and the offset that convert a surface value to a plane value, for the front and for the back
-    /// of a triangle. The offset adds half a unit for rounding, and removes the constant [`ROUND_SINGLE`] that an
-    /// earlier step has added.
+    /// Returns the scale and the offset that convert a surface value to the units of plane expressions, for the front
+    /// and for the back of a triangle. The offset adds half a unit for rounding, and removes the constant
+    /// [`ROUND_SINGLE`] that an earlier step has added.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
@@ -380,8 +381,8 @@ impl ParameterWords {
     }
 }
 
-/// Returns a mask for XOR and a mask for AND, with which the kernel selects triangles to leave out. After both
-/// operations, the high word of the area is negative if the triangle is not drawn.
+/// Returns a mask for XOR and a mask for AND, with which the kernel selects triangles to leave out. The kernel applies
+/// both masks to the high word of a triangle's area. A negative result means that the triangle is not drawn.
 const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     const SIGN: Word = 1 << 31;
     match dropped {

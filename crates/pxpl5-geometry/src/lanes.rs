@@ -118,8 +118,8 @@ impl CornerValues {
     }
 }
 
-/// Replaces the expressions by `constant` in the lanes where `there` is 0. In all other lanes, `there` must have all
-/// bits set.
+/// Replaces the expressions of some triangles by `constant`. Each lane holds the expression of one triangle, and is
+/// replaced if its element of `there` is 0. In all other lanes, `there` must have all bits set.
 #[inline(always)]
 fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> LinearLanes {
     for (i, there) in there.iter().enumerate() {
@@ -136,7 +136,8 @@ struct Expressions {
     edges: [LinearLanes; 3],
     /// Linear expressions of depth and of three components of colour or normal, in this order.
     planes: [LinearLanes; 4],
-    /// For each triangle, the number of planes that were too steep and were replaced by planes with a constant value.
+    /// For each triangle, the number of planes that were steeper than `MAX_SLOPE` and were replaced by planes with a
+    /// constant value.
     flattened: EachLane<u8>,
 }
 
@@ -188,7 +189,7 @@ impl PhongLanes {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: Some(colours) }
     }
 
-    /// Returns the expressions of triangle `i`, with the given colour.
+    /// Returns the expressions of triangle `i`. `colour` is the colour of the whole triangle.
     ///
     /// # Panics
     /// Panics if `i` is not below [`LANES`].
@@ -338,8 +339,8 @@ fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
 
 /// Returns the corners in clockwise order. In the lanes where `swapped` is all ones, two corners are exchanged.
 ///
-/// The code exchanges the values with masks. For a conditional expression, compilers select between addresses, which is
-/// slower.
+/// The code exchanges the values with masks. Masks are faster than a conditional expression, for which compilers select
+/// between two addresses.
 #[inline(always)]
 fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLane<i32>; 3] {
     let mut second = [0; LANES];
@@ -408,8 +409,8 @@ impl LanePlanes {
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 
-    /// Returns, for each triangle, the plane through one value at each corner, over the frame's pixels. Planes that are
-    /// too steep are replaced by planes with a constant value, and counted in `flattened`.
+    /// Returns, for each triangle, the plane through one value at each corner, over the frame's pixels. Planes with a
+    /// slope above `MAX_SLOPE` are replaced by planes with a constant value, and counted in `flattened`.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();

@@ -12,10 +12,11 @@ use crate::view::Columns;
 pub(crate) struct Lens {
     /// True if the projection is parallel, so that distance does not change sizes.
     pub(crate) parallel: bool,
-    /// Eye units per pixel along x and y, at distance 1 under perspective. The step along y is negative, because y
-    /// increases downwards for pixels and upwards for the eye.
+    /// Width and height of a pixel in units of eye coordinates. Under perspective, the values hold at distance 1 from
+    /// the eye. The height is negative, because y increases downwards for pixels and upwards for the eye.
     pub(crate) step: [f64; 2],
-    /// Pixels per eye unit along x and y. Under perspective, the value holds at distance 1.
+    /// Number of pixels per unit of eye coordinates, along x and y. Under perspective, the numbers hold at distance 1
+    /// from the eye.
     pub(crate) rate: [f64; 2],
     /// Eye x and y of the centre of the frame's pixel (0, 0), at distance 1 for a perspective projection.
     pub(crate) corner: [f64; 2],
@@ -26,7 +27,7 @@ pub(crate) struct Lens {
     /// values times t.
     pub(crate) near: [f64; 2],
     pub(crate) far: [f64; 2],
-    /// Largest distance t along -Z at which a point counts as a point behind the eye.
+    /// Largest distance t along -Z at which a point still counts as behind the eye.
     pub(crate) least: f64,
     /// Coefficients of the depth `base + reach u`, in units of the depth expression. [`Lens`] defines u.
     pub(crate) base: f64,

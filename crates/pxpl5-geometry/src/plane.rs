@@ -38,13 +38,13 @@ pub(crate) fn rounded(value: f64) -> i32 {
     (value + ROUND).to_bits() as i32
 }
 
-/// Returns the constant plane that replaces a too steep plane. The value of the constant plane is the mean of the
-/// values `v` at the corners.
+/// Returns the constant plane that replaces a plane with a slope above [`MAX_SLOPE`]. The value of the constant plane
+/// is the mean of the values `v` at the corners.
 pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
-/// Returns the distance along one axis from a corner (given in subpixels) to the centre of a pixel, in pixels.
+/// Returns the distance along one axis from a corner to the centre of a pixel, in pixels. `corner` is in subpixels.
 #[inline(always)]
 fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)

@@ -59,7 +59,8 @@ pub(crate) fn normal_fixed(component: f32) -> i16 {
 /// Factor from normalized depth, 0 to 1, to fixed point: the range of depths, rounded to single precision.
 pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
 
-/// Converts a depth to fixed point. The depth is given as a distance from the near plane, in units of fixed point.
+/// Converts a depth to fixed point. `beyond_near` is the distance of the depth from the near plane, in units of fixed
+/// point.
 ///
 /// The depth is rounded to the nearest unit, ties to even, and limited to the range from near to far. NaN gives the
 /// near plane.
@@ -185,7 +186,7 @@ fn component([a, b, c]: &[[f32; 3]; 3], number: usize) -> [f64; 3] {
     [f64::from(a[number]), f64::from(b[number]), f64::from(c[number])]
 }
 
-/// Returns the middle pixel of the corners' range along one axis, after the range is limited to a picture of `size`
+/// Returns the middle pixel of the corners' range along one axis. The range is first limited to a picture of `size`
 /// pixels.
 #[inline(always)]
 fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {

@@ -54,7 +54,8 @@ pub struct ScreenSphere {
 impl ScreenSphere {
     /// Returns true if the bounding box of the sphere's image meets a rectangle.
     ///
-    /// The rectangle is given by its first and last pixel along x, and by its first and last frame line.
+    /// `across` has the first and the last pixel of the rectangle along x. `lines` has the first and the last frame
+    /// line of the rectangle.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         self.ellipse.bounds().is_some_and(|[x, y]| overlaps(pixels(x), across) && overlaps(pixels(y), lines))
@@ -229,8 +230,8 @@ impl Transform {
     }
 }
 
-/// Margin around a bounding box, in pixels. The margin is greater than the shift of the silhouette because of the
-/// rounding of the quadratic expression.
+/// Margin around a bounding box, in pixels. The rounding of a sphere's quadratic expression moves the silhouette by
+/// less than this margin.
 pub(crate) const SLACK: f64 = 1.0 / 64.0;
 
 /// Returns the pixels whose centres are in the interval from `low` to `high`. Coordinate 0 is the centre of pixel 0.

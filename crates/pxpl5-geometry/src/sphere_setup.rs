@@ -58,7 +58,7 @@ pub struct PhongSphere {
 /// Steepest slope of a plane, in units of its expression per pixel. Steeper slopes do not fit 32 bits.
 pub(crate) const MAX_SLOPE: f64 = 2_147_483_648.0;
 
-/// A plane, given by its value at one point of the frame and by its slopes along x and y.
+/// A plane, as its value at one point of the frame and its slopes along x and y.
 struct Slope {
     origin: [f64; 2],
     value: f64,

@@ -72,8 +72,8 @@ impl Touched {
 impl Transform {
     /// Finds the regions that each triangle of a list touches. The results equal the results of [`Self::bin`].
     ///
-    /// Triangles are given by the indices of their corners. `vertices` begins with the vertex of index `first`. The
-    /// vertices must come from this view.
+    /// `triangles` has the indices of the corners of each triangle. `vertices` begins with the vertex of index `first`.
+    /// The vertices must come from this view.
     ///
     /// # Panics
     /// Panics if a corner's index is not in `vertices`.
@@ -156,8 +156,8 @@ impl CornerLanes {
 
 /// Results of a first search for the regions of several triangles, by the bounding boxes of the triangles.
 struct LaneTouches {
-    /// Codes as in [`Touched`]. The code is [`SEVERAL`] without an index if the edges must decide between several
-    /// regions.
+    /// Codes in the format of [`Touched`]. The code [`SEVERAL`] without an index marks a triangle whose bounding box
+    /// meets several regions. A test of the triangle's edges must then find the touched regions.
     codes: EachLane<u32>,
     any_several: bool,
     /// First and last column of pixels in each triangle's bounding box.

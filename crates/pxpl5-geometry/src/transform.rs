@@ -156,7 +156,8 @@ impl ToScreen {
     }
 }
 
-/// Outline of a screen triangle, and the relation between the outline's order of corners and the order of the input.
+/// Outline of a screen triangle. The struct also states how the outline's order of corners differs from the order in
+/// the display list.
 pub(crate) struct Assembled {
     pub(crate) outline: Outline,
     /// True if corners 1 and 2 were exchanged, so that the corners run clockwise.
@@ -260,8 +261,8 @@ impl Transform {
         self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
-    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines. Callers can bin the outlines into
-    /// other regions than the regions of the picture.
+    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines. With an outline, `sink` can find the
+    /// touched regions of another grid of regions.
     #[inline]
     pub fn outlines(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         self.triangle(positions, |_| [0.0; 3], stats, |outline, _| sink(&outline));

@@ -32,8 +32,8 @@ const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
 #[repr(align(32))]
 pub struct SurfaceVertex {
     pub(crate) screen: ScreenVertex,
-    /// Degree to which the normal faces the eye. The value is negative if the normal faces away from the eye. The value
-    /// is 0 for vertices with colours.
+    /// Number whose sign shows the side that the normal faces: positive towards the eye, negative away from the eye.
+    /// The number is 0 for vertices with colours.
     pub(crate) facing: f32,
     /// Colour or normal, in the units of the plane expressions. Colours include half a unit for rounding, and normals
     /// do not.

@@ -142,12 +142,13 @@ impl Columns {
         Self(matrix.to_cols_array_2d())
     }
 
-    /// Returns the matrix element in the given row and column.
+    /// Returns the matrix element at `row` and `column`.
     pub(crate) fn cell(&self, row: usize, column: usize) -> f64 {
         f64::from(self.0[column][row])
     }
 
-    /// Returns true if all of the given elements are zero. Each element is given by its row and column.
+    /// Returns true if all of the elements in `cells` are zero. Each element of `cells` is a row and a column of the
+    /// matrix.
     pub(crate) fn is_zero_at(&self, cells: &[(usize, usize)]) -> bool {
         cells.iter().all(|&(row, column)| self.cell(row, column) == 0.0)
     }

@@ -10,7 +10,7 @@ use std::str::FromStr;
 pub enum Board {
     /// The host workstation.
     Host,
-    /// A graphics processor, counted from 0. GP 0 receives the retrace signal.
+    /// A graphics processor, counted from 0. Graphics processor 0 receives the retrace signal.
     Gp(usize),
     /// A renderer, counted from 0.
     Renderer(usize),

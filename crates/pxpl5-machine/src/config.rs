@@ -101,7 +101,7 @@ impl Parameter {
 }
 
 impl Parameter {
-    /// Returns true if the value lies within the range that the sources allow.
+    /// Returns true if the value lies within the range that the parameter's table derives from sources.
     #[must_use]
     pub fn is_in_range(&self) -> bool {
         let (low, high) = self.info.range;

@@ -49,7 +49,7 @@ impl Event {
     }
 }
 
-/// Returns the receiver of a ring output, and a description of the output.
+/// Returns the board that receives an output of the ring, and a description of the output.
 fn brought(output: &RingOutput, ports: &Ports) -> (Board, &'static str) {
     match output {
         RingOutput::Announce { message, .. } => (ports.board(message.destination), "message announced"),

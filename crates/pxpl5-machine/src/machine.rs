@@ -49,10 +49,10 @@ pub struct Machine {
     /// True if every edge of the boards' clock causes an event (optimization `IdleBoards` disabled).
     every_edge: bool,
     failure: Option<RunError>,
-    /// Number of events since the last tick of the first display. Events of displays, host lines and clocks do not
-    /// count.
+    /// Number of events since the current period of the first display began. Events of displays, host lines and clocks
+    /// do not count.
     work_events: u64,
-    /// Number of successive idle ticks of the first display up to now (see [`DEADLOCK_TICKS`]).
+    /// Number of successive idle ticks of the first display up to now. [`DEADLOCK_TICKS`] defines an idle tick.
     idle_ticks: u64,
     /// The simulated time up to which the machine has run.
     now: Time,
@@ -68,12 +68,12 @@ struct Contexts {
 
 /// Number of idle ticks of the first display after which a machine with waiting programs counts as deadlocked.
 ///
-/// A tick is idle if only displays, host lines and clocks had events since the previous tick, and no other part of the
-/// machine has a pending event.
+/// A tick is the start of a display period. A tick is idle if only displays, host lines and clocks had events in the
+/// period before the tick, and no other part of the machine has a pending event.
 pub const DEADLOCK_TICKS: u64 = 120;
 
-/// Number of events of the first graphics processor that each tick causes: the signal of the tick, and a poll of the
-/// processor's programs. These events do not end a series of idle ticks.
+/// Number of events of the first graphics processor that each tick (start of a display period) causes: the signal of
+/// the tick, and a poll of the processor's programs. These events do not end a series of idle ticks.
 const EVENTS_OF_A_TICK: u64 = 2;
 
 impl Machine {
@@ -319,8 +319,8 @@ impl Machine {
         self.queue.schedule(now + self.record.config.ring.signal(), Phase::Work, Event::Edge);
     }
 
-    /// Handles a tick of a display's clock. If the tick belongs to the first display, the function also signals a
-    /// retrace to the first graphics processor.
+    /// Handles a tick of a display's clock, which begins a period. If the tick belongs to the first display, the
+    /// function also signals a retrace to the first graphics processor.
     fn tick(&mut self, now: Time, display: usize, period: PeriodNumber) {
         self.display_event(now, display, DisplayEvent::Tick(period));
         let next = period.next();
@@ -334,7 +334,8 @@ impl Machine {
     /// Checks for a deadlock at a tick of the first display. The machine is deadlocked if [`DEADLOCK_TICKS`] successive
     /// ticks were idle, and a program, renderer or message still waits for another board.
     ///
-    /// A tick with pending work is not idle, because one task of a board may take longer than [`DEADLOCK_TICKS`] ticks.
+    /// A tick with a pending event of another part of the machine is not idle, because one task of a board may take
+    /// longer than [`DEADLOCK_TICKS`] ticks.
     fn watch(&mut self, now: Time) {
         let is_idle = self.work_events <= EVENTS_OF_A_TICK && self.is_at_rest();
         self.idle_ticks = if is_idle { self.idle_ticks + 1 } else { 0 };
@@ -354,7 +355,8 @@ impl Machine {
             || !self.record.ring.waiting().is_empty()
     }
 
-    /// Returns the number of successive idle ticks of the first display up to now (see [`DEADLOCK_TICKS`]).
+    /// Returns the number of successive idle ticks of the first display up to now. [`DEADLOCK_TICKS`] defines an idle
+    /// tick.
     #[must_use]
     pub const fn idle_ticks(&self) -> u64 {
         self.idle_ticks
@@ -368,8 +370,8 @@ impl Machine {
         self.queue.pending().all(Event::is_of_displays)
     }
 
-    /// Returns a list of all waits. Each entry has the waiting board, the condition of the wait, and the board that
-    /// must act first, if known.
+    /// Returns a list of all boards that wait. Each entry has the board, the condition that the board waits for, and
+    /// the board that must act first, if known.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let Record { ports, renderers, ring, .. } = &self.record;

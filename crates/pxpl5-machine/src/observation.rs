@@ -140,7 +140,6 @@ impl Observation {
     ///
     /// The value is the display period from which on all of these surfaces show the frame. Frames with discarded swaps
     /// are missing.
-    /// missing.
     #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
         let of = |surface| self.swaps_of(surface).map(|swap| (swap.number, swap.tick));
@@ -159,8 +158,8 @@ impl Observation {
         self.forgotten.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
     }
 
-    /// Returns the number of swaps of a port before the first swap in memory, or 0 if no swap of this port is in
-    /// memory.
+    /// Returns the number of swaps of a port before the first of the port's swaps that is still in memory. Returns 0 if
+    /// no swap of this port is in memory.
     #[must_use]
     pub fn first_swap_held(&self, port: NodeId) -> u64 {
         self.swaps.iter().filter(|swap| swap.port == port).map(|swap| swap.number).min().unwrap_or_default()

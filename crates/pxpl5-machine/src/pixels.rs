@@ -1,5 +1,5 @@
-//! Interface for computing pixels during a run. The caller provides a worker for this purpose. The computation takes no
-//! simulated time.
+//! Interface for computing pixels during a run. A program that runs a machine provides a worker for this purpose. The
+//! computation takes no simulated time.
 
 use pxpl5_wire::PixelSource;
 use std::fmt::Debug;

@@ -91,7 +91,7 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] with the most similar valid name if no preset is called `name`.
+    /// Returns a [`SettingError`] with the most similar valid name if no preset is called `name`.
     pub fn preset(name: &str) -> Result<Self, SettingError> {
         let preset = PRESETS
             .iter()

@@ -146,7 +146,7 @@ impl Record {
         self.display().tick(period)
     }
 
-    /// Returns the start of period `period` of the display `board`. For a board of another kind, the periods of the
+    /// Returns the start of period `period` of the display `board`. If `board` is not a display, the periods of the
     /// first display count.
     pub(crate) fn period_start(&self, board: Board, period: PeriodNumber) -> Time {
         let display = if let Board::Display(number) = board { number } else { 0 };
@@ -189,8 +189,8 @@ impl Record {
     /// Returns true if the capacity of a backing store (`renderer.kept_bits`) has delayed a region, or has changed a
     /// decision of a program, in the whole run.
     ///
-    /// If it has not, the same run with larger backing stores has the same trace: every step is the same, because
-    /// nothing else depends on the capacity. Firmware that decides by the capacity must report a full store with
+    /// If the result is false, the same run with larger backing stores has the same trace, because nothing else depends
+    /// on the capacity. Firmware whose decisions depend on the capacity must report a full backing store with
     /// [`Gp::note_full_store`](pxpl5_gp::Gp::note_full_store).
     #[must_use]
     pub const fn met_full_store(&self) -> bool {

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 ///
 /// # Errors
 ///
-/// `SettingError` with the name, the expected and the found shape or type.
+/// Raises `SettingError` with the name, the expected and the found shape or type.
 pub(crate) fn reals2<'py>(
     name: &str,
     value: &Bound<'py, PyAny>,
@@ -25,7 +25,7 @@ pub(crate) fn reals2<'py>(
 ///
 /// # Errors
 ///
-/// `SettingError` with the name, the expected and the found shape or type.
+/// Raises `SettingError` with the name, the expected and the found shape or type.
 pub(crate) fn wholes2<'py>(
     name: &str,
     value: &Bound<'py, PyAny>,
@@ -49,7 +49,7 @@ pub(crate) fn wholes2<'py>(
 ///
 /// # Errors
 ///
-/// `SettingError` with the name, the expected and the found shape or type.
+/// Raises `SettingError` with the name, the expected and the found shape or type.
 pub(crate) fn reals1<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray1<'py, f64>> {
     let array = numbers(name, value)?;
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
@@ -80,8 +80,8 @@ fn kind(array: &Bound<'_, PyAny>) -> PyResult<char> {
     array.getattr("dtype")?.getattr("kind")?.extract()
 }
 
-/// Checks that an array has two dimensions and the given number of columns. An empty array of one dimension becomes an
-/// array without rows.
+/// Checks that an array has two dimensions and `columns` columns. An empty array of one dimension becomes an array
+/// without rows.
 fn as_rows<'py>(name: &str, array: &Bound<'py, PyAny>, columns: usize) -> PyResult<Bound<'py, PyAny>> {
     let shape: Vec<usize> = array.getattr("shape")?.extract()?;
     match shape[..] {

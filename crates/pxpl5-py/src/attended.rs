@@ -23,17 +23,17 @@ impl Progress {
         self.done.fetch_max(done, Ordering::Relaxed);
     }
 
-    /// Asks the work to stop.
+    /// Requests that the work stop.
     pub(crate) fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Returns the flag that becomes true when the caller asks the work to stop.
+    /// Returns the flag that is true after a call of [`Self::stop`].
     pub(crate) fn stop_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.stopped)
     }
 
-    /// Returns true if the caller has asked the work to stop.
+    /// Returns true after a call of [`Self::stop`].
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
@@ -50,7 +50,7 @@ pub(crate) const LOOK: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 ///
-/// `KeyboardInterrupt`, any exception of the callback, or `RunError` if the work panics because of a bug in the
+/// Raises `KeyboardInterrupt`, any exception of the callback, or `RunError` if the work panics because of a bug in the
 /// emulator.
 pub(crate) fn attended<T: Send + 'static>(
     py: Python<'_>,

@@ -21,7 +21,7 @@ pub(crate) fn python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyR
 ///
 /// # Errors
 ///
-/// `SettingError` with the path of the parameter, the expected and the found value.
+/// Raises `SettingError` with the path of the parameter, the expected and the found value.
 fn number(path: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if let Ok(whole) = value.extract::<u64>() {
         return Ok(Value::Whole(whole));

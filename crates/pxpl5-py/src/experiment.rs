@@ -33,8 +33,8 @@ pub(crate) struct Experiment {
 
 #[pymethods]
 impl Experiment {
-    /// Creates an experiment from settings. If ``scene``, ``motion`` or ``policy`` is given, this argument replaces the
-    /// scene, motion or policy in the settings.
+    /// Creates an experiment from settings. An argument ``scene``, ``motion`` or ``policy`` replaces the scene, motion
+    /// or policy in the settings.
     ///
     /// Raises :class:`pxpl5.SettingError` for the first invalid or missing setting, and for a scene that cannot be
     /// loaded.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// The Python functions that a run calls.
 #[derive(Clone, Default)]
 pub(crate) struct PythonFunctions {
-    /// Function that computes the head's motion, or `None` for another motion.
+    /// Function that computes the head's motion. `None` if no Python function computes the motion.
     pub(crate) motion: Option<Arc<CallableMotion>>,
     pub(crate) policy: Option<Arc<Asked>>,
 }

@@ -87,8 +87,9 @@ pub(crate) fn figures<'py>(
 /// Runs all pipelines with the same settings and compares the results. Returns a dictionary whose `pipelines` has one
 /// row for each pipeline.
 ///
-/// ``confidence`` is that of all intervals. With ``until_precision``, such as 10% or 0.2px, a row gets up to
-/// ``max_seeds`` seeds. Finished rows are stored in ``folder``. If ``resume`` is true, the rows in the folder are kept.
+/// ``confidence`` is the confidence of all intervals, between 0 and 1. With ``until_precision``, such as 10% or 0.2px,
+/// a row gets up to ``max_seeds`` seeds. Finished rows are stored in ``folder``. If ``resume`` is true, the rows in the
+/// folder are kept.
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting, and :class:`pxpl5.SweepError` if the folder cannot be
 /// used, is in use, or contains another comparison.
@@ -250,11 +251,11 @@ pub(crate) fn limit_over<'py>(
     python(py, &found)
 }
 
-/// Estimated number of values that a search over a setting tries: five values, and seven of a bisection. If a search
-/// tries more values, the end of the progress bar moves.
+/// Estimated number of values that a search over a setting tries: five values, and seven values of a bisection. If a
+/// search tries more values, the end of the progress bar moves.
 const VALUES: u64 = 12;
 
-/// Limit below which every whole number is exact as a real number.
+/// Limit below which a 64-bit floating-point number represents every whole number exactly.
 const MAX_WHOLE: f64 = 1e15;
 
 /// Compares two reports, each as JSON text. Returns a dictionary with same_trace, settings, results and equal.
@@ -331,7 +332,7 @@ pub(crate) fn rig<'py>(
     )
 }
 
-/// The measurement of the levels that is recorded in the repository.
+/// The recorded measurement of the speed and error of each level of modelling, as JSON.
 const LEVELS: &str = include_str!("../../pxpl5-cli/src/levels.json");
 
 /// Compares the levels of modelling by error and speed. Without ``experiments`` the result is the measurement that is

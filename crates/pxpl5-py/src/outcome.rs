@@ -93,7 +93,7 @@ pub(crate) fn outcome_of_run(
     }
 }
 
-/// Converts an error of the library to an exception, which carries the values measured until the error.
+/// Converts an error of the library to an exception. The exception has the values that were measured until the error.
 pub(crate) fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> PyErr {
     let text = error.to_string();
     let (name, partial, needed) = match error {

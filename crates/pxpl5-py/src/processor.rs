@@ -175,14 +175,14 @@ impl Processor {
         self.cpu.state.pc
     }
 
-    /// Returns a copy of the integer registers, of shape (32,), uint32.
+    /// Returns a copy of the integer registers as an array of shape (32,), uint32.
     #[getter]
     fn r<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, &self.cpu.state.r)
     }
 
-    /// Returns a copy of the floating-point registers as 32-bit words, of shape (32,), uint32. ``.view(numpy.float32)``
-    /// converts the words to their floating-point values.
+    /// Returns a copy of the floating-point registers as 32-bit words, in an array of shape (32,), uint32.
+    /// ``.view(numpy.float32)`` converts the words to their floating-point values.
     #[getter]
     fn f<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, &self.cpu.state.f)
@@ -230,8 +230,8 @@ impl Processor {
         Ok(all)
     }
 
-    /// Returns a copy of ``count`` words of memory, of shape (count,), uint32. ``place`` is a label or an address,
-    /// which must be a multiple of 4.
+    /// Returns a copy of ``count`` words of memory as an array of shape (count,), uint32. ``place`` is a label or an
+    /// address, which must be a multiple of 4.
     ///
     /// Raises :class:`pxpl5.SettingError` for an address outside the memory.
     #[pyo3(signature = (place, count = 1))]

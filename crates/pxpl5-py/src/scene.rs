@@ -126,31 +126,31 @@ impl Scene {
         self.scene.name()
     }
 
-    /// Returns a copy of the positions of the vertices, of shape (n, 3), float32, in metres.
+    /// Returns a copy of the positions of the vertices in metres, as an array of shape (n, 3), float32.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
         table(py, self.scene.vertices().iter().map(|vertex| vertex.position.to_array()))
     }
 
-    /// Returns a copy of the normals of the vertices, of shape (n, 3), float32, with unit length.
+    /// Returns a copy of the normals of the vertices, which have unit length, as an array of shape (n, 3), float32.
     #[getter]
     fn normals<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
         table(py, self.scene.vertices().iter().map(|vertex| vertex.normal.to_array()))
     }
 
-    /// Returns a copy of the colours of the vertices: red, green and blue, of shape (n, 3), uint8.
+    /// Returns a copy of the colours of the vertices (red, green and blue) as an array of shape (n, 3), uint8.
     #[getter]
     fn colours<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u8>> {
         table(py, self.scene.vertices().iter().map(|vertex| vertex.colour))
     }
 
-    /// Returns a copy of the triangles as indices of vertices, of shape (m, 3), uint32.
+    /// Returns a copy of the triangles as indices of vertices, in an array of shape (m, 3), uint32.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
         table(py, self.scene.triangles().iter().copied())
     }
 
-    /// Returns a copy of the spheres: centre and radius in metres, of shape (k, 4), float32.
+    /// Returns a copy of the spheres (centre and radius in metres) as an array of shape (k, 4), float32.
     #[getter]
     fn spheres<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
         table(py, self.scene.spheres().iter().map(|s| [s.centre.x, s.centre.y, s.centre.z, s.radius]))

@@ -47,7 +47,7 @@ impl Settings {
         self.file.set_text(assignment, place).map_err(wrong_setting)
     }
 
-    /// Returns true if the setting at this path has been given a value.
+    /// Returns true if the setting at this path has a value.
     fn has(&self, path: &str) -> bool {
         self.file.place_of(path).is_some()
     }

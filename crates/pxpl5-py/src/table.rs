@@ -284,7 +284,8 @@ impl Table {
         py.import("pxpl5._tables")?.call_method1("table_of", (rows, definitions))
     }
 
-    /// Returns the table as a ``pandas.DataFrame``. Needs pandas, and pyarrow for pandas before version 3.
+    /// Returns the table as a ``pandas.DataFrame``. The method needs the package pandas. With pandas before version 3,
+    /// the method also needs pyarrow.
     fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let frame = py.import("pandas")?.getattr("DataFrame")?;
@@ -294,18 +295,18 @@ impl Table {
         }
     }
 
-    /// Returns the table as a ``polars.DataFrame``. Needs polars.
+    /// Returns the table as a ``polars.DataFrame``. The method needs the package polars.
     fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("polars")?.call_method1("DataFrame", (slf,))
     }
 
     /// Returns the table as a ``pyarrow.Table`` without a copy. The fields have the definitions as metadata ``about``.
-    /// Needs pyarrow.
+    /// The method needs the package pyarrow.
     fn to_arrow<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         slf.py().import("pyarrow")?.call_method1("table", (slf,))
     }
 
-    /// Writes the table as a Parquet file, with the definitions of the columns. Needs pyarrow.
+    /// Writes the table as a Parquet file, with the definitions of the columns. The method needs the package pyarrow.
     ///
     /// Raises OSError if the file cannot be written.
     fn to_parquet(slf: &Bound<'_, Self>, path: std::path::PathBuf) -> PyResult<()> {

@@ -76,8 +76,8 @@ impl Volume {
         self.volume.frame.planes.slices()
     }
 
-    /// Returns a copy of the bits of a slice, of shape (height, width, 3), uint8. The values for red, green and blue
-    /// are 0 or 1.
+    /// Returns a copy of the bits of a slice as an array of shape (height, width, 3), uint8. The values for red, green
+    /// and blue are 0 or 1.
     ///
     /// Raises :class:`pxpl5.SettingError` for a slice that does not exist.
     fn bits<'py>(&self, py: Python<'py>, slice: Count) -> PyResult<Bound<'py, PyArray3<u8>>> {

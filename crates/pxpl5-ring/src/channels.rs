@@ -23,7 +23,7 @@ pub struct ChannelSnapshot {
     pub ends_at: Option<Time>,
 }
 
-/// A message that occupies a channel at present.
+/// A message that occupies a channel.
 #[derive(Clone, Debug)]
 pub(crate) struct MessageInFlight {
     pub(crate) source: NodeId,
@@ -122,8 +122,8 @@ impl RingChannels {
         Some((channel, ended, self.flights[channel].take()?))
     }
 
-    /// Counts one word time of the message on a channel and returns the message. The caller must return the message to
-    /// the channel by [`RingChannels::put_back`].
+    /// Counts one word time of the message on a channel and returns the message. After the word time is processed, the
+    /// message must be returned to the channel by [`RingChannels::put_back`].
     pub(crate) fn take_slot(&mut self, channel: usize) -> Option<MessageInFlight> {
         let flight = self.flights.get_mut(channel)?.take()?;
         Some(MessageInFlight { slots_left: flight.slots_left.saturating_sub(1), ..flight })

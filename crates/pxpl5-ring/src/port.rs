@@ -128,7 +128,7 @@ pub enum RingError {
         /// Time in the answer of the receiver.
         found: Time,
     },
-    /// A time given to the reference model is not a multiple of the model's tick.
+    /// A time in the input of the reference model is not a multiple of the model's tick.
     #[error("{what} of {found_ps} ps is no multiple of the tick of {tick}")]
     OffTick {
         /// Description of the time that is not a multiple of the tick.

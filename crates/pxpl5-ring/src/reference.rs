@@ -50,8 +50,8 @@ pub struct CarriedMessage {
     pub released: Time,
 }
 
-/// The receivers in the reference model. The model calls these functions for every message and word, with times at the
-/// receiver.
+/// The receivers in the reference model. The model calls these functions for every message and word. The argument `at`
+/// is the time at the receiver.
 pub trait Receivers {
     /// Returns true if the receiver is elastic: it accepts every word immediately.
     fn is_elastic(&self, destination: NodeId) -> bool;
@@ -81,15 +81,15 @@ impl Receivers for Elastic {
     }
 }
 
-/// The reference model: a ring whose time advances tick by tick. The messages are given in advance.
+/// The reference model: a ring whose time advances tick by tick. All messages are known before the first tick.
 #[derive(Debug)]
 pub struct SteppedRing<'a, R> {
     timing: RingTiming,
     n_nodes: u16,
     traffic: &'a [PlannedMessage],
     receivers: R,
-    /// Queue of each source: the indices of the waiting messages, and the time at which the first message became the
-    /// first of the queue.
+    /// Queue of each source: the indices of the waiting messages, and the time since which the first message has been
+    /// the first of the queue.
     queues: Vec<(VecDeque<usize>, Time)>,
     /// Number of messages that each source is sending on channels.
     sending: Vec<u64>,
@@ -147,7 +147,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     /// Advances tick by tick until all messages are delivered. Returns the times of each message, in the order of the
-    /// traffic.
+    /// messages in `traffic`. A tick is a step of the model's time, with the length `tick`.
     ///
     /// # Errors
     ///

@@ -59,7 +59,7 @@ struct DestinationPort {
     elastic: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
-    /// Number of messages that wait for this destination at the head of a queue.
+    /// Number of messages to this destination that are the first message of a queue and wait for a grant.
     heads: u32,
 }
 
@@ -189,8 +189,8 @@ impl Ring {
         &self.refusals
     }
 
-    /// Returns the number of occupied channels. After [`Ring::watch`] was called, the number is correct after every
-    /// event.
+    /// Returns the number of occupied channels. After a call of [`Ring::watch`], the number is correct after every
+    /// event. Without this call, the channel of an ended message can still count as occupied.
     #[must_use]
     pub fn busy_channels(&self) -> u32 {
         self.channels.busy()
@@ -223,8 +223,8 @@ impl Ring {
         Err(RingError::Length { source: message.source, destination: message.destination, words: message.words })
     }
 
-    /// Returns the messages that wait for a grant at the head of their queue, and the messages that wait for their
-    /// receiver's answer. The messages are sorted by source.
+    /// Returns the first message of each queue that waits for a grant, and the messages that wait for their receiver's
+    /// answer. The messages are sorted by source.
     #[must_use]
     pub fn waiting(&self) -> Vec<WaitingMessage> {
         let heads = self.heads.iter().filter_map(|head| self.waiting_head(*head));
@@ -359,8 +359,8 @@ impl Ring {
 
     /// Grants channels to all waiting messages that can be sent, in one pass. One pass is enough, because a grant frees
     /// nothing, and the next message of the same source comes later in the order. If nothing became free since the last
-    /// pass, messages that waited then still cannot be sent. In this case, the pass checks only messages that reached
-    /// the head of their queue at this instant.
+    /// pass, messages that waited then still cannot be sent. In this case, the pass checks only messages that became
+    /// the first of their queue at this instant.
     fn grant_all(&mut self, now: Time, context: &mut RingContext) {
         let is_for_all = std::mem::take(&mut self.unblocked);
         let mut place =

@@ -47,8 +47,8 @@ pub struct WaitingMessage {
     pub destination: NodeId,
     /// Length in words, without the overhead.
     pub words: u32,
-    /// Time at which the message was granted. Before the grant, time at which the message became the first of its
-    /// queue.
+    /// Time at which the message was granted. If the message is not granted yet, time at which the message became the
+    /// first of its queue.
     pub since: Time,
     /// Condition that the message waits for.
     pub reason: WaitReason,
@@ -59,9 +59,9 @@ pub struct WaitingMessage {
 pub enum WaitReason {
     /// The receiver must answer the announcement of the message.
     Acceptance,
-    /// The receiver is busy with a message from the port given here.
+    /// The receiver is busy with a message from this port.
     DestinationBusy(NodeId),
-    /// The receiver is reserved for an unfinished transfer from the port given here.
+    /// The receiver is reserved for an unfinished transfer from this port.
     DestinationReserved(NodeId),
     /// A channel must become free: all channels that the message can use are occupied.
     Channel,

@@ -62,7 +62,7 @@ impl WebMachine {
     ///
     /// # Errors
     ///
-    /// A message that describes the invalid setting or file, or the reason why the experiment cannot run.
+    /// Returns a message that describes the invalid setting or file, or the reason why the experiment cannot run.
     #[wasm_bindgen(constructor)]
     pub fn new(settings: &str, files: &Files) -> Result<Self, JsError> {
         Session::new(settings, files).map(Self).map_err(refused)
@@ -83,8 +83,8 @@ impl WebMachine {
     ///
     /// # Errors
     ///
-    /// A message if a row is invalid or not later than existing rows, or if the visitor does not move the head of this
-    /// experiment.
+    /// Returns a message if a row is invalid or not later than existing rows, or if the visitor does not move the head
+    /// of this experiment.
     pub fn moved(&self, rows: &str) -> Result<(), JsError> {
         self.0.moved(rows).map_err(refused)
     }
@@ -93,7 +93,7 @@ impl WebMachine {
     ///
     /// # Errors
     ///
-    /// A message if `of` is any other word.
+    /// Returns a message if `of` is any other word.
     pub fn step(&mut self, of: &str) -> Result<(), JsError> {
         self.0.step(of).map_err(refused)
     }
@@ -154,7 +154,7 @@ impl WebMachine {
     ///
     /// # Errors
     ///
-    /// A message if the machine does not have this board.
+    /// Returns a message if the machine does not have this board.
     pub fn board(&self, name: &str) -> Result<String, JsError> {
         self.0.board(name).map(|lines| lines.join("\n")).map_err(refused)
     }
@@ -248,7 +248,7 @@ impl WebMachine {
     ///
     /// # Errors
     ///
-    /// A message if the scene cannot be drawn.
+    /// Returns a message if the scene cannot be drawn.
     pub fn volume(&self) -> Result<WebVolume, JsError> {
         self.0.volume().map(WebVolume).map_err(refused)
     }
@@ -279,7 +279,7 @@ impl WebVolume {
     ///
     /// # Errors
     ///
-    /// A message if the eye can see nothing of the display.
+    /// Returns a message if the eye can see nothing of the display.
     pub fn seen(&self, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Result<Vec<u8>, JsError> {
         self.0.seen(azimuth_deg, elevation_deg, side).map_err(refused)
     }

@@ -225,13 +225,14 @@ pub trait CommandWords: Debug + Send + Sync {
     }
 }
 
-/// A receiver of renderer commands in order. The commands come as words, or as triangles in another form.
+/// A receiver of renderer commands in order. The commands come as words, or as batches of triangles
+/// ([`TriangleBatch`]).
 pub trait CommandSink {
-    /// Returns the list to which the caller appends the words of commands.
+    /// Returns the list of words. The sender of commands appends the words of its commands to this list.
     fn words(&mut self) -> &mut Vec<Word>;
 
-    /// Offers triangles that follow the words appended so far. Returns true if the sink accepts the triangles in this
-    /// form. If the result is false, the caller must append the words of the triangles instead.
+    /// Offers a batch of triangles that follow the words appended so far. Returns true if the sink accepts the batch.
+    /// If the result is false, the sender must append the words of the triangles to [`CommandSink::words`] instead.
     fn triangles(&mut self, batch: &TriangleBatch<'_>) -> bool;
 }
 

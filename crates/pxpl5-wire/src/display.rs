@@ -102,7 +102,7 @@ pub type DisplayContext = Context<DisplayEvent, DisplayOutput>;
 
 /// Boards that receive pixels from the ring and show them on surfaces.
 pub trait Display: Any + Debug + Send + Sync {
-    /// Returns the name of this kind of display, as given to `--display`.
+    /// Returns the name of this kind of display, which is the value of the option `--display`.
     fn name(&self) -> &'static str;
 
     /// Returns the display's ring ports, in rising order.
@@ -114,7 +114,7 @@ pub trait Display: Any + Debug + Send + Sync {
     /// Returns the time at which a period begins: a tick of the display's clock. The first period begins at time zero.
     fn tick(&self, period: PeriodNumber) -> Time;
 
-    /// Returns the number of the period that contains an instant. At a tick this is the period that begins.
+    /// Returns the number of the period that contains an instant. At a tick, the result is the period that begins.
     fn period_at(&self, time: Time) -> PeriodNumber;
 
     /// Handles one event. New events and outputs are passed to `context`.
@@ -167,7 +167,7 @@ pub trait Display: Any + Debug + Send + Sync {
     fn last_seen(&self) -> Option<PeriodNumber>;
 
     /// Returns the index of the first row that is lit in a period, and the distance between lit rows. Both numbers are
-    /// in rows of the surface. Callers need both numbers to shift a picture row by row.
+    /// in rows of the surface. Code that shifts a picture row by row needs both numbers.
     fn rows_lit(&self, _period: PeriodNumber) -> (u32, u32) {
         (0, 1)
     }

@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 /// the offset from a pixel's corner to its centre in `c`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Linear {
-    /// Increase of the value from one pixel to the next one on the right.
+    /// Increase of the value from a pixel to its right neighbour.
     pub a: i32,
-    /// Increase of the value from one line to the next one below.
+    /// Increase of the value from a pixel to the pixel below.
     pub b: i32,
     /// Value of the expression at pixel (0, 0).
     pub c: i32,
@@ -65,8 +65,8 @@ pub struct TriangleBatch<'a> {
     pub len: usize,
     /// Edge expressions of the triangles. A pixel is covered if all three values are at least 0.
     pub edges: &'a [LinearLanes; 3],
-    /// Plane expressions of the triangles. The first is the depth. The others are red, green and blue, or the
-    /// components x, y and z of the normal.
+    /// Plane expressions of the triangles. The first expression is the depth. The other three expressions are red,
+    /// green and blue, or the components x, y and z of the normal.
     pub planes: &'a [LinearLanes; 4],
     /// Colours 0x00RRGGBB of triangles with normals, or `None` for triangles with colour expressions.
     pub colours: Option<[u32; LANES]>,

@@ -57,8 +57,8 @@ impl From<Eye> for SurfaceId {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct RegionId(pub u16);
 
-/// The division of a picture into a grid of regions. All lengths are in pixels. Regions in the last column and row can
-/// be smaller than the others.
+/// The division of a picture into a grid of regions. All lengths are in pixels. Regions in the last column and in the
+/// last row can be smaller than all other regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RegionGrid {
     /// Width of the picture in pixels.

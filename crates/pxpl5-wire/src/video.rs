@@ -37,7 +37,7 @@ pub struct Video {
 }
 
 impl Video {
-    /// Makes the video signal described by these numbers. Returns `None` if a number is too large for a clock.
+    /// Makes the video signal that `numbers` describes. Returns `None` if a number is too large for a clock.
     #[must_use]
     pub const fn new(numbers: VideoNumbers) -> Option<Self> {
         let VideoNumbers { pixel_ps, pixel_divisor, line_pixels, frame_lines, .. } = numbers;
@@ -56,7 +56,8 @@ impl Video {
         self.field.edge(field.0)
     }
 
-    /// Returns the number of the field that is being scanned at `time`. At a retrace this is the field that begins.
+    /// Returns the number of the field that is being scanned at `time`. At a retrace, the result is the field that
+    /// begins.
     #[must_use]
     pub const fn field_at(&self, time: Time) -> PeriodNumber {
         let n = self.field.edge_at_or_after(time);

@@ -10,9 +10,9 @@ use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId,
 pub struct RenderingControlConfig {
     /// Ring port of the host, which sends views and edits.
     pub host: NodeId,
-    /// Ring port of the master GP, which begins every stage.
+    /// Ring port of the master, which begins every stage.
     pub master: NodeId,
-    /// Ring ports of the slave GPs, at least one.
+    /// Ring ports of the slaves, at least one.
     pub slaves: Vec<NodeId>,
     /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,
@@ -40,7 +40,8 @@ impl RenderingControlConfig {
         self.frame_buffers.len() as u64
     }
 
-    /// Returns the first drawing of a frame, which is the picture of its first eye.
+    /// Returns the number of a frame's first drawing. A drawing is the picture of one eye. The first eye is drawn
+    /// first.
     pub(crate) fn first_of(&self, frame: PictureNumber) -> EyeDrawing {
         EyeDrawing::first_of(frame, self.eyes())
     }
@@ -49,7 +50,7 @@ impl RenderingControlConfig {
         drawing.frame(self.eyes())
     }
 
-    /// Returns the surface that shows a drawing: the display of the drawing's eye.
+    /// Returns the surface that shows a drawing (the picture of one eye).
     pub(crate) fn eye_of(&self, drawing: EyeDrawing) -> SurfaceId {
         SurfaceId(drawing.eye(self.eyes()) as u16)
     }

@@ -9,10 +9,10 @@
 //!   renderers, display memories:              COPY u: colours, then depths          swap when all are there
 //! ```
 //!
-//! The division of work is the same as in Rendering Control (TR94). One GP is the [`master`](fn@master). The other GPs
-//! are slaves with two programs each. A token for each region moves from slave to slave. The rules of TR94 for the
-//! start of a stage apply to updates instead of frames. An *update* draws one display memory: all six faces, in the
-//! grid of [`address_recalculation::region_grid`].
+//! The division of work is the same as in Rendering Control (TR94). One graphics processor is the
+//! [`master`](fn@master). The other graphics processors are slaves with two programs each. A token for each region
+//! moves from slave to slave. The rules of TR94 for the start of a stage apply to updates instead of frames. An
+//! *update* draws one display memory: all six faces, in the grid of [`address_recalculation::region_grid`].
 //!
 //! # Differences from Rendering Control
 //!
@@ -24,15 +24,15 @@
 //!   bits. The near plane is 0, and empty texels have all bits set. All views have the same near and far plane, so
 //!   depths of different memories can be compared. A region is copied as two words for each texel in 32 messages,
 //!   through two blocks of the backing store. With 16 bits of colour and 16 bits of depth, a region takes 16 messages.
-//! - **Empty regions** get no token and are not copied. The message that announces an update omits them. An update
-//!   without primitives still copies one region, so that its end is detected.
+//! - **Empty regions** get no token and are not copied. The message that announces an update omits empty regions. An
+//!   update without primitives still copies one region, so that its end is detected.
 //! - **Memories** are updated in the order that the host chooses. Each memory has its own double buffer. An update must
 //!   not be copied before the previous update of the same memory is visible. The master requests the swap at the
 //!   beginning of the update. The display swaps at the first retrace at which the update is complete, and counts the
 //!   earlier retraces. The memories of a group swap together.
 //! - **Warping.** An update can displace its vertices ([`FaceWarp`]). Each slave displaces the vertices that it
-//!   transforms. Vertices on the border to a slower memory then appear in the same direction in both memories. Spheres
-//!   and moving objects are not warped.
+//!   transforms. Some memories are updated less often than other memories. A vertex on the border between two memories
+//!   then appears in the same direction in both memories. Spheres and moving objects are not warped.
 //!
 //! # Not modelled
 //!

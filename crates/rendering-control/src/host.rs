@@ -8,12 +8,13 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
 /// Sends one frame after the other. For each frame, the program reads the tracker and sends the view and the edits over
-/// the host's link to all GPs. The program then waits for the end of EDIT.
+/// the host's link to all graphics processors. The program then waits for the end of EDIT.
 ///
 /// SEND of a frame must not begin before EDIT of the previous frame has finished (TR94).
 ///
-/// `start_of` gets the time at which the host is ready for a frame. The function returns the time at which the frame
-/// begins, or `None` if no further frame begins. `view_of` returns a view whose pose is sampled at the given time.
+/// The argument of `start_of` is the time at which the host is ready for a frame. `start_of` returns the time at which
+/// the frame begins, or `None` if no more frames begin. `view_of` returns a view whose pose is sampled at the given
+/// time.
 ///
 /// # Errors
 ///

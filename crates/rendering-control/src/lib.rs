@@ -7,15 +7,17 @@
 //!   renderers, frame buffers:               COPY left, COPY right          swap at the retrace
 //! ```
 //!
-//! One GP is the [`master`](fn@master), which begins each stage when the [`rules`] of TR94 permit the stage. The other
-//! GPs are slaves. Each slave runs two programs: EDIT and TRANSFORM in the foreground, and an interrupt program that
-//! receives tokens and sends bins. The [`host`](fn@host) reads the tracker and sends view and edits.
+//! One graphics processor is the [`master`](fn@master), which begins each stage when the [`rules`] of TR94 permit the
+//! stage. The other graphics processors are slaves. Each slave runs two programs: EDIT and TRANSFORM in the foreground,
+//! and an interrupt program that receives tokens and sends bins. The [`host`](fn@host) reads the tracker and sends view
+//! and edits.
 //!
-//! RENDER: the master assigns the heaviest regions to the renderers first. The master creates a token for each region
-//! and sends the token to a slave. The slaves take turns as the first holder of a token. A slave with a token sends its
-//! bin of the region and passes the token on. The last slave adds the commands that end the region. If the frame buffer
-//! was available when the master sent the token, the last slave also adds the copy command. Otherwise the renderer
-//! keeps the region until the master sends the copy command. RENDER ends when the last commands are *accepted*.
+//! RENDER: the master first assigns the regions with the most bin entries to the renderers. The master creates a token
+//! for each region and sends the token to a slave. The slaves take turns as the first holder of a token. A slave with a
+//! token sends its bin of the region and passes the token on. The last slave adds the commands that end the region. If
+//! the frame buffer was available when the master sent the token, the last slave also adds the copy command. Otherwise
+//! the renderer keeps the region until the master sends the copy command. RENDER ends when the last commands are
+//! *accepted*.
 //!
 //! An observer measures the latency from events in the trace. The latency starts with TRANSFORM of an eye's picture.
 //! Three ends are possible: the end of COPY of this picture, the retrace at which the picture becomes visible, or the

@@ -1,4 +1,4 @@
-//! Program of the master GP, which synchronizes host, slaves, renderers and frame buffers.
+//! Program of the master, which synchronizes host, slaves, renderers and frame buffers.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::{RegionEnd, StageOrder, Token};
@@ -8,7 +8,7 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyPath, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
 
-/// State of a renderer, as it follows from the messages that the master has received.
+/// State of a renderer, derived from the messages that the master has received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
@@ -31,7 +31,7 @@ struct AllowedCopy {
 #[derive(Debug)]
 struct RenderStage {
     drawing: EyeDrawing,
-    /// Regions without an assigned renderer, heaviest first.
+    /// Regions without an assigned renderer, in descending order of their bin entries.
     unassigned: VecDeque<RegionId>,
     /// Number of tokens that have not returned from the slaves.
     tokens_out: u16,
@@ -56,7 +56,8 @@ struct RegionMaster {
     /// The next frame for which a swap will be requested.
     next_swap: PictureNumber,
     edited: SlaveReports,
-    /// Reports on unfinished drawings. The first element belongs to the drawing with number `completed.transformed`.
+    /// Reports about the drawings (pictures of one eye) that not all slaves have transformed. The first element belongs
+    /// to the drawing with number `completed.transformed`.
     transformed: VecDeque<SlaveReports>,
     /// Weights of the regions (their numbers of bin entries), for drawings that are transformed but not rendered.
     weights: VecDeque<Vec<u64>>,
@@ -69,7 +70,7 @@ struct RegionMaster {
     next_slave: usize,
 }
 
-/// Runs the program of the master GP.
+/// Runs the program of the master.
 ///
 /// # Errors
 ///
@@ -168,7 +169,8 @@ impl RegionMaster {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Begins RENDER of the next drawing if the rules permit it. Sorts the drawing's regions by weight, heaviest first.
+    /// Begins RENDER of the next drawing if the rules permit it. Sorts the drawing's regions in descending order of
+    /// their bin entries.
     fn begin_render(&mut self) {
         let drawing = EyeDrawing(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(drawing) {
@@ -323,8 +325,8 @@ impl RegionMaster {
         }
     }
 
-    /// Returns true if all regions of a drawing have been copied. A count of regions is sufficient, because the
-    /// drawings reach a frame buffer in order.
+    /// Returns true if all regions of a drawing (the picture of one eye) have been copied. A count of regions is
+    /// sufficient, because the drawings reach a frame buffer in order.
     fn is_copied(&self, drawing: EyeDrawing) -> bool {
         let regions = u64::from(self.config.grid().regions());
         self.copied_regions[self.config.eye_of(drawing).index()] >= regions * self.config.frame_of(drawing).next().0

@@ -22,9 +22,10 @@ pub(crate) struct Token {
     pub(crate) region: RegionId,
     /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
-    /// Number of slaves that have not finished with the token, including the slave that holds the token.
+    /// Number of slaves that have not sent their bins yet, including the slave that holds the token.
     pub(crate) slaves_left: u16,
-    /// Destination of the region's pixels at its end. The last slave adds the command for this destination.
+    /// Destination of the region's pixels after the region's last commands. The last slave adds the command for this
+    /// destination.
     pub(crate) end: RegionEnd,
 }
 
@@ -35,7 +36,7 @@ pub(crate) enum RegionEnd {
     Held,
     /// The region goes to the renderer's backing store and stays there until the master sends a copy command.
     Stored,
-    /// The region goes through the backing store to its frame buffer, without a further command.
+    /// The region goes through the backing store to its frame buffer. The master sends no copy command.
     Copied,
 }
 
@@ -55,7 +56,7 @@ impl RegionEnd {
 /// A message between host, master, slaves and renderers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StageOrder {
-    /// From host to all: view and edits of a frame.
+    /// From host to all graphics processors: view and edits of a frame.
     Send(FrameView),
     /// From master to slaves: apply the edits of a frame.
     Edit(PictureNumber),
@@ -63,7 +64,7 @@ pub(crate) enum StageOrder {
     Edited(PictureNumber),
     /// From master to host: all slaves have applied the edits of a frame.
     EditsDone(PictureNumber),
-    /// From master to slaves: TRANSFORM of a drawing may begin.
+    /// From master to slaves: TRANSFORM of a drawing (the picture of one eye) may begin.
     Transform(EyeDrawing),
     /// From slave to master: a drawing is transformed. The message contains the number of entries in each region's bin.
     Transformed(EyeDrawing, Vec<u32>),

@@ -57,7 +57,7 @@ pub struct Completed {
 }
 
 impl Completed {
-    /// Returns the state at power-on. No frame or drawing has passed any stage.
+    /// Returns the progress at power-on. No frame or drawing has passed any stage.
     #[must_use]
     pub const fn none(eyes: u64) -> Self {
         Self { eyes, sent: 0, edited: 0, transformed: 0, rendered: 0, copied: 0, swapped: 0 }
@@ -65,8 +65,9 @@ impl Completed {
 
     /// Returns true if EDIT of a frame may begin.
     ///
-    /// Four stages must be complete: SEND of the frame, TRANSFORM of the previous frame, RENDER of the second previous
-    /// drawing, and COPY of the third previous drawing. A drawing is the picture of one eye, or of a mono frame.
+    /// Let n be the number of the frame's first drawing. A drawing is the picture of one eye, or of a mono frame. Four
+    /// stages must be complete: SEND of the frame, TRANSFORM of drawing n - 1, RENDER of drawing n - 2, and COPY of
+    /// drawing n - 3.
     ///
     /// If RENDER or COPY were not complete, the earlier drawings would still use the buffers.
     #[must_use]
@@ -75,11 +76,11 @@ impl Completed {
         self.sent > frame.0 && self.transformed >= first.0 && self.buffers_free(first)
     }
 
-    /// Returns true if TRANSFORM of a drawing (the picture of one eye) may begin.
+    /// Returns true if TRANSFORM of drawing number n (the picture of one eye) may begin.
     ///
     /// All slaves must have finished EDIT of the drawing's frame. (TR94 requires only that this EDIT has begun.) RENDER
-    /// of the second previous drawing and COPY of the third previous drawing must be complete. The rule does not apply
-    /// to the first eye of a frame. Each slave begins the first eye when its own edits are done.
+    /// of drawing n - 2 and COPY of drawing n - 3 must be complete. The rule does not apply to the first eye of a
+    /// frame. Each slave begins the first eye when its own edits are done.
     #[must_use]
     pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
         self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)

@@ -1,4 +1,4 @@
-//! Programs of a slave GP: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
+//! Programs of a slave: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
 
 use crate::config::RenderingControlConfig;
 use crate::master::copy_order;
@@ -144,7 +144,8 @@ async fn transform(
     Ok(())
 }
 
-/// Waits until the bins of a pass fit in memory, or until the other context is empty.
+/// Waits until the bins of a pass fit in memory, or until the slave's second bin context is empty. `context` is the bin
+/// context (set of bins) of the pass.
 async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: u8) {
     let regions = (0..pass.picture().viewport.grid().regions() as u16).map(RegionId);
     let bytes = regions.map(|region| u64::from(pass.counts(region).total()) * BIN_ENTRY_BYTES).sum();

@@ -37,8 +37,8 @@ impl Binding {
     /// Assigns the regions to the renderers in turn. All top regions come before all bottom regions, and in each half
     /// the left eye comes before the right eye.
     ///
-    /// Each renderer thus gets nearly the same number of regions of each kind. Clumps are sent to the regions in this
-    /// order, so that all renderers have work.
+    /// Each renderer thus gets nearly the same number of regions of each half and each eye. Clumps are sent to the
+    /// regions in this order, so that all renderers have work.
     ///
     /// # Errors
     ///

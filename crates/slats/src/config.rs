@@ -13,7 +13,7 @@ use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNu
 pub struct SlatsConfig {
     /// Ring port of the host, which sends the viewing transforms.
     pub host: NodeId,
-    /// Ring ports of the GPs. The first GP is the leader.
+    /// Ring ports of the graphics processors. The first graphics processor is the leader.
     pub processors: Vec<NodeId>,
     /// Ring ports of the renderers. [`crate::BoundRegion`] uses the indices of this list.
     pub renderers: Vec<NodeId>,
@@ -23,7 +23,7 @@ pub struct SlatsConfig {
     pub copy: CopySchedule,
     /// Binning mode: the regions that receive the commands of a clump.
     pub binning: RegionBinning,
-    /// Shading mode: precomputed vertex colours ([`Shading::Precomputed`]) or lighting on the GPs
+    /// Shading mode: precomputed vertex colours ([`Shading::Precomputed`]) or lighting on the graphics processors
     /// ([`Shading::Gouraud`]).
     pub shading: Shading,
     /// Division of pixel memory among contexts.

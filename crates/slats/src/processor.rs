@@ -18,27 +18,28 @@ use std::sync::Arc;
 /// Largest number of primitives in a clump. The commands of a clump for one region fit into one message (TR94).
 pub const CLUMP: usize = 30;
 
-/// First word of the message by which another GP notifies the leading GP that all of its clumps of a field were
-/// accepted. The number of the field follows this word.
+/// First word of a message to the leading graphics processor. With this message, the sender reports that all of its
+/// clumps of a field were accepted. The number of the field follows this word.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 
-/// First word of the message by which the leading GP begins a field on the other GPs. The number and the view of the
-/// field follow this word.
+/// First word of the message by which the leading graphics processor begins a field on the other graphics processors.
+/// The number and the view of the field follow this word.
 const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
 struct ProcessorState {
-    /// The newest view from the host. Only the leading GP stores this view.
+    /// The newest view from the host. Only the leading graphics processor stores this view.
     newest: Option<FrameView>,
-    /// Fields that the leading GP has begun. Only the other GPs store these fields.
+    /// Fields that the leading graphics processor has begun. Only the other graphics processors store these fields.
     begun: VecDeque<(PeriodNumber, FrameView)>,
     /// Number of renderers that have acknowledged the copy of their last region since the last copy order.
     copied: usize,
     /// The prepared copies of the bottom regions. These copies wait until all top regions are copied.
     bottom: Option<Bottom>,
-    /// Index of the buffer with the last complete field, for even and for odd lines.
+    /// For even and for odd lines: index of the buffer with the last complete field of these lines.
     complete: [u8; 2],
-    /// For each unfinished field, the number of other GPs that have finished their share of the field.
+    /// For each unfinished field: the number of graphics processors that have finished their share of the field, not
+    /// counting the leading graphics processor.
     finished: Vec<(PeriodNumber, usize)>,
 }
 
@@ -48,8 +49,8 @@ struct Bottom {
     chain: Chain,
     /// Field of the bottom regions.
     field: PeriodNumber,
-    /// Earliest field period in which the copies may start. Without a backup buffer, this is the period that shows the
-    /// field.
+    /// Earliest field period in which the copies may start. Without a backup buffer, the copies may start in the period
+    /// that shows the field.
     not_before: PeriodNumber,
     /// Number of renderers that copy top regions. The bottom copies start after all these renderers have acknowledged
     /// their copies.
@@ -61,7 +62,7 @@ struct Bottom {
 
 type SharedState = Rc<RefCell<ProcessorState>>;
 
-/// Returns the programs of the GP with index `index`, for both priorities of its board.
+/// Returns the programs of the graphics processor with index `index`, for both priorities of its board.
 ///
 /// Each program fails with [`Fault::Memory`] if the display list does not fit into memory. A program fails with
 /// [`Fault::Protocol`] for an unknown message.
@@ -94,8 +95,8 @@ pub fn processor(
     })
 }
 
-/// The frame buffers of both eyes under [`CopySchedule::Backup`]. The leading GP requests that the frame buffers show
-/// the last complete field.
+/// The frame buffers of both eyes under [`CopySchedule::Backup`]. The leading graphics processor requests that the
+/// frame buffers show the last complete field.
 #[derive(Clone, Copy, Debug)]
 struct Backup {
     frame_buffers: [NodeId; 2],
@@ -107,8 +108,8 @@ enum Event {
     Retrace(PeriodNumber),
 }
 
-/// Runs the interrupt program. The program stores the newest view and counts the GPs that have finished a field. When
-/// the top regions are copied, the program starts the copies of the bottom regions.
+/// Runs the interrupt program. The program stores the newest view and counts the graphics processors that have finished
+/// a field. When the top regions are copied, the program starts the copies of the bottom regions.
 ///
 /// With a backup buffer, the program also sends a request after every retrace. This request selects the field that the
 /// frame buffers show in the next period.
@@ -161,8 +162,8 @@ impl Backup {
         }
     }
 
-    /// Requests that the frame buffers show the last complete field with the lines of `period` from the start of
-    /// `period` on. If the period has already begun, the function requests nothing.
+    /// Requests that, from the start of `period` on, the frame buffers show the last complete field with the same lines
+    /// (even or odd) as `period`. If the period has already begun, the function requests nothing.
     ///
     /// A later request replaces an earlier request.
     async fn ask(self, gp: &Gp, state: &SharedState, period: PeriodNumber) {
@@ -247,8 +248,8 @@ impl SlatsProcessor {
         if self.index == 0 { self.lead().await } else { self.follow().await }
     }
 
-    /// Runs the leading GP's program. At each retrace, the program begins a new field if the previous field is
-    /// finished.
+    /// Runs the leading graphics processor's program. At each retrace, the program begins a new field if the previous
+    /// field is finished.
     async fn lead(self) -> Result<(), Fault> {
         self.gp.until("the first view from the host", || self.state.borrow().newest.as_ref().map(|_| ())).await;
         let mut begin_at = self.gp.field().next();
@@ -291,8 +292,8 @@ impl SlatsProcessor {
         }
     }
 
-    /// Waits until the copies of the previous field's bottom regions have started. The caller's next messages clear
-    /// these regions, so they must not be sent earlier.
+    /// Waits until the copies of the previous field's bottom regions have started. The first messages of the next field
+    /// clear these regions, so these messages must not be sent earlier.
     async fn bottom_started(&self) {
         self.gp.until("the copies of the top regions", || self.state.borrow().bottom.is_none().then_some(())).await;
     }
@@ -313,7 +314,8 @@ impl SlatsProcessor {
         if self.config.copy == CopySchedule::Backup { 1 - complete } else { 0 }
     }
 
-    /// Runs the program of the other GPs. The program draws this GP's share of every field that the leading GP begins.
+    /// Runs the program of the other graphics processors. The program draws this graphics processor's share of every
+    /// field that the leading graphics processor begins.
     async fn follow(self) -> Result<(), Fault> {
         loop {
             let (field, view) =
@@ -327,14 +329,16 @@ impl SlatsProcessor {
         }
     }
 
-    /// Returns true if there is only one GP. The first clump of a single GP clears the regions.
+    /// Returns true if there is only one graphics processor. The first clump of a single graphics processor clears the
+    /// regions.
     fn is_alone(&self) -> bool {
         self.config.processors.len() == 1
     }
 
-    /// Clears all regions by a separate chain of messages, which is needed if there are several GPs.
+    /// Clears all regions by a separate chain of messages, which is needed if there are several graphics processors.
     ///
-    /// The other GPs send their clumps only after this chain, so the chain cannot clear pixels of these clumps.
+    /// The other graphics processors send their clumps only after this chain, so the chain cannot clear pixels of these
+    /// clumps.
     async fn clear(&self, field: PeriodNumber, view: &FrameView) {
         let picture = self.config.picture(FieldParity::of_field(field));
         let nothing = self.share.nothing();
@@ -350,7 +354,7 @@ impl SlatsProcessor {
         self.gp.send_batch(messages.collect()).await;
     }
 
-    /// Draws this GP's share of a field. The field is shown from the retrace of `field` on.
+    /// Draws this graphics processor's share of a field. The field is shown from the retrace of `field` on.
     async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);

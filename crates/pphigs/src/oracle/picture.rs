@@ -29,7 +29,8 @@ pub struct Tie<'a> {
 }
 
 impl IdealPicture {
-    /// Returns the image. A pixel with a tie has the colour of the primitive that comes first in the display list.
+    /// Returns the image. If several primitives are nearest at a pixel, the pixel has the colour of the primitive that
+    /// comes first in the display list.
     #[must_use]
     pub const fn image(&self) -> &RgbImage {
         &self.image
@@ -42,14 +43,14 @@ impl IdealPicture {
         &self.depths
     }
 
-    /// Returns the pixels with a tie, row by row. On the machine, the order in which commands arrive determines the
-    /// colours of these pixels.
+    /// Returns the pixels at which several primitives have the same smallest depth, row by row. On the machine, the
+    /// order in which commands arrive determines the colours of these pixels.
     pub fn ties(&self) -> impl ExactSizeIterator<Item = Tie<'_>> {
         self.ties.iter().map(|([y, x], colours)| Tie { x: *x, y: *y, colours })
     }
 
-    /// Returns the pixels (x, y) of another image whose colour is wrong, row by row. At a tie, the colour of every
-    /// nearest primitive is right.
+    /// Returns the pixels (x, y) of the image `other` whose colour is wrong, row by row. At a pixel with several
+    /// nearest primitives, the colour of each of these primitives is right.
     ///
     /// If `other` has a different size, all its pixels are returned.
     #[must_use]
@@ -74,13 +75,14 @@ struct Nearest {
     paint: Paint,
 }
 
-/// The nearest primitive of every pixel while primitives are drawn.
+/// A buffer with the nearest primitive drawn so far at each pixel.
 #[derive(Debug)]
 pub(crate) struct DepthBuffer {
     width: u32,
     far: u32,
     nearest: Vec<Option<Nearest>>,
-    /// Colours or surfaces of further primitives with the same depth as the nearest primitive, by row and column.
+    /// Colours or surfaces of the other primitives that have the same depth as the nearest primitive, by row and
+    /// column.
     tied: BTreeMap<[u32; 2], Vec<Paint>>,
 }
 
@@ -106,8 +108,8 @@ impl DepthBuffer {
         }
     }
 
-    /// Returns the picture with a background colour. `colour` converts the stored value of a pixel to its colour.
-    /// `depth` converts a stored depth to 24 bits.
+    /// Returns the finished picture. Pixels without a primitive get the background colour. `colour` converts the stored
+    /// value of a pixel to its colour. `depth` converts a stored depth to 24 bits.
     pub(crate) fn finish(
         self,
         background: [u8; 3],

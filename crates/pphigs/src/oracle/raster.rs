@@ -142,7 +142,7 @@ impl Raster<'_> {
         }
     }
 
-    /// Calls `sink` for each pixel of the given regions, which together contain a sphere.
+    /// Calls `sink` for each pixel of the regions in `regions`. A sphere lies within these regions.
     fn around(&self, regions: RegionMask, mut sink: impl FnMut(i32, i32)) {
         let grid = self.picture.viewport.grid();
         for region in regions.iter() {

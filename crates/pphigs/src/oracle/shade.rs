@@ -34,7 +34,7 @@ impl Paint {
 /// Largest value of a cosine, which is a number of 10 bits. The value 1024 would stand for 1.0.
 const COSINE_MAX: i32 = 1023;
 
-/// Number of times that the cosine of a highlight is squared. This makes the highlight small.
+/// Number of times that the cosine of a highlight is squared. The repeated squaring makes the highlight small.
 const SQUARINGS: usize = 5;
 
 /// Returns a colour component at a pixel, truncated to 8 bits. `plane` is the linear expression of the component.

@@ -1,14 +1,14 @@
-//! Widths of those parts of a pixel's memory that depend on the layout.
+//! Numbers of bits of a pixel's values, as far as the layout of pixel memory determines them.
 
 use pxpl5_renderer::Layout;
 use pxpl5_wire::format::{Z_BITS, Z_FRACTION_BITS};
 
-/// Numbers of bits of those values of a pixel that depend on the layout of pixel memory.
+/// Numbers of bits of a pixel's values, as far as the layout of pixel memory determines them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Widths {
     z_bits: u32,
-    /// Bits of a sphere's square root, 10 to 12. A layout without a root cannot draw spheres. In this case, the value
-    /// is 12.
+    /// Bits of a sphere's square root, 10 to 12. A layout of pixel memory without bits for the root cannot draw
+    /// spheres. The value is then 12.
     pub(crate) root_bits: u32,
 }
 
@@ -28,5 +28,5 @@ impl Widths {
     }
 }
 
-/// Number of bits of the square root for which a sphere's operands are computed.
+/// Number of bits of the square root that the computation of a sphere's operands assumes.
 pub(crate) const ROOT_BITS: u32 = 12;

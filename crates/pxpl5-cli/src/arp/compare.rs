@@ -1,5 +1,5 @@
-//! The command `pxpl5 arp compare`. Compares all policies (rules for what is drawn when) and warps on one walk of a
-//! viewer through a scene.
+//! The command `pxpl5 arp compare`, which compares all policies (rules for what is drawn when) and warps on one walk of
+//! a viewer through a scene.
 
 use super::run::widths;
 use super::settings::WalkArgs;

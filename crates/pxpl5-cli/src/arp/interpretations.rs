@@ -1,5 +1,5 @@
-//! The command `pxpl5 arp interpretations`, which ranks the interpretations of table 1 of the priority rendering
-//! paper.
+//! The command `pxpl5 arp interpretations`. The paper on priority rendering leaves questions open about its table 1.
+//! The command ranks the possible answers.
 
 use crate::error::CliError;
 use crate::terminal::{advance, print, progress};

@@ -70,8 +70,8 @@ const LENS: &str = "arp.lens";
 type GivenSettings = Vec<(String, String, String)>;
 
 impl WalkArgs {
-    /// Returns the scene and the plan of the walk (frames seen along a path). Prints a warning for every number outside
-    /// its documented range.
+    /// Returns the scene, and all settings of the walk (frames seen along a path). Prints a warning for every number
+    /// outside its documented range.
     ///
     /// # Errors
     ///
@@ -111,7 +111,8 @@ impl WalkArgs {
         self.budget.admit_estimate(all, "walk fewer frames (--set walk.frames)")
     }
 
-    /// Returns the parameters of the display with cube faces, with the given lens and settings.
+    /// Returns the parameters of the display with cube faces. `lens` and `sets` are the values of the options `--lens`
+    /// and `--set`.
     ///
     /// # Errors
     ///

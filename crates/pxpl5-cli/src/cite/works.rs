@@ -32,7 +32,7 @@ pub(super) struct Work {
 
 const UNC: &str = "University of North Carolina at Chapel Hill";
 
-/// All cited papers. docs/sources.md has the same papers and the other sources.
+/// All cited papers. docs/sources.md lists the same papers, and also all other sources of the project.
 pub(super) const WORKS: &[Work] = &[
     Work {
         key: "F89",

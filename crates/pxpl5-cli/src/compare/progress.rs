@@ -17,7 +17,7 @@ pub(super) struct CompareProgress {
     runs: (AtomicU64, AtomicU64),
 }
 
-/// Number of plain lines about the runs of a comparison. Further lines report the rows.
+/// Number of plain lines about the runs of a comparison. Additional lines report finished rows.
 const LINES: u64 = 10;
 
 impl CompareProgress {
@@ -75,7 +75,7 @@ impl CompareProgress {
     }
 }
 
-/// Returns the name of a row, its mean error, and the pictures that were not shown.
+/// Returns the name of a row, its mean error, and the number of due pictures that were not shown.
 fn result(row: &ComparisonRow) -> String {
     let error = row.error.mean_px.mean;
     let error = if error.is_finite() { format!("error {error:.2} px") } else { "no error".to_owned() };

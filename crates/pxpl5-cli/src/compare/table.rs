@@ -73,15 +73,16 @@ fn percent(share: f64) -> f64 {
     (share * 1e8).round() / 1e6
 }
 
-/// Returns the name of a row. If a bootstrap gave the confidence interval of the row, the lengths of the row's series
-/// and of its blocks follow, in fields.
+/// Returns the name of a row. If a bootstrap gave the confidence interval of the row, the text also has two lengths in
+/// fields: the length of the row's series of errors, and the length of the bootstrap's blocks.
 fn with_blocks(row: &ComparisonRow) -> String {
     let blocks =
         row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));
     format!("{}{}", row.pipeline, blocks.unwrap_or_default())
 }
 
-/// Returns sentences about the number of seeds of each row, if the comparison added seeds to reach a given precision.
+/// Returns sentences about the number of seeds of each row, if the comparison added seeds to reach the precision of
+/// `--until-precision`.
 fn imprecise(comparison: &Comparison) -> String {
     let Some(width) = &comparison.until_precision else { return String::new() };
     let rows = |precise: bool| {

@@ -67,14 +67,14 @@ fn surface(stepper: &Stepper, label: &str) -> Result<SurfaceId, String> {
     })
 }
 
-/// Describes the picture that the display's beam has drawn so far. Saves the picture if a file is given.
+/// Describes the picture that the display's beam has drawn so far. Saves the picture if `file` is a name.
 pub(super) fn seen(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let picture = stepper.seen(id).ok_or_else(|| format!("{label} has no picture yet"))?;
     describe_picture(&picture, label, file)
 }
 
-/// Describes the ideal picture at the current time. Saves the picture if a file is given.
+/// Describes the ideal picture at the current time. Saves the picture if `file` is a name.
 pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
     let id = surface(stepper, label)?;
     let ideal = stepper.ideal_picture(id).ok_or_else(|| format!("{label} has no ideal picture"))?;

@@ -165,7 +165,7 @@ pub(super) fn base_of_code(stepper: &Stepper, board: Board) -> Result<u32, Strin
 ///
 /// # Errors
 ///
-/// Returns the known labels.
+/// Returns an error that lists the known labels.
 pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str) -> Result<u32, String> {
     let all = (0..stepper.record().ports().gps.len()).map(Board::Gp);
     let boards = board.map_or_else(|| all.collect(), |board| vec![board]);

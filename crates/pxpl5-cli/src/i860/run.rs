@@ -106,7 +106,7 @@ fn read(ram: &Ram, (address, count): (u32, usize)) -> Result<Span, String> {
     Ok(Span { address, words })
 }
 
-/// Returns the first [`CHANGED_SHOWN`] changed memory words, joined into ranges, and the number of further changed
+/// Returns the first [`CHANGED_SHOWN`] changed memory words, joined into ranges, and the number of all other changed
 /// words.
 fn changed(before: &Ram, after: &Ram) -> (Vec<Span>, usize) {
     let words = |ram: &'_ Ram| -> Vec<u32> {
@@ -157,7 +157,7 @@ impl Run<'_> {
         text
     }
 
-    /// Returns the clocks spent between each label and the next.
+    /// Returns each label of the program, with the clocks spent from this label to the label that follows.
     fn clocks_by_label(&self) -> Vec<(&str, u64)> {
         let labels: Vec<(&str, u32)> = self.program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
         let by_label = self.cpu.watched().map(|watched| watched.by_label(&labels)).unwrap_or_default();

@@ -30,7 +30,7 @@ struct Staged {
     lock: Option<File>,
 }
 
-/// A file name that `commit` has changed, with the path at which its previous contents are kept.
+/// A file that `commit` has put in place, with the path at which the previous contents of the file are kept.
 struct Placed {
     name: PathBuf,
     before: Option<PathBuf>,
@@ -58,8 +58,8 @@ fn is_temporary(name: &OsStr) -> bool {
 }
 
 /// Removes temporary files of processes that ended without removing them. Such a file can be recognized, because no
-/// process holds its lock. The caller must hold the folder's lock. Otherwise another process may be between creating
-/// and locking a file, or replacing files.
+/// process holds its lock. The folder must be locked during the call. Without this lock, another process may be between
+/// creating and locking a file, or may be replacing files.
 pub(super) fn remove_leftover_files(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {

@@ -62,7 +62,7 @@ fn is_standard_output(_: &std::fs::Metadata) -> bool {
     false
 }
 
-/// Description of an output for error messages, with the name of the option that gave it.
+/// Description of an output for error messages, with the name of the option that contains the output's path.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     option: &'static str,

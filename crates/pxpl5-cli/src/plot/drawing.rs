@@ -4,7 +4,8 @@ use super::PlotArgs;
 use super::question::{Group, text};
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};
 
-/// Returns the chart of the given groups. Numbers on the x axis are sorted. Names keep the order of the rows.
+/// Returns the chart of groups of rows. Each group is one point of a curve. Numbers on the x axis are sorted. Names
+/// keep the order of the rows.
 pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
     let names = names_across(groups);
     let mut curves: Vec<&[String]> = Vec::new();

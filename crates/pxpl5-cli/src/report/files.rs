@@ -6,7 +6,7 @@ use pxpl5::lab::manifest::{MANIFEST_FILE, Manifest};
 use std::fs;
 use std::path::Path;
 
-/// A results folder, restricted to the files that its manifest lists.
+/// A results folder, restricted to the files of its manifest. The manifest lists the files of a run.
 pub(crate) struct Files<'a> {
     folder: &'a Path,
     manifest: Option<Manifest>,

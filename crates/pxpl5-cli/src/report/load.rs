@@ -11,7 +11,7 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// Fails when `report.json` is missing, is not a report, or differs from its manifest.
+/// Fails when `report.json` is missing, is not a report, or differs from its entry in the manifest (list of files).
 pub(super) fn runs(files: &Files<'_>) -> Result<Vec<PageRun>, CliError> {
     let path = files.folder().join(REPORT);
     let bytes = files.first(REPORT).map_err(|error| no_report(&path, &error))?;

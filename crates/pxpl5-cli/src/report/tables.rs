@@ -58,7 +58,8 @@ fn numbers_first(row: &Row) -> Vec<(String, String)> {
     numbers.into_iter().chain(texts).collect()
 }
 
-/// Returns a table of the given rows. The columns are in the order of their first occurrence.
+/// Returns a table of `rows`. Each row is a list of pairs: name of the column, and text of the cell. The columns are in
+/// the order of their first occurrence.
 fn tabular(name: &str, about: Vec<String>, rows: &[Vec<(String, String)>]) -> PageTable {
     let mut columns: Vec<String> = Vec::new();
     for (key, _) in rows.iter().flatten() {

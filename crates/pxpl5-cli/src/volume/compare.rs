@@ -1,5 +1,5 @@
-//! The command `pxpl5 volume compare`. Compares all clips (ways to cut the scene into slices) and projections of a
-//! volume.
+//! The command `pxpl5 volume compare`, which compares all clips (ways to cut the scene into slices) and projections of
+//! a volume.
 
 use super::settings::VolumeSettingArgs;
 use crate::error::CliError;

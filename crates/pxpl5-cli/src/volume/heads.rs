@@ -1,4 +1,5 @@
-//! The command `pxpl5 volume view --head`. Compares a volume with a head-mounted display, as a moving head sees both.
+//! The command `pxpl5 volume view --head`, which compares a volume with a head-mounted display, as a moving head sees
+//! both.
 
 use super::settings::{VolumeSettingArgs, origin};
 use crate::error::CliError;
@@ -32,7 +33,7 @@ pub(super) struct HeadArgs {
     frames: u32,
 }
 
-/// Number of instants for each picture of the film at which errors are evaluated.
+/// For each picture of the film, number of instants at which errors are evaluated.
 const INSTANTS_PER_FRAME: u32 = 8;
 
 pub(super) fn run(

@@ -187,7 +187,7 @@ pub(super) fn png(picture: &RgbImage, volume: &Volume) -> Result<Vec<u8>, CliErr
     png_bytes(picture, &origin(volume)).map_err(CliError::failure)
 }
 
-/// Returns the text chunks for every picture of a volume, which state the settings that reproduce the picture.
+/// Returns the text chunks of a picture file of a volume. The chunks state the settings that reproduce the picture.
 pub(super) fn origin(volume: &Volume) -> Vec<(&'static str, String)> {
     let settings = &volume.settings;
     let overrides: Vec<String> = settings.overrides().iter().map(|set| format!("{}={}", set.path, set.value)).collect();

@@ -1,5 +1,5 @@
 //! The command `pxpl5 volume sweep`, which draws a volume at every point of a parameter space. The output folder, the
-//! rows, the shards and `--resume` are those of `pxpl5 sweep`.
+//! rows, the shards and `--resume` are the same as for `pxpl5 sweep`.
 
 use super::settings::{SMALLER, scene_choice};
 use crate::budget::BudgetArgs;

@@ -23,16 +23,17 @@ pub struct PanelNumbers {
     pub refresh_hz: u64,
     /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
     pub interlace: u64,
-    /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at the same time (global).
+    /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all pixels are lit at the same time
+    /// (global).
     pub scan: u64,
     /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
     pub direction: u64,
     /// Part of each period in which a rolling scan lights pixels, in thousandths of the period. A global scan lights
     /// all pixels at the end of this part.
     pub active_permille: u64,
-    /// Time for which a pixel is driven in each scan, in microseconds.
+    /// Time for which a pixel is switched on in each scan, in microseconds.
     pub persistence_us: u64,
-    /// Time constant of the first-order lag of a pixel's brightness, in microseconds.
+    /// Time constant, in microseconds, of the change of a pixel's brightness after the pixel is switched on or off.
     pub response_us: u64,
     /// Number of ring ports of one board.
     pub ports: u64,

@@ -35,15 +35,16 @@ pxpl5_sim::parameters::parameter_table! {
         refresh_hz: 90, "Hz", Published, 90..=90 in 1..=1000, "data sheets of HTC Vive and Oculus Rift (2016)";
         /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
         interlace: 0, "1", Assumed, 0..=0 in 0..=1, "no headset of these years is interlaced";
-        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at the same time (global).
+        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all pixels are lit together (global).
         scan: 0, "1", Assumed, 0..=1 in 0..=1, "rolling, as the OLED of the Oculus Rift DK2";
         /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
         direction: 0, "1", Assumed, 0..=3 in 0..=3, "down. A panel that is mounted on its side scans to the right or to the left";
         /// Part of each scan period in which the scan lights pixels, in thousandths of the period.
         active_permille: 950, "1/1000", Assumed, 800..=1000 in 1..=1000, "the rest is blanking";
-        /// Time for which each pixel is driven in each scan.
+        /// Time for which each pixel is switched on in each scan.
         persistence_us: 2000, "us", Assumed, 1000..=3000 in 0..=1_000_000, "low persistence is 3 ms or less (Abrash 2013, 2014)";
-        /// Time constant of the first-order lag with which a pixel's brightness follows its drive.
+        /// Time constant (first-order lag) of a pixel's brightness. The brightness follows the switching of the
+        /// pixel with this lag.
         response_us: 100, "us", Assumed, 10..=100 in 0..=1_000_000, "OLED switches in less than 0.1 ms";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 8, "ports", Assumed, 1..=8 in 1..=8, "the number of channels of the ring. With 1 port, at most 13 pictures of 90 regions per second reach the display";
@@ -69,7 +70,7 @@ pxpl5_sim::parameters::parameter_table! {
         refresh_hz: 120, "Hz", Assumed, 80..=144 in 1..=1000, "an assumed panel: 80, 90, 120 and 144 Hz in Valve Index (2019), 80 Hz in Oculus Rift S (2019)";
         /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
         interlace: 0, "1", Assumed, 0..=0 in 0..=1, "no headset of these years is interlaced";
-        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at the same time (global).
+        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all pixels are lit together (global).
         scan: 1, "1", Assumed, 1..=1 in 0..=1, "an assumed panel: global backlight illumination in Valve Index (2019)";
         /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
         direction: 0, "1", Assumed, 0..=3 in 0..=3, "without effect while the scan is global";
@@ -77,7 +78,8 @@ pxpl5_sim::parameters::parameter_table! {
         active_permille: 950, "1/1000", Assumed, 800..=1000 in 1..=1000, "the flash begins when the panel is written and liquid crystals have settled";
         /// Time for which the backlight is on in each scan.
         persistence_us: 330, "us", Assumed, 330..=530 in 0..=1_000_000, "an assumed panel: 0.330 to 0.530 ms in Valve Index (2019), depending on the rate";
-        /// Time constant of the first-order lag with which a pixel's brightness follows the backlight.
+        /// Time constant (first-order lag) of a pixel's brightness. The brightness follows the switching of the
+        /// backlight with this lag.
         response_us: 0, "us", Assumed, 0..=0 in 0..=1_000_000, "the backlight switches at once; crystals settle before it";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 8, "ports", Assumed, 1..=8 in 1..=8, "the number of channels of the ring";
@@ -99,16 +101,17 @@ pxpl5_sim::parameters::parameter_table! {
         refresh_hz: 60, "Hz", Assumed, 1..=1000, "an experiment's own";
         /// 1 if each scan shows only every second line, 0 if each scan shows all lines.
         interlace: 0, "1", Assumed, 0..=1, "an experiment's own";
-        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all are lit at the same time (global).
+        /// Kind of scan: 0 if pixels are lit one after the other (rolling), 1 if all pixels are lit together (global).
         scan: 0, "1", Assumed, 0..=1, "an experiment's own";
         /// Direction of a rolling scan: 0 down, 1 up, 2 right, 3 left.
         direction: 0, "1", Assumed, 0..=3, "an experiment's own";
         /// Part of each period in which a rolling scan lights pixels, in thousandths of the period. A global scan
         /// lights all pixels at the end of this part.
         active_permille: 1000, "1/1000", Assumed, 1..=1000, "an experiment's own";
-        /// Time for which each pixel is driven in each scan.
+        /// Time for which each pixel is switched on in each scan.
         persistence_us: 0, "us", Assumed, 0..=1_000_000, "an experiment's own; at most a period";
-        /// Time constant of the first-order lag with which a pixel's brightness follows its drive.
+        /// Time constant (first-order lag) of a pixel's brightness. The brightness follows the switching of the
+        /// pixel with this lag.
         response_us: 0, "us", Assumed, 0..=1_000_000, "an experiment's own";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 1, "ports", Assumed, 1..=8, "an experiment's own; the ring has 8 channels";

@@ -18,8 +18,8 @@ impl Kernel {
     /// Returns the source of code that interpolates triangles [between two views](Self::ends_source) and makes their
     /// commands. One call makes the commands for a range of screen lines.
     ///
-    /// The code is like the compiled kernel, for every optimization level. The code stores the bounding box of each
-    /// command. Execution begins at the label `start`; kernels/compiled.s lists the registers.
+    /// All optimization levels use this code, which has the style of the compiled kernel. The code stores the bounding
+    /// box of each command. Execution begins at the label `start`; kernels/compiled.s lists the registers.
     #[must_use]
     pub fn between_source(&self) -> String {
         let own = Self {

@@ -42,8 +42,8 @@ impl Machine {
     }
 }
 
-/// Records a swap: the tick at which the surface, or the part of the surface at port `port`, starts to show buffer
-/// `buffer`. The function also signals the swap to the first graphics processor.
+/// Records a swap of a surface, or of the part of the surface at port `port`: from period `tick` on, buffer `buffer` is
+/// shown. The function also signals the swap to the first graphics processor.
 fn note_swap(
     observation: &mut Observation,
     queue: &mut EventQueue<Event>,

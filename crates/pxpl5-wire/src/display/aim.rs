@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// The times at which the display shows the picture of one view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightTimes {
-    /// Tick of the display's clock (retrace) from which on the picture is shown.
+    /// Retrace (tick of the display's clock) at which the picture appears.
     pub tick: Time,
     /// Time at which the first pixel of the picture starts to shine.
     pub first: Time,
@@ -28,12 +28,12 @@ pub enum Aim {
     FirstPixel,
     /// The time at which the last pixel of the picture starts to shine.
     LastPixel,
-    /// The tick of the display's clock (retrace) from which on the picture is shown.
+    /// The retrace (tick of the display's clock) at which the picture appears.
     Retrace,
 }
 
 impl Aim {
-    /// All choices, each with its name on the command line.
+    /// All aims, each with its name on the command line.
     pub const ALL: [(&str, Self); 4] = [
         ("middle", Self::Middle),
         ("first-pixel", Self::FirstPixel),

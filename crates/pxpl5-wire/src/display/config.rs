@@ -8,7 +8,7 @@ use std::fmt::Debug;
 
 /// The parameters of a display, and the function that builds the display from them.
 pub trait DisplayConfig: Any + Debug + Send + Sync {
-    /// Returns the name of this kind of display, as given to `--display`.
+    /// Returns the name of this kind of display, which is the value of the option `--display`.
     fn name(&self) -> &'static str;
 
     /// Returns a description of the display, with the source of its numbers.

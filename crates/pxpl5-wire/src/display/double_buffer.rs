@@ -83,7 +83,7 @@ impl DoubleBuffer {
         })
     }
 
-    /// Returns the number of messages that the buffer could not use, and the reason for the first one.
+    /// Returns the number of messages that the buffer could not use, and the reason for the first of these messages.
     #[must_use]
     pub fn faults(&self) -> (u64, Option<&str>) {
         (self.faults, self.first_fault.as_deref())

@@ -25,9 +25,10 @@ pub enum ScanOrder {
 pub struct PixelLight {
     /// Order in which the pixels start to shine.
     pub scan: ScanOrder,
-    /// Time for which the display drives a pixel in each period. Zero means that the pixel shines only for an instant.
+    /// Time for which a pixel is switched on in each period. Zero means that the pixel shines only for an instant.
     pub persistence: Span,
-    /// Time constant of the first-order lag with which a pixel's brightness follows its drive. Zero means no lag.
+    /// Time constant of the change of a pixel's brightness (first-order lag) after the pixel is switched on or off.
+    /// Zero means an immediate change.
     pub response: Span,
 }
 

@@ -12,9 +12,9 @@ use std::sync::Arc;
 pub struct CubeControlConfig {
     /// Ring port of the host, which sends updates.
     pub host: NodeId,
-    /// Ring port of the master GP, which begins every stage.
+    /// Ring port of the master, which begins every stage.
     pub master: NodeId,
-    /// Ring ports of the slave GPs, at least one.
+    /// Ring ports of the slaves, at least one.
     pub slaves: Vec<NodeId>,
     /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,

@@ -70,7 +70,7 @@ impl CubePass {
         Self { update: Arc::clone(update), context: context_of(update.number) as u8, faces, begin, transformed }
     }
 
-    /// Returns the share with displaced vertices, if the update warps them. Otherwise returns the share unchanged.
+    /// Returns the share with displaced vertices if the update has a warp. Otherwise returns the share unchanged.
     #[must_use]
     pub fn placed(config: &CubeControlConfig, share: &Share, update: &FaceUpdate) -> Share {
         if update.warp.is_none() { share.clone() } else { share.with_list(config.warped.placed(share.list(), update)) }
@@ -122,8 +122,8 @@ pub(crate) const fn context_of(update: PictureNumber) -> usize {
     (update.0 % 2) as usize
 }
 
-/// Returns the number of transformations of the slave's triangles (`kind` 0) or spheres (`kind` 1). `held` is the
-/// number of triangles or spheres in the update.
+/// Returns the number of transformations of the slave's triangles (`kind` 0) or spheres (`kind` 1), summed over the
+/// faces. `held` is the number of triangles or spheres in the update.
 fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
     let touching = || faces.iter().filter_map(|pass| Some(&pass.touching()?[kind]));
     let anywhere: BTreeSet<u32> = touching().flatten().copied().collect();

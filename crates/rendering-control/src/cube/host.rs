@@ -18,7 +18,7 @@ pub enum HostAction {
     Nothing,
 }
 
-/// Runs the host program, which sends updates over the host's link and the ring to all GPs.
+/// Runs the host program, which sends updates over the host's link and the ring to all graphics processors.
 ///
 /// SEND of an update begins after EDIT of the previous update has finished (TR94). Whenever the host is ready for an
 /// update, it calls `plan` with the number of the next update and the current time.

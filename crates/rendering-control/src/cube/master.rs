@@ -1,4 +1,4 @@
-//! Program of the master GP, which synchronizes host, slaves, renderers and display memories.
+//! Program of the master, which synchronizes host, slaves, renderers and display memories.
 
 use crate::cube::config::CubeControlConfig;
 use crate::cube::protocol::{Token, UpdateOrder};
@@ -9,7 +9,7 @@ use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyOrder, CopyPath, CopyTarget, PictureNumber, RegionId, SurfaceId};
 use std::collections::VecDeque;
 
-/// State of a renderer, as it follows from the messages that the master has received.
+/// State of a renderer, derived from the messages that the master has received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
@@ -32,15 +32,15 @@ struct UpdateProgress {
     transformed: usize,
     /// Number of entries in each region's bin. The number is a sum over the slaves that have transformed the update.
     entries: Vec<u64>,
-    /// True if the regions that will arrive have been announced to the display memory.
+    /// True if the master has sent the display memory the list of the regions that will arrive.
     announced: bool,
     /// Number of regions of this update that have not arrived in the display memory. `None` before RENDER begins.
     missing: Option<u64>,
 }
 
 impl UpdateProgress {
-    /// Returns the regions that contain primitives, heaviest first. For an update without primitives, the function
-    /// returns one region.
+    /// Returns the regions that contain primitives, in descending order of their bin entries. For an update without
+    /// primitives, the function returns one region.
     fn regions(&self) -> VecDeque<RegionId> {
         let mut regions: Vec<usize> = (0..self.entries.len()).filter(|region| self.entries[*region] > 0).collect();
         if regions.is_empty() {
@@ -55,7 +55,7 @@ impl UpdateProgress {
 #[derive(Debug)]
 struct Rendering {
     number: PictureNumber,
-    /// Regions without an assigned renderer, heaviest first.
+    /// Regions without an assigned renderer, in descending order of their bin entries.
     unassigned: VecDeque<RegionId>,
     /// Number of regions of the update.
     regions: u16,
@@ -80,7 +80,7 @@ struct CubeMaster {
     swaps_known: u64,
 }
 
-/// Runs the program of the master GP.
+/// Runs the program of the master.
 ///
 /// # Errors
 ///
@@ -191,7 +191,8 @@ impl CubeMaster {
         self.gp.send_groups(vec![(port, messages.into())]).await;
     }
 
-    /// Begins RENDER of the next update if the rules permit it. Sorts the update's regions by weight, heaviest first.
+    /// Begins RENDER of the next update if the rules permit it. Sorts the update's regions in descending order of their
+    /// bin entries.
     fn begin_render(&mut self) {
         let number = PictureNumber(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(number) {

@@ -24,15 +24,15 @@ pub(crate) struct Token {
     pub(crate) slaves_left: u16,
     /// Number of tokens of this update, one for each region with primitives.
     pub(crate) of: u16,
-    /// True if the last slave adds the copy command. Otherwise the region stays in pixel memory, and the renderer waits
-    /// for a copy command.
+    /// True if the last slave adds the copy command. If false, the region stays in pixel memory, and the renderer waits
+    /// for a copy command of the master.
     pub(crate) copies: bool,
 }
 
 /// The messages between host, master, slaves and renderers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum UpdateOrder {
-    /// Host to all GPs: an update.
+    /// Host to all graphics processors: an update.
     Send(FaceUpdate),
     /// Master to slaves: apply the edits of an update, then transform.
     Edit(PictureNumber),

@@ -17,10 +17,10 @@ pub(crate) struct Completed {
 }
 
 impl Completed {
-    /// Returns true if EDIT of an update may begin.
+    /// Returns true if EDIT of update number n may begin.
     ///
-    /// Four stages must be complete: SEND of this update, TRANSFORM of the previous update, RENDER of the second
-    /// previous update, and COPY of the third previous update. RENDER matters because there are only two bin contexts.
+    /// Four stages must be complete: SEND of update n, TRANSFORM of update n - 1, RENDER of update n - 2, and COPY of
+    /// update n - 3. RENDER matters because each slave has only two bin contexts (sets of bins).
     pub(crate) const fn may_edit(&self, update: PictureNumber) -> bool {
         let n = update.0;
         self.sent > n && self.transformed >= n && self.rendered + 1 >= n && self.copied + 2 >= n

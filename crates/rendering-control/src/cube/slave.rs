@@ -1,4 +1,4 @@
-//! Programs of a slave GP: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
+//! Programs of a slave: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
 
 use crate::cube::config::CubeControlConfig;
 use crate::cube::faces::{CubePass, context_of};
@@ -43,8 +43,8 @@ type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
 /// Returns the two programs of the slave with index `index`, with their priorities.
 ///
-/// A program fails with [`Fault::Memory`] if display list, commands or bins do not fit into memory. It fails with
-/// [`Fault::Protocol`] if it receives an invalid message.
+/// A program fails with [`Fault::Memory`] if display list, commands or bins do not fit into memory. A program fails
+/// with [`Fault::Protocol`] for an invalid message.
 pub fn slave(
     gp: &Gp,
     config: &CubeControlConfig,

@@ -22,7 +22,8 @@ pub struct FaceUpdate {
     pub view: FrameView,
     /// For each structure of the display list: true if the memory holds the structure.
     pub structures: Vec<bool>,
-    /// Displacement of vertices near the border to the slower memory. `None` if no vertex is displaced.
+    /// Displacement of vertices near the border to a display memory that is updated less often. `None` if no vertex is
+    /// displaced.
     pub warp: Option<FaceWarp>,
 }
 

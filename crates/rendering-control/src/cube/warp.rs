@@ -5,26 +5,28 @@ use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::Word;
 
-/// Displacement of an update's vertices near the border to the next slower memory. The slower memory was drawn from
-/// another eye position. Without the displacement, the two images would not meet at the border.
+/// Displacement of an update's vertices near the border to the next display memory, which is updated less often. That
+/// memory was drawn from another eye position. Without the displacement, the images of the two memories would not meet
+/// at the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWarp {
     /// Assignment of cells (squares of the floor) to display memories.
     pub dealing: CellAssignment,
-    /// Shape of the falloff: how the displacement decreases with the distance from the border to the slower memory.
+    /// Shape of the falloff: the function by which the displacement decreases with the distance from the border.
     pub falloff: Falloff,
     /// Length of the falloff: the distance from the border within which vertices are displaced, in metres.
     pub length_m: f64,
     /// Eye position from which this update is drawn.
     pub drawn_from: DVec3,
-    /// Eye position from which the slower memory was drawn.
+    /// Eye position from which the memory beyond the border was drawn.
     pub slower_from: DVec3,
 }
 
 /// Number of words of an encoded warp.
 ///
-/// The words are: home cell (four words), one word with `inner_rings` in the lower half and `ring_growth` in the upper
-/// half, number of memories, and falloff. Two lengths and two positions follow, with two words for each real number.
+/// The words are: cell at the centre of the assignment (four words), one word with `inner_rings` in the lower half and
+/// `ring_growth` in the upper half, number of memories, and falloff. Two lengths and two positions follow, with two
+/// words for each real number.
 pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
 
 impl FaceWarp {
