@@ -39,7 +39,8 @@ pub struct BitSerial {
     clock: u64,
     faults: u64,
     skipping: bool,
-    /// Buffer for a run of consecutive instructions. The array reuses the buffer to avoid allocations.
+    /// Buffer for a sequence of instructions that are executed together. The array reuses the buffer to avoid
+    /// allocations.
     run: InstructionRun,
 }
 
@@ -50,8 +51,8 @@ impl BitSerial {
         Self::with_vectors(layout, Vectors::best())
     }
 
-    /// Creates an array of zeros that uses the given vector unit, or the portable unit if the processor lacks the given
-    /// unit.
+    /// Creates an array of zeros that computes with the vector instructions `vectors`. If the computer lacks these
+    /// instructions, the array uses portable code.
     #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
@@ -69,9 +70,9 @@ impl BitSerial {
 
     /// Turns on the skipping mode, which leaves out work that changes no bit.
     ///
-    /// Disabled pixels move no planes. If the signs at the corners of a tile determine the sign in the whole tile, the
-    /// adders are not simulated. Clocks, faults and all bits stay the same. The default mode takes ten times as long as
-    /// the skipping mode.
+    /// Disabled pixels move no planes. If the signs of an expression at the corners of a tile of 32 x 16 pixels
+    /// determine the sign in the whole tile, the adders are not simulated. Clocks, faults and all bits stay the same.
+    /// The default mode takes ten times as long as the skipping mode.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }

@@ -21,7 +21,7 @@ use std::sync::{Arc, OnceLock};
 pub enum RendererEvent {
     /// A message begins to arrive. The event has phase `Arrive`.
     Announce {
-        /// Message with commands for the FIFO. Other words are discarded and counted as illegal.
+        /// Message with commands for the FIFO. Words that are not commands are discarded and counted as illegal.
         message: Message,
         /// Time at which the message's first word is on the channel.
         first_word_at: Time,
@@ -49,12 +49,12 @@ pub enum RendererOutput {
         message: Message,
         /// True if the ring must report the delivery of the message with [`RendererEvent::Sent`].
         ticket: bool,
-        /// True if the receiver's port must stay reserved for the next message of this renderer.
+        /// True if the ring must keep the receiver's port reserved for the next message of this renderer.
         hold: bool,
     },
 }
 
-/// Counters of a renderer board.
+/// Counters of a renderer board since the start of the simulation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RendererStats {
     /// Number of commands received, including copies and unknown commands.
@@ -139,7 +139,7 @@ impl ContextLog {
     }
 }
 
-/// A received copy command, and the object that computes the pixels of its region.
+/// A received copy command, and the job that computes the pixels of the region to copy.
 #[derive(Debug)]
 struct PendingCopy {
     order: CopyOrder,
@@ -177,7 +177,7 @@ impl Renderer {
         }
     }
 
-    /// Handles one event at time `context.now()`. Later events and outputs go to `context`.
+    /// Handles one event at time `context.now()`. The function adds the resulting events and outputs to `context`.
     pub fn handle(&mut self, event: RendererEvent, context: &mut Context<RendererEvent, RendererOutput>) {
         match event {
             RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),
@@ -394,8 +394,8 @@ impl Renderer {
         self.store_next(context);
     }
 
-    /// Returns true if a finished region has waited for room in the backing store. Otherwise the board works the same
-    /// with a larger backing store.
+    /// Returns true if a finished region has waited for room in the backing store. If the result is false, a larger
+    /// backing store would change nothing.
     #[must_use]
     pub const fn waited_for_room(&self) -> bool {
         self.waited_for_room
@@ -413,7 +413,8 @@ impl Renderer {
         self.fifo.busy()
     }
 
-    /// Returns the time spent executing commands until `now`, without copies. `now` must not be before the last event.
+    /// Returns the time until `now` in which the board has executed commands, without copies. `now` must not be earlier
+    /// than the last handled event.
     #[must_use]
     pub fn busy_at(&self, now: Time) -> Span {
         self.fifo.busy_at(now)
@@ -462,7 +463,7 @@ impl Renderer {
         self.sent.get_or_insert_default();
     }
 
-    /// Returns a snapshot of the board at time `now`, which must not be before the last event.
+    /// Returns a snapshot of the board at time `now`, which must not be earlier than the last handled event.
     #[must_use]
     pub fn look(&self, now: Time) -> RendererSnapshot {
         let passed = self.fifo.passed(now);
@@ -478,8 +479,8 @@ impl Renderer {
         }
     }
 
-    /// Returns the pixel array with the effects of all commands that have started by `now`. `now` must not be before
-    /// the last event.
+    /// Returns the pixel array with the effects of all commands that have started by `now`. `now` must not be earlier
+    /// than the last handled event.
     ///
     /// A command takes effect when it starts. Returns `None` if [`Renderer::watch_fifo`] was not called, or if no
     /// command has changed a pixel.

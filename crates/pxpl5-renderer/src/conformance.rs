@@ -19,7 +19,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("after {after}: {difference}")]
 pub struct Mismatch {
-    /// Name of the last executed list, as given by the caller.
+    /// Name of the list of instructions after which the arrays differ.
     pub after: String,
     /// Description of the difference, including the first pixel that differs.
     pub difference: String,

@@ -46,7 +46,7 @@ struct HeldCommand {
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     /// Index of the first word that fits into the FIFO when the first command of this sequence starts. Words are
-    /// counted from 0 since the start of the run.
+    /// counted from 0 since the start of the simulation.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -67,7 +67,7 @@ impl Departure {
         if place < self.count { place } else { self.count - 1 }
     }
 
-    /// Returns this sequence of commands without its first `commands` commands.
+    /// Returns the rest of this sequence after its first `commands` commands.
     fn behind(self, commands: u64) -> Self {
         Self {
             made_room_for: self.made_room_for + commands * self.words_each,
@@ -86,10 +86,10 @@ impl StartTimes {
     /// Returns the time at which all words with indices `first` to `last` have entered the FIFO. The result is at least
     /// `soonest`.
     ///
-    /// Each word waits until the FIFO has room for it, and then takes one word time on the channel. `first` must not
-    /// decrease from call to call. Of each sequence of commands that start at equal intervals, only the last command
-    /// that makes room matters. The reason is that an interval is at least as long as the transfer of a command's
-    /// words.
+    /// Each word waits until the FIFO has room for it, and then takes one word time on the channel. `first` must be at
+    /// least the `first` of the previous call. Of each sequence of commands that start at equal intervals, only the
+    /// last command that makes room matters. The reason is that an interval is at least as long as the transfer of a
+    /// command's words.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -116,7 +116,7 @@ impl StartTimes {
     }
 }
 
-/// The FIFO and its controller. Depths are in words, times are simulated times.
+/// The FIFO and the controller that empties the FIFO. Sizes are in words, and times are simulated times.
 #[derive(Debug)]
 pub(crate) struct InputFifo {
     depth: u64,
@@ -141,9 +141,9 @@ pub(crate) struct InputFifo {
     watched: Option<Watched>,
 }
 
-/// Longest execution time of commands that count as the selection of the region to copy. Commands that take longer
-/// count as drawing. If the controller waits before the selection, the drawing of the region ends at the start of this
-/// wait. A selection takes 6 clocks of 40 MHz, which are 150 ns.
+/// Longest execution time of a command that counts as the selection of the region to copy. A command that takes more
+/// time counts as drawing. If the controller waits before the selection, the drawing of the region ends at the start of
+/// this wait. A selection takes 6 clocks of 40 MHz, which are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
 /// Times of the last blocking command (copy of a region) and of the commands before it.
@@ -159,7 +159,7 @@ pub(crate) struct Block {
     pub(crate) start: Time,
     /// Execution time of the commands between the previous blocking command and this command.
     pub(crate) executed: Span,
-    /// Execution time of all commands before this command, since the start of the run.
+    /// Execution time of all commands before this command, since the start of the simulation.
     busy: Span,
     /// Time of the latest end of a blocking command.
     resumed_at: Time,
@@ -175,7 +175,8 @@ struct Watched {
     left: Course,
 }
 
-/// A growing number of words as a function of simulated time. The record begins at the last call of `discard_before`.
+/// A number of words that grows with simulated time, for example the words that have entered the FIFO. Entries before
+/// the last call of `discard_before` are removed.
 #[derive(Debug, Default)]
 struct Course {
     /// Times at which the number of words grows, in ascending order. Each time has the new number of words.
@@ -203,7 +204,7 @@ impl Course {
     }
 }
 
-/// Numbers of words that have entered and left a FIFO since the start of the run.
+/// Numbers of words that have entered and left a FIFO since the start of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct WordsPassed {
     /// Number of words in commands that have arrived completely.
@@ -260,8 +261,8 @@ impl InputFifo {
         self.busy
     }
 
-    /// Returns the total execution time until `now`, without blocking commands. `now` must not be before the last
-    /// event. The function assumes that all received but unfinished commands run without a gap from `now` on.
+    /// Returns the total execution time until `now`, without blocking commands. `now` must not be earlier than the last
+    /// handled event. The function assumes that all received but unfinished commands run without a gap from `now` on.
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
         Span(self.busy.0.saturating_sub(ahead))
@@ -284,7 +285,7 @@ impl InputFifo {
     }
 
     /// Returns the numbers of words that have entered and left the FIFO by `now`. Returns `None` if these numbers are
-    /// not recorded. `now` must not be before the last event.
+    /// not recorded. `now` must not be earlier than the last handled event.
     pub(crate) fn passed(&self, now: Time) -> Option<WordsPassed> {
         let watched = self.watched.as_ref()?;
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
@@ -303,7 +304,7 @@ impl InputFifo {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
 
-    /// Returns true while a non-blocking command runs. The function uses only the commands received so far.
+    /// Returns true if a non-blocking command runs at time `now`. The function uses only the commands received so far.
     pub(crate) fn is_executing(&self, now: Time) -> bool {
         self.free_at.is_some_and(|free_at| free_at > now)
     }
@@ -430,8 +431,8 @@ impl InputFifo {
         }
     }
 
-    /// Starts a command that has arrived completely, at `free_at` or later. Returns the start time if the command
-    /// blocks.
+    /// Starts a command that has arrived completely, at the time `free_at` or at its arrival, whichever is later.
+    /// Returns the start time if the command blocks.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
         // The words of a copy command arrive after the words of the selection. This wait is not a wait for the commands

@@ -81,8 +81,8 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Returns bit `t` of the sum at each leaf: the bit stream plus the products of the tree. Callers must pass `t` =
-    /// 0, 1, 2 and so on.
+    /// Returns bit `t` of the sum at each leaf of the tree: `stream` plus the product of the coefficient and the
+    /// leaf's number (the index of a column or row, or the square of this index). Callers must pass `t` = 0, 1, 2 and so on.
     #[inline(always)]
     pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
         for l in (1..LEVELS).rev() {
@@ -96,15 +96,15 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
     }
 }
 
-/// Splits two coefficients into their low and high 32 bits. Each half is repeated in the four lanes of the tree that
-/// multiplies this coefficient.
+/// Splits two coefficients into their low and high 32 bits. Each half is copied to the four lanes of the adder tree
+/// that multiplies this coefficient.
 #[inline(always)]
 fn in_lanes<V: SimdVector>([first, second]: [i64; 2]) -> [V; 2] {
     [low_halves_in_lanes([first, second]), low_halves_in_lanes([first >> 32, second >> 32])]
 }
 
-/// Returns the low 32 bits of two coefficients. Each value is repeated in the four lanes of the tree that multiplies
-/// this coefficient.
+/// Returns the low 32 bits of two coefficients. Each value is copied to the four lanes of the adder tree that
+/// multiplies this coefficient.
 #[inline(always)]
 fn low_halves_in_lanes<V: SimdVector>(numbers: [i64; 2]) -> V {
     let [first, second] = numbers.map(|number| (number as u32 as u64) << 32 | number as u32 as u64);
@@ -144,7 +144,8 @@ struct StreamStart {
 }
 
 impl VectorPlace {
-    /// Returns the position of a vector that begins at a row of a tile, for adder trees that span the whole array.
+    /// Returns the position of the vector of pixels that begins at row `row` of tile `tile`. The adder trees span the
+    /// whole array.
     #[inline(always)]
     pub(super) const fn in_array(tile: usize, row: usize) -> Self {
         let [left, top] = tile::origin(tile);
@@ -153,8 +154,8 @@ impl VectorPlace {
         Self { at: row / 2, columns, rows: StreamStart { word: 2 + y / 64, bit: y % 64 } }
     }
 
-    /// Returns the position of a vector that begins at a row of a tile, for adder trees that span one tile. The column
-    /// bits are in the low half of word `word` of the tree outputs, and the row bits are in the high half.
+    /// Returns the position of the vector of pixels that begins at row `row` of a tile. The adder trees span one tile.
+    /// The column bits are in the low half of word `word` of the tree outputs, and the row bits are in the high half.
     #[inline(always)]
     pub(super) const fn in_tile(word: usize, row: usize) -> Self {
         Self { at: row / 2, columns: StreamStart { word, bit: 0 }, rows: StreamStart { word, bit: WIDTH + row } }

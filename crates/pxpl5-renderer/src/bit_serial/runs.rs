@@ -22,8 +22,8 @@ use crate::isa::LINEAR_BITS;
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 
-/// Largest number of expressions in a run of instructions. The widest vector can hold the adder trees of this number of
-/// expressions.
+/// Largest number of expressions in a run (a sequence of instructions that a tile executes together). The widest vector
+/// can hold the adder trees of eight expressions.
 pub(super) const EXPRESSIONS: usize = 8;
 
 /// Number of bits of a pixel column's index within a tile. The index is 0 to 31.
@@ -57,8 +57,8 @@ pub(super) enum BitOrigin {
 }
 
 impl RunStep {
-    /// Returns the index of the expression whose sign disables pixels. Returns `None` if the instruction is of another
-    /// kind.
+    /// Returns the index of the expression whose sign disables pixels in this instruction. Returns `None` if the
+    /// instruction is not *disable negative*.
     #[inline(always)]
     const fn disables_by_sign_of(&self) -> Option<usize> {
         match (self.input, self.delivery.effect) {
@@ -68,7 +68,7 @@ impl RunStep {
     }
 }
 
-/// A kernel that executes a run of instructions in all tiles.
+/// A vectorized loop that executes a sequence of instructions in all tiles.
 pub(super) struct RunTiles<'a> {
     pub(super) run: &'a InstructionRun,
     pub(super) tiles: &'a mut [Tile],
@@ -113,7 +113,8 @@ impl InstructionRun {
         signs
     }
 
-    /// Returns the tiles in which the first instructions of the run disable all pixels, as one bit for each tile.
+    /// Returns the tiles in which the instructions at the start of the run disable all pixels, as one bit for each
+    /// tile.
     #[inline(always)]
     fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
         let mut disabled = 0;
@@ -216,7 +217,7 @@ const fn lanes<V: SimdVector>() -> u32 {
     u32::MAX >> (32 - V::LANES)
 }
 
-/// Returns true if an expression exceeds 32 bits at any pixel of the array.
+/// Returns true if the value of an expression needs more than 32 bits at some pixel of the array.
 #[inline(always)]
 fn wraps(e: &Linear) -> bool {
     let last = (ACROSS * WIDTH - 1) as i64;

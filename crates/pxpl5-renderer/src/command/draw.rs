@@ -145,14 +145,14 @@ impl PhongTriangleEncoder {
     }
 }
 
-/// Returns the words of a program that has exactly `N` words.
+/// Encodes a program whose words are exactly `N`, and returns the words.
 fn blank<const N: usize>(program: &[ArrayInstruction]) -> [Word; N] {
     let mut words = Vec::with_capacity(N);
     program.iter().for_each(|instruction| instruction.encode(&mut words));
     words.try_into().expect("every program of the kind has the kind's words")
 }
 
-/// Appends a copy of a blank triangle command, writes the given operands into the copy, and returns the appended words.
+/// Appends a copy of the triangle command `blank`, writes the operands into the copy, and returns the appended words.
 #[inline(always)]
 fn operands<'a, const N: usize>(
     blank: &[Word; N],

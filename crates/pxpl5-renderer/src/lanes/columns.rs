@@ -11,7 +11,8 @@ use crate::layout::Layout;
 #[repr(align(64))]
 pub(super) struct Values(pub(super) [u32; PIXELS]);
 
-/// A column: an array with one word for each pixel. The words hold the bits `first .. first + width` of pixel memory.
+/// A column: an array with one word for each pixel. The word of a pixel holds the bits `first .. first + width` of the
+/// pixel's memory.
 #[derive(Clone, Debug)]
 struct FieldColumn {
     first: usize,
@@ -48,8 +49,8 @@ impl PixelColumns {
         Self { columns, column_of }
     }
 
-    /// Returns the index of the column (array of words) that holds exactly the given bits, or `None` if no column holds
-    /// exactly these bits.
+    /// Returns the index of the column (array of words) that holds the `width` bits of pixel memory from bit `first`
+    /// on. Returns `None` if no column holds exactly these bits.
     pub(super) fn find(&self, first: usize, width: usize) -> Option<usize> {
         let index = usize::from(*self.column_of.get(first)?);
         let column = &self.columns[index];

@@ -99,7 +99,7 @@ impl Lanes {
         Ok(())
     }
 
-    /// Stores the values of the first operand buffer in a field of the enabled pixels.
+    /// Stores the values of the first operand buffer in the field `destination` of the enabled pixels.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
@@ -122,8 +122,8 @@ impl Lanes {
         self.store(destination)
     }
 
-    /// Computes two results, such as a quotient and a remainder, from `source` and the second operand buffer. Stores
-    /// the first result in `destination` and the second result in `source`.
+    /// Computes two results, such as a quotient and a remainder, from the field `source` and the second operand buffer.
+    /// Stores the first result in `destination` and the second result in `source`.
     fn two_results(
         &mut self,
         destination: Operand,

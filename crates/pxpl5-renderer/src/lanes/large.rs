@@ -12,7 +12,8 @@ use crate::command::{
 };
 use pxpl5_wire::Word;
 
-/// Columns (arrays of words) and bit shifts with which a sphere is drawn in this layout.
+/// Columns (arrays with one word for each pixel) and bit shifts with which a sphere is drawn in the layout of the
+/// array.
 struct SpherePlace {
     root: usize,
     temporary: usize,
