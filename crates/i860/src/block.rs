@@ -118,9 +118,10 @@ pub(crate) struct Block {
     pub(crate) after: Mode,
     /// Address after the block's last instruction or pair before the delay slot.
     pub(crate) next: u32,
-    /// Number of instructions or pairs. A pair counts as one. The delay slot does not count.
+    /// Number of issues of the block: each single instruction and each pair counts as one. The delay slot does not
+    /// count.
     pub(crate) count: usize,
-    /// Number of instructions. A pair counts as two. The delay slot counts as well.
+    /// Number of instructions of the block. A pair counts as two instructions. The delay slot counts as well.
     pub(crate) instructions: u64,
     /// Number of the latest state of the instruction cache in which the cache held the whole block.
     held_in: u64,
@@ -232,7 +233,7 @@ impl Block {
         self.units.get(..execution.units + usize::from(execution.slot)).unwrap_or_default()
     }
 
-    /// Returns the number of instructions of the block that were executed. A pair counts as two.
+    /// Returns the number of executed instructions of the block. A pair counts as two instructions.
     #[inline]
     pub(crate) fn instructions_of(&self, execution: Execution) -> u64 {
         let executed = self.executed(execution);
@@ -243,7 +244,7 @@ impl Block {
         }
     }
 
-    /// Returns the instruction or pair with index `number`. The delay slot has the last index.
+    /// Returns the instruction or pair with index `number` in the block. The delay slot has the last index.
     #[inline]
     pub(crate) fn unit(&self, number: usize) -> &Unit {
         &self.units[number]
@@ -260,7 +261,7 @@ impl Block {
         (self.pc.wrapping_add(line as u32 * LINE_BYTES), end)
     }
 
-    /// Returns true if all cache lines of the block are in the instruction cache.
+    /// Returns true if the instruction cache holds all cache lines of the block.
     #[inline]
     pub(crate) fn is_held(&mut self, cache: &InstructionTags) -> bool {
         self.held_in == cache.changes() || self.look_up(cache)

@@ -22,7 +22,7 @@ pub const BUDGET: u64 = 10_000;
 pub struct TestVector {
     /// Identifier, unique in its file.
     pub id: String,
-    /// Name of the group to which the vector belongs in the collection.
+    /// Name of the group of vectors, within the file, to which this vector belongs.
     #[serde(default)]
     pub group: String,
     /// Description of the tested behaviour.
@@ -37,7 +37,7 @@ pub struct TestVector {
     pub entry: u32,
     /// Address at which the run must end.
     pub stop: u32,
-    /// Addresses and words that are written to memory before the run.
+    /// Words that are written to memory before the program runs, each with its address.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
     pub expect: Expectation,
@@ -52,7 +52,7 @@ pub struct Expectation {
     /// Expected values of the floating-point registers, as bit patterns.
     #[serde(deserialize_with = "registers")]
     pub f: [u32; 32],
-    /// Addresses and expected words of memory after the run.
+    /// Words that memory must contain after the program has run, each with its address.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
 }
@@ -78,7 +78,7 @@ fn registers<'de, D: Deserializer<'de>>(from: D) -> Result<[u32; 32], D::Error> 
     list.try_into().map_err(|_| serde::de::Error::custom(format_args!("expected 32 registers, found {found}")))
 }
 
-/// Memory that exists at every address. Words without a write are zero.
+/// Memory that exists at every address. Words that were never written are zero.
 #[derive(Clone, Debug, Default)]
 struct Sparse(BTreeMap<u32, u32>);
 
@@ -126,7 +126,7 @@ pub struct Difference {
     pub place: String,
     /// Bit pattern that the vector expects.
     pub expected: u32,
-    /// Bit pattern that the run has produced in this model.
+    /// Bit pattern that the model has produced.
     pub found: u32,
 }
 
@@ -243,7 +243,7 @@ impl TestVector {
     }
 }
 
-/// Results of the conformance tests with a set of vectors.
+/// Results of a conformance test with a list of vectors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct VectorSummary {
     /// Number of vectors that passed.

@@ -38,7 +38,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// All rules with their names. A user turns the warnings of a rule off by this name.
+    /// All rules with the names that a user writes to turn off the warnings of a rule.
     pub const NAMES: [(&'static str, Self); 3] =
         [("alignment", Self::Alignment), ("multiply-source", Self::MultiplySource), ("lost-result", Self::LostResult)];
 
@@ -71,8 +71,8 @@ pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usiz
     each.chain(lost).collect()
 }
 
-/// Number of operations that entered a pipe after the last scalar operation. `None` means that the contents of the pipe
-/// are unknown.
+/// Number of operations that entered a pipe after the last scalar operation, which destroyed the older contents. `None`
+/// if the contents of the pipe are unknown.
 #[derive(Clone, Copy, Default)]
 struct PipeFill(Option<usize>);
 
@@ -88,7 +88,8 @@ impl PipeFill {
     }
 }
 
-/// Effects of an instruction on the pipes: first elements for the adder's pipe, second elements for the multiplier's.
+/// Effects of an instruction on the two pipes. In each array, the first element is for the adder's pipe, and the second
+/// element is for the multiplier's pipe.
 #[derive(Clone, Copy, Default)]
 struct PipeUse {
     scalar: [bool; 2],
@@ -255,8 +256,8 @@ fn fault(second: bool, reason: &str) -> Option<(bool, String)> {
     Some((second, reason.to_owned()))
 }
 
-/// Returns the description of the rule that a pair breaks, or `None`. The boolean is true if the second half of the
-/// pair causes the error.
+/// Returns the description of the rule that a pair breaks, or `None` if the pair breaks no rule. The boolean is true if
+/// the second instruction of the pair causes the error.
 fn pair(low: &Instruction, high: &Instruction) -> Option<(bool, String)> {
     let compares = matches!(low.op, Op::Pfgt | Op::Pfle | Op::Pfeq);
     match () {

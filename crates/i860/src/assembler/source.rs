@@ -28,7 +28,7 @@ struct Budget {
     text: usize,
     /// Number of the line that is being expanded, and the remaining budget at the start of this expansion.
     current: (usize, usize),
-    /// Line number of the earlier line with the greatest use of the budget, and the amount that it used.
+    /// Line number of the source line that has used the greatest part of the budget so far, and the used amount.
     largest_user: (usize, usize),
 }
 
@@ -63,7 +63,7 @@ impl Budget {
     }
 }
 
-/// An error of the preprocessor: number of the source line, and description.
+/// An error of the preprocessor: the number of the wrong source line, and a description.
 type AssemblyFault = (usize, String);
 
 fn spent() -> String {
@@ -135,7 +135,8 @@ impl Expander<'_> {
         Ok(())
     }
 
-    /// Returns the number of lines up to the line that closes a block, for example `.endm`. Nested blocks are included.
+    /// Returns the index, in `lines`, of the line with the word `close` (for example `.endm`) that ends a macro or
+    /// repetition. The first line of `lines` has the word `open`. Nested macros and repetitions belong to the body.
     fn body_len(&mut self, lines: &[Line], open: &str, close: &str) -> Result<usize, AssemblyError> {
         let mut depth = 0;
         for (n, line) in lines.iter().enumerate() {

@@ -6,7 +6,7 @@ use super::settings::Settings;
 use crate::AssemblyError;
 use std::collections::HashMap;
 
-/// An operand in linear code: a value of an earlier line, or a text.
+/// An operand in linear code: the value of an earlier line, or the text of a register or constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     /// The value of an operation: index of the operation, and index of one register of the value. `None` means all
@@ -220,7 +220,8 @@ fn integer_register(text: &str) -> Option<u8> {
     text.strip_prefix('r').and_then(|n| n.parse().ok()).filter(|n| *n < 32)
 }
 
-/// Splits off the mark `@name` before a store. Later loads use the name to wait for the store.
+/// Splits a line into the mark `@name`, which a store can have, and the rest. A load that must wait for the store names
+/// this mark.
 fn split_mark(text: &str) -> (&str, Option<&str>) {
     match text.strip_prefix('@').and_then(|text| text.split_once(char::is_whitespace)) {
         Some((mark, rest)) => (rest.trim(), Some(mark)),

@@ -14,7 +14,7 @@ const PREFETCH: u32 = 18;
 /// Greatest number of stores that can wait for the bus. A store also occupies the bus for this number of clocks.
 const STORES: u32 = 2;
 const STORE: u32 = 3;
-/// Number of clocks without an issued operation after which the scheduler fails.
+/// Number of successive clocks without an issued operation after which the scheduler fails with an error.
 const PATIENCE: u32 = 80;
 
 /// The instruction pairs of a schedule. Each pair holds the text of its floating-point half and of its core half.
@@ -63,8 +63,8 @@ impl File {
         (0..32).filter(|n| self.is_free(*n, now)).count()
     }
 
-    /// Finds `count` consecutive free registers and returns the first of them. For one or two registers, the function
-    /// prefers a gap beside used registers. The result never contains register `but`.
+    /// Finds `count` consecutive free registers and returns the number of the first register. For one or two registers,
+    /// the function prefers a gap beside used registers. The result never contains register `but`.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
         // The first register of a value is a multiple of its number of registers.
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
@@ -242,8 +242,7 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns true if a push into the pipe is possible. A push is possible if the value that leaves the pipe finds
-    /// free registers other than `but`.
+    /// Returns true if enough registers other than `but` are free for the value that a push would move out of the pipe.
     fn can_push(&self, pipe: &[Option<usize>], stages: usize, but: Option<u8>) -> bool {
         match pipe[STAGES - stages] {
             Some(value) => self.floats.find(self.width(value).registers(), self.now, but).is_some(),
@@ -304,7 +303,8 @@ impl<'a> Placer<'a> {
         fits && (free >= coming + count + spare || piped && is_oldest)
     }
 
-    /// Returns the number of registers that an operation must leave free for earlier operations.
+    /// Returns the number of registers that operation `n` must leave free for operations that precede `n` in the
+    /// source.
     fn spare(&self, n: usize) -> usize {
         let behind = n - self.first;
         if behind == 0 { 0 } else { self.settings.reserve + behind * self.settings.slope / 64 }
@@ -323,8 +323,8 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns the unit (adder or multiplier) whose pipe holds the most urgent value, if this pipe can be pushed. The
-    /// number is the urgency of this value in clocks.
+    /// Returns the unit (adder or multiplier) whose pipe holds the most urgent value, with the urgency of this value in
+    /// clocks. Returns `None` if no pipe with values can be pushed.
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
@@ -587,7 +587,7 @@ impl<'a> Placer<'a> {
 }
 
 /// Returns the longest path from each operation to the end of the linear code, in clocks. If `shake` is not 0, the
-/// function adds pseudo-random noise, which leads to other schedules.
+/// function adds pseudo-random noise, which changes the schedule.
 fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut heights = vec![0; operations.len()];
     let mut state = u64::from(shake);
