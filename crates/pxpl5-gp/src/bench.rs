@@ -23,13 +23,13 @@ impl BoardBench {
         Self { board, bench, accepted: 0 }
     }
 
-    /// Schedules an event for the board at time `at`, in phase `Arrive` of the event queue.
+    /// Schedules an event for the board at time `at`. At this time, the board handles the event before its programs
+    /// work.
     pub fn feed(&mut self, at: Time, event: GpEvent) {
         self.bench.feed(at, Phase::Arrive, event);
     }
 
-    /// Schedules, at time `at`, the acceptance of all messages that the board has sent and the receivers have not yet
-    /// accepted.
+    /// Lets the receivers accept, at time `at`, all messages that the board has sent and that were not accepted before.
     pub fn accept_all(&mut self, at: Time) {
         while let Some((_, GpOutput::Send { ticket, .. })) = self.bench.outputs.get(self.accepted) {
             let accepted = GpEvent::Accepted(*ticket);

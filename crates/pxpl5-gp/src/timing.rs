@@ -35,18 +35,20 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 impl GpTiming {
-    /// Timing of the Slats prototype of 1994: 30.0 us per triangle and eye. The time is fitted to the published limit
-    /// of 110 triangles without the COPY optimization (TR94). Any time from 29.8 to 30.1 us gives a limit of exactly
+    /// Timing of the Slats prototype of 1994: 30.0 us of CPU time for each triangle and eye. The time is fitted to the
+    /// published limit of 110 triangles without the COPY optimization (TR94). Any time from 29.8 to 30.1 us gives a
+    /// limit of exactly
     /// 110.
     pub const SLATS_1994: Self = Self { triangle_ns: 30_000, sphere_ns: 30_000, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Timing of the Slats code of 1995: 55.8 us per triangle and eye. The time is fitted to the published limit of
-    /// about 100 triangles with the COPY optimization (I3D95). Any time from 55.4 to 56.3 us gives a limit of exactly
+    /// Timing of the Slats code of 1995: 55.8 us of CPU time for each triangle and eye. The time is fitted to the
+    /// published limit of about 100 triangles with the COPY optimization (I3D95). Any time from 55.4 to 56.3 us gives a
+    /// limit of exactly
     /// 100.
     pub const SLATS_1995: Self = Self { triangle_ns: 55_800, sphere_ns: 55_800, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Timing of Slats with code that fits the instruction cache. The time of a triangle is a third of its time in 1994
-    /// (I3D95).
+    /// Timing of Slats with code that fits the instruction cache. The CPU time of a triangle is a third of the time in
+    /// [`Self::SLATS_1994`] (I3D95).
     pub const SLATS_OPTIMISED: Self = Self {
         triangle_ns: Self::SLATS_1994.triangle_ns / 3,
         sphere_ns: Self::SLATS_1994.sphere_ns / 3,
@@ -54,8 +56,7 @@ impl GpTiming {
     };
 }
 
-/// The pipeline whose i860 code for triangles and spheres determines the times of the timing table. Each pipeline has
-/// other times.
+/// A pipeline with its own i860 code for triangles and spheres. The times in the timing table depend on this code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CodeUse {
     /// PPHIGS: whole frames, Phong shading, commands in bins.
@@ -77,11 +78,11 @@ pub enum CodeUse {
 // `pass_ns` is the time at the start of a pass that does not belong to structures: to reset bins and to load code into
 // the caches. A structure with culling takes 3.2 us more than others. The table does not contain this difference.
 impl GpTiming {
-    /// Returns this table with the times of primitives that the i860 code takes. `version` is the version of the code,
-    /// and `of` is the pipeline whose code is used.
+    /// Replaces the times of triangles and spheres in this table by the times that the i860 code takes. `version` is
+    /// the version of the code, and `of` is the pipeline whose code is used.
     ///
-    /// PPHIGS has times only for scheduled code. This code fits the instruction cache, like the code of every PPHIGS in
-    /// the papers.
+    /// PPHIGS has times only for scheduled code. This code fits the instruction cache, like all PPHIGS code in the
+    /// papers.
     #[must_use]
     pub const fn of_code(self, version: CodeVersion, of: CodeUse) -> Self {
         match (of, version) {
@@ -199,8 +200,8 @@ pxpl5_sim::parameters::parameter_table! {
         /// Mean time of the application on the host between the EDIT of a frame and the next frame. This time has an
         /// effect only if the host waits for EDIT.
         application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: the host asks at once; within the range, and with the jitter, a trivial scene keeps its printed 30 frames/s";
-        /// Half of the width of the uniform distribution from which the application's time is chosen. The value must
-        /// not exceed the mean time.
+        /// Greatest deviation of the application's time from its mean. The time of each frame is chosen from a uniform
+        /// distribution. The deviation must not exceed the mean.
         application_jitter_ns: 0, "ns", Assumed, 0..=10000000 in 0..=MAX, "a tick of a Unix clock of 100 Hz";
     }
 }
@@ -225,8 +226,8 @@ impl HostTiming {
         Span::from_ns(self.application_ns - jitter + spread as u64)
     }
 
-    /// Returns the timing table of the board model that represents the host. Only the software costs and the memory
-    /// size of the table have an effect.
+    /// Returns the timing table of the board model that represents the host. For the host, only the CPU times of
+    /// messages and the memory size in this table have an effect.
     #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }

@@ -168,7 +168,7 @@ impl Layout {
 /// A named range of bits in pixel memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldRange {
-    /// Index of the context and name of the field, for example `0 z`, or `scratch`.
+    /// Name of the range in error messages: `scratch`, or the context and the field, for example `context 0 z`.
     pub name: String,
     /// First bit in pixel memory, 0 to 207.
     pub first: u32,

@@ -5,8 +5,8 @@ use crate::{EventQueue, Phase, Span, Time};
 
 /// The events that a device schedules for itself, and the outputs of the device.
 ///
-/// `E` is the device's own event type, `O` its output type. After each event, the owner of the devices removes both
-/// lists.
+/// `E` is the device's own event type, `O` its output type. After each event, the code that owns the devices removes
+/// the scheduled events and the outputs.
 #[derive(Debug)]
 pub struct Context<E, O> {
     now: Time,
@@ -80,7 +80,7 @@ impl<E, O> Context<E, O> {
     }
 }
 
-/// A test bench for one device. The test schedules events for the device and reads its outputs with their times.
+/// A test bench for one device. A test schedules events for the device and reads the device's outputs with their times.
 #[derive(Debug)]
 pub struct TestBench<E, O> {
     queue: EventQueue<E>,
@@ -96,7 +96,7 @@ impl<E, O> Default for TestBench<E, O> {
 }
 
 impl<E, O> TestBench<E, O> {
-    /// Makes an empty bench at time zero.
+    /// Makes a test bench without events at time zero.
     #[must_use]
     pub fn new() -> Self {
         Self::default()

@@ -1,4 +1,4 @@
-//! A hash of all events of a run. The order of events within an instant does not change the hash.
+//! A hash of all events of a simulation. The order of events within an instant does not change the hash.
 
 use crate::Time;
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,7 @@ impl TraceHash {
 impl FromStr for TraceHash {
     type Err = ParseIntError;
 
-    /// Parses the 16 hexadecimal digits that `Display` writes.
+    /// Parses a hash from the 16 hexadecimal digits that `Display` writes.
     fn from_str(text: &str) -> Result<Self, ParseIntError> {
         u64::from_str_radix(text, 16).map(Self)
     }

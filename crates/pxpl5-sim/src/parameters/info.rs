@@ -33,7 +33,7 @@ pub struct ParameterInfo {
     pub unit: &'static str,
     /// Provenance of the parameter's value: printed, calculated or assumed.
     pub provenance: Provenance,
-    /// Initial value of the parameter. The papers print or allow this value.
+    /// Initial value of the parameter, which the papers print or allow.
     pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),
@@ -54,8 +54,8 @@ impl ParameterInfo {
     }
 }
 
-/// Creates the error of a table that has no parameter called `name`. Tables that are written without the macro can also
-/// use this function.
+/// Creates the error of a table that has no parameter called `name`. The function is public for tables that are written
+/// without the macro `parameter_table!`.
 #[must_use]
 pub fn unknown_parameter(name: &str, infos: &[ParameterInfo]) -> SettingError {
     SettingError::unknown_path("parameter", name, infos.iter().map(|info| info.name))
