@@ -125,12 +125,12 @@ pub(crate) struct Block {
     pub(crate) instructions: u64,
     /// Number of the latest state of the instruction cache in which the cache held the whole block.
     held_in: u64,
-    /// Effects of the instructions and pairs, in order. The effects of the delay slot come last.
+    /// Effects of the instructions and pairs, in the order of execution. The effects of the delay slot come last.
     pub(crate) actions: Box<[Action]>,
-    /// Instructions and pairs of the block that load or store data, in order.
+    /// Instructions and pairs of the block that load or store data, in the order of execution.
     pub(crate) accessing: Box<[AccessingUnit]>,
     pub(crate) remembered: BlockMemory,
-    /// All instructions and pairs of the block, in order. The delay slot is the last element.
+    /// All instructions and pairs of the block, in the order of execution. The delay slot is the last element.
     units: Box<[Unit]>,
     /// For each cache line of the block, the index of the first instruction or pair on the line.
     lines: Box<[u8]>,

@@ -1,4 +1,5 @@
-//! The processor: instruction fetch, pairs of instructions, delay slots, traps, and the main loop of a run.
+//! The processor: instruction fetch, pairs of instructions, delay slots, traps, and the main loop that executes a
+//! program.
 
 use crate::action::{Action, Floating};
 use crate::assembler::Program;
@@ -29,7 +30,7 @@ pub struct Cpu {
     pub(crate) mode_after_slot: Option<Mode>,
     /// Addresses of the data that the current block has loaded or stored.
     pub(crate) accesses: Accesses,
-    /// Cause of the trap that the current instruction or pair has raised, if any.
+    /// Cause of the trap that the current instruction or pair has raised. `None` if no trap was raised.
     cause: Option<TrapCause>,
     /// New value of the directory-base register, if the current block has written the register.
     pub(crate) directory_base: Option<u32>,
@@ -227,8 +228,8 @@ impl Cpu {
         self.time.pass(block, execution, &self.accesses, bus);
     }
 
-    /// Sets the address and pairing mode of the next block. If the last instruction was a taken delayed branch, its
-    /// delay slot is executed first.
+    /// Sets the address and pairing mode of the block that executes next. If the current block ended with a taken
+    /// delayed branch, the function first executes the branch's delay slot.
     #[inline]
     fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, execution: &mut Execution, bus: &mut B) {
         // Begin with the address directly after the executed code. A jump or trap overrides this address below.

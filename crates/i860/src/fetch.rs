@@ -1,4 +1,5 @@
-//! Instruction fetch: the cache line of the last fetch, and the instruction cache.
+//! Instruction fetch: from the cache line of the last fetch, from another line of the instruction cache, or from
+//! memory.
 
 use crate::block::Block;
 use crate::bus::Bus;

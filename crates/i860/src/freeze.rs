@@ -91,7 +91,7 @@ pub struct FreezeRules {
     enabled: u32,
     /// Constant parts of the delays in all rows of the freeze table, including disabled rows.
     pub clocks: FreezeClocks,
-    /// True if row 8 of the freeze table, the delay of a conditional branch after an operation that sets CC, also
+    /// Row 8 of the freeze table delays a conditional branch after an operation that sets CC. True if row 8 also
     /// applies after and, andnot, or and xor. Intel's list does not decide this question. The default is false.
     pub logicals_delay_branches: bool,
 }

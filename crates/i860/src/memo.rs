@@ -35,7 +35,7 @@ impl Number {
     }
 }
 
-/// All distinct scoreboard states with the numbers assigned to them.
+/// All scoreboard states that have occurred so far, with their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbers {
     numbers: FxHashMap<PendingWaits, Number>,
@@ -46,7 +46,7 @@ pub(crate) struct Numbers {
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard state, if memoized clocks were reused last. `None` means that the
+    /// Number of the current scoreboard state, if the latest clocks were memoized clocks. `None` means that the
     /// [`Scoreboard`] itself holds the state.
     present: Option<Number>,
     /// Number of executed instructions whose clocks were taken from the memory instead of counted.
@@ -176,7 +176,8 @@ impl WaitedClocks {
     }
 }
 
-/// The memoized clocks of a run, which is a part of a block. The entry fills half a cache line of most host computers.
+/// The memoized clocks of a run, which is a part of a block. The entry takes 32 bytes, half a cache line of most
+/// present computers.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct RememberedClocks {
@@ -219,7 +220,7 @@ impl BlockMemory {
     /// Smallest size of the hash table, in entries.
     const LEAST: usize = 8;
     const MOST: usize = 1 << 11;
-    /// Number of successive entries of the hash table in which a run (a part of a block) is searched.
+    /// Number of successive entries of the hash table that a search for a run (a part of a block) examines.
     const REACH: usize = 4;
 
     #[inline]

@@ -105,8 +105,8 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks to the end of the current run (a part of the block), and the clocks of the access or cache
-    /// miss that ends the run.
+    /// Counts the clocks to the end of the current run (a part of the block). Also counts the clocks of the access or
+    /// cache miss that ends the run.
     #[inline]
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;

@@ -23,8 +23,8 @@ pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
-/// A remaining wait, packed into 16 bits. The upper seven bits are the place: the register or hazard that is not ready.
-/// The next four bits hold the remaining clocks, and the lower five bits the row of the freeze table.
+/// A remaining wait, packed into 16 bits. The upper seven bits hold the number of the register or hazard that is not
+/// ready. The next four bits hold the remaining clocks. The lower five bits hold the row of the freeze table.
 struct Left {
     place: u8,
     clocks: u8,

@@ -2,7 +2,7 @@
 
 use crate::instruction::{Instruction, Op};
 
-/// Operands of an instruction in assembler text, in order. Each variant is one form.
+/// The form of an instruction's operands in assembler text, in the order in which the operands are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Syntax {
     /// No operands: the instruction is only a mnemonic.

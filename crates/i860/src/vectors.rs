@@ -17,7 +17,7 @@ use std::fmt;
 /// fewer than 1,000 instructions.
 pub const BUDGET: u64 = 10_000;
 
-/// One conformance vector: a program, the state before its run and the state expected after its run.
+/// One conformance vector: a program, the memory before the program runs, and the state expected afterwards.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct TestVector {
     /// Identifier, unique in its file.
@@ -43,7 +43,7 @@ pub struct TestVector {
     pub expect: Expectation,
 }
 
-/// The state that is expected after the run of a vector.
+/// The registers and memory words that are expected after the program of a vector has run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Expectation {
     /// Expected values of the integer registers, as bit patterns.
@@ -119,7 +119,7 @@ impl Bus for Sparse {
     }
 }
 
-/// One difference between the expected state and the state after a run.
+/// One register or memory word that differs from its expected value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// Name of the register (such as `r5` or `f12`), or address of the memory word.

@@ -43,8 +43,8 @@ impl BoardBench {
         self.bench.run_until(until, |event, context| self.board.handle(event, context));
     }
 
-    /// Iterates over the sent messages in order. Each item is the time at which a message left the board, and the
-    /// message.
+    /// Iterates over the messages that the board has sent, in the order of sending. Each item is the time at which a
+    /// message left the board, and the message.
     pub fn sent(&self) -> impl Iterator<Item = (Time, &Message)> {
         self.bench.outputs.iter().map(|(time, GpOutput::Send { message, .. })| (*time, message))
     }

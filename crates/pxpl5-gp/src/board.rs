@@ -278,7 +278,8 @@ impl GpBoard {
         true
     }
 
-    /// Returns the fault (an input that cannot be processed) that has stopped a program or the board, if any.
+    /// Returns the fault (an input that cannot be processed) that has stopped a program or the board, or `None` without
+    /// a fault.
     #[must_use]
     pub const fn fault(&self) -> Option<&Fault> {
         self.fault.as_ref()
@@ -353,8 +354,8 @@ impl GpBoard {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
-    /// Returns the name of the condition that the board waits for, for a deadlock report. If both programs wait, the
-    /// condition of the foreground program is returned.
+    /// Returns the name of the condition for which the board waits. Deadlock reports contain this name. If the two
+    /// programs wait, the function returns the condition of the foreground program.
     #[must_use]
     pub fn blocked(&self) -> Option<&'static str> {
         Some(self.wait()?.what)

@@ -49,8 +49,8 @@ pub struct Received {
     pub body: Body,
 }
 
-/// The number of a batch of messages that a program has passed to the DMA (direct memory access), the part of the board
-/// that sends messages in the background.
+/// The number of a batch of messages that a program has passed to the DMA. The DMA (direct memory access) is the part
+/// of the board that sends messages in the background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(pub(crate) u64);
 
@@ -143,16 +143,16 @@ impl Cause {
 }
 
 impl Wait {
-    /// The entry in `Shared::waits` for a priority without a program.
+    /// The wait that is recorded for a priority without a program.
     pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
 
-    /// The entry in `Shared::waits` for a program that has not run for the first time yet.
+    /// The wait that is recorded for a program before its first poll.
     pub(crate) const NOT_STARTED: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
 impl Shared {
-    /// Returns true if an event of the kind `cause` can end the wait of a program, or can allow the DMA to send its
-    /// next chain of messages.
+    /// Returns true if an event of the kind `cause` can end the wait of a program, or can allow the DMA to send another
+    /// chain.
     pub(crate) fn can_end_wait(&self, cause: Cause) -> bool {
         let next_chain = cause == Cause::Acceptance && self.in_flight.is_empty() && !self.batches.is_empty();
         next_chain || self.waits.iter().any(|wait| wait.ended_by.includes(cause))

@@ -84,8 +84,8 @@ impl Gp {
     }
 
     /// Sends groups of messages as one DMA chain, as [`Gp::send_batch`] does. Each group has one receiver. The
-    /// receiver's port stays reserved from the first to the last message of a group, so no message of another board can
-    /// arrive between messages of the group.
+    /// receiver's port stays reserved from the first to the last message of a group. No message of another board can
+    /// therefore arrive between messages of the group.
     pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
         let links = groups.into_iter().flat_map(|(destination, group)| {
             // The last message of a group releases the port of the receiver.

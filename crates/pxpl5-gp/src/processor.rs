@@ -80,7 +80,7 @@ pub enum ProcessorFault {
         /// Number of words in the requested access.
         words: usize,
     },
-    /// The memory is too small for the outputs of both bin contexts (the two sets of bins).
+    /// The memory is too small for the outputs of the two bin contexts (two sets of bins).
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
         /// Port of the board.
@@ -413,7 +413,7 @@ impl Processor {
         self.cpu.clocks()
     }
 
-    /// Returns the program that was called last, if any.
+    /// Returns the program that was called last, or `None` before the first call.
     #[must_use]
     pub const fn program(&self) -> Option<&Arc<Program>> {
         self.loaded.as_ref()

@@ -130,7 +130,7 @@ impl Processor {
 /// A send request of four words: receiver, kind and flags, length in words, and address.
 type Request = [Word; 4];
 
-/// A received message in the form in which a program takes it from the queue.
+/// A received message in the form in which the message software passes the message to a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Taken {
     place: u32,

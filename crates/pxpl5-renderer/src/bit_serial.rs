@@ -70,9 +70,9 @@ impl BitSerial {
 
     /// Turns on the skipping mode, which leaves out work that changes no bit.
     ///
-    /// Disabled pixels move no planes. If the signs of an expression at the corners of a tile of 32 x 16 pixels
-    /// determine the sign in the whole tile, the adders are not simulated. Clocks, faults and all bits stay the same.
-    /// The default mode takes ten times as long as the skipping mode.
+    /// Disabled pixels move no planes. The signs of an expression at the corners of a tile of 32 x 16 pixels often
+    /// determine the sign in the whole tile. In this case, the adders are not simulated. Clocks, faults and all bits
+    /// stay the same. The default mode takes ten times as long as the skipping mode.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }

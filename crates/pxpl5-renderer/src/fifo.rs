@@ -234,7 +234,8 @@ impl InputFifo {
         }
     }
 
-    /// Adds commands to the message that the next call of [`Self::message`] announces. Commands must be added in order.
+    /// Adds commands to the message that the next call of [`Self::message`] announces. Commands must be added in the
+    /// order of their words in the message.
     pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
     }
@@ -407,7 +408,7 @@ impl InputFifo {
     }
 
     /// Starts the waiting commands in order, up to and including the first blocking command (copy of a region). Returns
-    /// the start time of the blocking command, if there is one.
+    /// the start time of the blocking command, or `None` if no blocking command has started.
     fn start_waiting(&mut self) -> Option<Time> {
         while let Some(free_at) = self.free_at {
             let command = self.waiting.pop_front()?;

@@ -116,22 +116,22 @@ impl Expression {
 pub enum ExpressionUse {
     /// Disables pixels where the expression is negative.
     DisableNegative,
-    /// Stores the bits of the expression in a field. The low `shift` bits of the expression are left out.
+    /// Stores the bits of the expression in a field of pixel memory, from bit `shift` of the expression on.
     Load {
         /// Field of pixel memory that receives the bits of the expression.
         field: Operand,
         /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
-    /// Adds the bits of the expression to a field. The low `shift` bits of the expression are left out.
+    /// Adds the bits of the expression to a field of pixel memory, from bit `shift` of the expression on.
     Add {
         /// Field of pixel memory to which the bits of the expression are added.
         field: Operand,
         /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
-    /// Disables pixels unless the bits of the expression from bit `shift` on are less than the field. Both numbers are
-    /// unsigned.
+    /// Compares the bits of the expression from bit `shift` on with a field of pixel memory, as unsigned numbers.
+    /// Disables the pixels in which the number from the expression is not less than the field.
     DisableNotLess {
         /// Field of pixel memory with which the bits of the expression are compared.
         field: Operand,
@@ -145,7 +145,7 @@ pub enum ExpressionUse {
         field: Operand,
         /// Number of lowest bits of the difference that are ignored.
         shift: u8,
-        /// Field to subtract, sign-extended if it is signed, otherwise zero-extended.
+        /// Field of pixel memory to subtract, sign-extended if it is signed, otherwise zero-extended.
         subtrahend: Operand,
         /// Left shift of the subtrahend before the subtraction, in bits.
         left_shift: u8,
@@ -233,7 +233,7 @@ pub enum ArrayInstruction {
         /// Number of bits to shift, 0 to 63.
         by: u8,
     },
-    /// Computes destination := source << by.
+    /// Computes destination := source << by in every enabled pixel.
     ShiftLeft {
         /// Field of pixel memory that receives the result.
         destination: Operand,
@@ -297,7 +297,7 @@ pub enum ArrayInstruction {
     MultiplyConstant {
         /// Field of pixel memory that receives the product.
         destination: Operand,
-        /// Field to multiply, sign-extended if it is signed, otherwise zero-extended.
+        /// Field of pixel memory to multiply, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Factor in two's complement. Only its low `factor_bits` bits are used.
         factor: i32,

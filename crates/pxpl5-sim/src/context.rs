@@ -55,8 +55,8 @@ impl<E, O> Context<E, O> {
         self.own.drain(..)
     }
 
-    /// Removes the events that were scheduled since the last call and passes each event to `take`, in order. Most calls
-    /// find at most one event.
+    /// Removes the events that were scheduled since the last call and passes the events to `take`, in the order of
+    /// scheduling. Most calls find at most one event.
     #[inline]
     pub fn each_event(&mut self, mut take: impl FnMut(Time, Phase, E)) {
         // The usual case of one event needs no iterator.
@@ -85,7 +85,7 @@ impl<E, O> Context<E, O> {
 pub struct TestBench<E, O> {
     queue: EventQueue<E>,
     context: Context<E, O>,
-    /// All outputs of the device, in order.
+    /// All outputs of the device with their times, in the order in which the device made the outputs.
     pub outputs: Vec<(Time, O)>,
 }
 

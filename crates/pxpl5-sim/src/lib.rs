@@ -17,7 +17,8 @@
 //!    devices *work* on the inputs. Finally, observers *observe* the state.
 //! 2. Results must not depend on the order of events with the same instant and phase. A device that must choose between
 //!    simultaneous requests stores them in `Arrive`. In `Work`, the device chooses one of the stored requests by its
-//!    own rule, for example the earliest request, or the lowest port among requests of the same instant.
+//!    own rule. For example, a device can choose the earliest request, and the lowest port among requests of the same
+//!    instant.
 //! 3. Events with the same instant and phase are handled in the order of scheduling. [`EventQueue::shuffle_ties`]
 //!    replaces this order by a pseudo-random order. Tests use the pseudo-random order to check point 2.
 //! 4. No event can be scheduled in the past. An attempt is a programming error and causes a panic.

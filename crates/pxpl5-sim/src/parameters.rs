@@ -16,9 +16,9 @@
 //! word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94";
 //! ```
 //!
-//! The parts of a line are the value, unit, provenance, the *range* that the sources allow, the *limits* within which
-//! the model works, and source. If a line has no limits, the range also serves as the limits. Values are whole numbers
-//! (`u64`, exact) unless the line has the type `f64`:
+//! The parts of a line are the value, the unit, the provenance, the *range*, the *limits* and the source. The range is
+//! the set of values that the sources allow. Within the limits, the model works. If a line has no limits, the range
+//! also serves as the limits. Values are whole numbers (`u64`, exact) unless the line has the type `f64`:
 //!
 //! ```text
 //! /// Error of each axis, rms.

@@ -13,7 +13,7 @@
 //!   a pair.
 //! * A pipelined multiply does not have its first source as destination.
 //! * No result is read from a pipe after a scalar operation has destroyed the contents of the pipe. Programs that empty
-//!   a pipe read such results and ignore them.
+//!   a pipe read destroyed results and ignore these results.
 //!
 //! The rules for pairs are checked in address order. The check does not follow jumps into the middle of
 //! dual-instruction code.
@@ -26,7 +26,7 @@ use std::collections::BTreeSet;
 
 type Located = (u32, usize, Instruction);
 
-/// A rule that some working programs break. The assembler only warns if a program breaks such a rule.
+/// A rule that some working programs break. The assembler only prints a warning if a program breaks this rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rule {
     /// Rule: a `d.` instruction has an address that is a multiple of 8.
@@ -207,8 +207,8 @@ fn writes(i: &Instruction) -> u64 {
     }
 }
 
-/// Returns the mask of the floating-point registers of a destination. f0 and f1 are left out, because they cannot be
-/// written.
+/// Returns a bit mask of the floating-point registers that a destination of `bytes` bytes from register `dest` on
+/// occupies. f0 and f1 are left out, because these registers are always 0.
 fn writable_float_mask(dest: u8, bytes: u8) -> u64 {
     float_mask(dest, bytes) & !(3 << 32)
 }

@@ -14,7 +14,7 @@ struct Parser<'a> {
     depth: u32,
 }
 
-/// Computes the value of an expression of numbers, symbols and operators, with 64 bits.
+/// Computes the value of an expression of numbers, symbols and operators in 64-bit integer arithmetic.
 pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     let mut parser = Parser { text: text.trim(), symbols, depth: 0 };
     if parser.text.is_empty() {

@@ -9,8 +9,8 @@ use std::collections::HashMap;
 /// An operand in linear code: the value of an earlier line, or the text of a register or constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The value of an operation: index of the operation, and index of one register of the value. `None` means all
-    /// registers of the value.
+    /// The value of an earlier operation: the index of this operation, and the index of one register of the value.
+    /// `None` selects all registers of the value.
     Value(usize, Option<u8>),
     /// A register or a constant, as the text in the source.
     Text(String),
@@ -21,11 +21,11 @@ pub(super) enum Source {
 pub(super) struct Operation {
     pub(super) name: Name,
     pub(super) sources: Vec<Source>,
-    /// Offset and base register of the operation's memory address, if any.
+    /// Offset and base register of the operation's memory address. `None` if the operation does not access memory.
     pub(super) address: Option<(String, Source)>,
     /// Indices of the stores that must precede this operation.
     pub(super) after: Vec<usize>,
-    /// Register in which the code after the stretch expects the result, if any. No other line of the linear code
+    /// Register in which the code after the linear code expects the result, or `None`. No other line of the linear code
     /// reads this register.
     pub(super) register: Option<u8>,
 }

@@ -64,7 +64,7 @@ impl File {
     }
 
     /// Finds `count` consecutive free registers and returns the number of the first register. For one or two registers,
-    /// the function prefers a gap beside used registers. The result never contains register `but`.
+    /// the function prefers a gap beside used registers. The function never selects register `but`.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
         // The first register of a value is a multiple of its number of registers.
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
@@ -282,8 +282,8 @@ impl<'a> Placer<'a> {
         self.register(&sources[usize::from(self.is_last_result(&sources[0]))])
     }
 
-    /// Returns true if enough registers are free for the result and for the values in the pipes. Only the oldest
-    /// operation can use the last free registers.
+    /// Returns true if enough registers are free for the result of operation `n` and for the values in the pipes. Only
+    /// the first unissued operation (`is_oldest`) can use the last free registers.
     fn has_room(&self, n: usize, is_oldest: bool) -> bool {
         let Some(width) = self.operations[n].name.result else { return true };
         let count = width.registers();

@@ -102,7 +102,7 @@ impl BitSink for ClearEnable {
     }
 }
 
-/// A sink that stores the bits of an expression in a field. The low `shift` bits of the expression are left out.
+/// A sink that stores the bits of an expression in a field of pixel memory, from bit `shift` of the expression on.
 struct StoreBits {
     first: usize,
     shift: usize,
@@ -115,7 +115,7 @@ impl BitSink for StoreBits {
     }
 }
 
-/// A sink that adds the bits of an expression to a field. The low `shift` bits of the expression are left out.
+/// A sink that adds the bits of an expression to a field of pixel memory, from bit `shift` of the expression on.
 struct AddBits {
     first: usize,
     shift: usize,
@@ -150,7 +150,8 @@ impl BitSink for CompareBits {
     }
 }
 
-/// A sink that stores the expression minus a source field. The low `shift` bits of the difference are left out.
+/// A sink that subtracts a source field from an expression. The sink stores the bits of the difference from bit `shift`
+/// on.
 struct StoreDifference {
     first: usize,
     shift: usize,

@@ -126,8 +126,8 @@ fn streams<V: SimdVector>(stream: V) -> Streams {
     words
 }
 
-/// Position of a vector of pixels in a tile, and positions of the vector's column bits and row bits in the outputs of
-/// the adder trees ([`Streams`]).
+/// Three positions of a vector of pixels: in a tile, and of its column bits and row bits in the outputs of the adder
+/// trees ([`Streams`]).
 #[derive(Clone, Copy)]
 pub(super) struct VectorPlace {
     /// Index of the vector's first word in a tile's plane.

@@ -101,7 +101,7 @@ impl InstructionRun {
     }
 
     /// Returns, for each expression of the instruction run, the tiles in which all pixels have the same sign of the
-    /// expression. The result is empty for expressions that do not disable pixels by their sign.
+    /// expression. The sets are empty for an expression whose sign disables no pixels.
     #[inline(always)]
     fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];

@@ -46,8 +46,8 @@ pub enum DecodeErrorKind {
         /// width.
         expected: u32,
     },
-    /// The signedness of an operand is not allowed. Some instructions need unsigned operands. Others need two operands
-    /// of the same signedness.
+    /// The signedness of an operand is not allowed. Some instructions need unsigned operands. Comparisons, minima and
+    /// maxima need two operands of the same signedness.
     #[error("signedness of the operands does not fit")]
     Signedness,
     /// The number of a block of the backing store is 128 or more.

@@ -24,8 +24,8 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 /// The budgets are 256 to 267 clocks (Gouraud) and 262 to 292 clocks (Phong).
 ///
 /// The formats on the wire need 222 clocks in 9 instructions: 2 (enable), 3 x 32 (edges), 32 (compare Z), 32 (store Z)
-/// and 3 x 20 (colour). With normals, they need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks in 10
-/// instructions. For n clocks of set-up, this gives 222 + 9 n >= 256 and 252 + 10 n <= 292.
+/// and 3 x 20 (colour). With normals, the formats need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks
+/// in 10 instructions. For n clocks of set-up, this gives 222 + 9 n >= 256 and 252 + 10 n <= 292.
 ///
 /// The published rate of 150,000 triangles per second means 267 clocks for each triangle (TR94, which does not state
 /// the kind of shading). This number lies between the results 258 (Gouraud) and 292 (Phong). The range is 2 (Phong

@@ -23,7 +23,7 @@ struct SpherePlace {
 
 impl Lanes {
     /// Executes the sphere or shading command at the start of `words`, and returns its length in words. Returns `None`
-    /// if the words are not such a command of this layout.
+    /// if the words do not begin with a sphere or shading command of this layout.
     pub(super) fn large_command(
         &mut self,
         kind: CommandKind,

@@ -89,8 +89,8 @@ impl Templates {
     }
 }
 
-/// Returns true if the next instruction is *enable all*, with any label. In this case, no instruction reads the current
-/// values of the Enable register.
+/// Returns true if the next instruction is *enable all*, with any label. If the result is true, no instruction reads
+/// the current values of the Enable register.
 pub(super) fn next_enables_all(next: Option<&Word>) -> bool {
     const LABEL: Word = 0xff << 16;
     next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 pub enum Basis {
     /// An independent check: no parameter and no rule of the model was chosen to reproduce the figure.
     Free,
-    /// The named parameter was fitted to this figure, or derived from it.
+    /// The named parameter was fitted to this figure, or derived from this figure.
     Fitted(&'static str),
     /// The named rule of the model was chosen because of this figure.
     Rule(&'static str),
