@@ -47,8 +47,8 @@ pub(crate) enum Core {
     PipelinedLoadSingle,
     PipelinedLoadDouble,
     StorePixels,
-    /// All other core operations, such as control-register moves, `flush`, `trap` and `lock`. The processor executes
-    /// these operations from the decoded instruction.
+    /// All remaining core operations, such as control-register moves, `flush`, `trap` and `lock`. The processor
+    /// executes these operations from the decoded instruction.
     System,
     Branch,
 }

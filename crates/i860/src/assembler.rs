@@ -152,7 +152,7 @@ enum Item {
         operands: String,
     },
     /// Integer values, stored as the text of their source line. A separate string for each value would need several
-    /// times as much memory.
+    /// times the memory of this text.
     Integers {
         size: u32,
         values: String,

@@ -101,7 +101,7 @@ fn is_store(op: Op) -> bool {
 
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 
-/// Initial value of [`Block::held_in`]. No state of the instruction cache has this number.
+/// Initial value of [`Block::held_in`], which differs from the numbers of all states of the instruction cache.
 const NEVER: u64 = u64::MAX;
 
 /// A basic block of instructions and pairs. A block ends at a branch, at an instruction that cannot be executed, or at
@@ -123,7 +123,8 @@ pub(crate) struct Block {
     pub(crate) count: usize,
     /// Number of instructions of the block. A pair counts as two instructions. The delay slot counts as well.
     pub(crate) instructions: u64,
-    /// Number of the latest state of the instruction cache in which the cache held the whole block.
+    /// Number of the latest cache state in which the instruction cache held the whole block. The cache numbers its
+    /// states.
     held_in: u64,
     /// Effects of the instructions and pairs, in the order of execution. The effects of the delay slot come last.
     pub(crate) actions: Box<[Action]>,
@@ -138,7 +139,8 @@ pub(crate) struct Block {
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 
-/// A load or store in the form that the timing model needs, without address and value.
+/// The properties of a load or store that the timing model needs: operation, register and size, but not the address and
+/// the data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Access {
     pub(crate) op: Op,

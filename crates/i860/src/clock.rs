@@ -122,8 +122,8 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the numbering of scoreboard states with `numbers`, the numbering of a shared store of decoded
-    /// programs. The memoized clocks of the store refer to this numbering.
+    /// Exchanges the table of numbered scoreboard states with `numbers`, the table of a shared store of decoded
+    /// programs. The memoized clocks in the store contain numbers of this table.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {

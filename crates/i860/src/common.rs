@@ -10,7 +10,7 @@ use crate::timing::{Config, Freeze};
 pub(crate) struct Common {
     /// The current clock, counted since reset.
     pub(crate) now: u64,
-    /// Clock at which the profile was started. Every clock since then is either a freeze or an issue.
+    /// Clock at which the profile was started. Every clock after the start is either a freeze clock or an issue clock.
     profile_start: u64,
     /// All counts of the profile except issue clocks. [`Common::profile`] computes the issue clocks from the other
     /// clocks.

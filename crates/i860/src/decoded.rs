@@ -43,7 +43,7 @@ pub(crate) struct Decoded {
     pub(crate) instruction: Instruction,
     pub(crate) sensitive: u16,
     pub(crate) arms: u16,
-    /// First source register if the multiplier reads this register, else [`NONE`].
+    /// Number of the first source register if the multiplier reads this register, else [`NONE`].
     pub(crate) multiplier_source: u8,
     marks: u8,
 }
@@ -109,7 +109,8 @@ impl Decoded {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
     }
 
-    /// Returns true if the destination of a pipelined operation can also be one of its sources.
+    /// Returns true if a source register of a pipelined operation can be its destination register. The operation then
+    /// reads the result that leaves the pipe.
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
         self.marks & mark::MAY_BYPASS != 0

@@ -63,8 +63,8 @@ impl Fetch {
         ArrivingLine { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
-    /// Makes the numbers of the next cache states start after `latest`, so that states of different processors have
-    /// different numbers.
+    /// Makes all later states of the instruction cache have numbers above `latest`, so that states of different
+    /// processors have different numbers.
     pub(crate) fn number_states_from(&mut self, latest: u64) {
         self.cache.number_changes_from(latest);
     }

@@ -71,8 +71,7 @@ pub struct Slots {
     /// Number of floating-point operations. A multiply with double-precision sources counts twice, because the
     /// multiplier accepts one such multiply every second clock.
     pub floating: usize,
-    /// Number of core operations. The number of pairs in a schedule is at least the greater number of `floating` and
-    /// `core`.
+    /// Number of core operations. A schedule needs at least as many pairs as the maximum of `floating` and `core`.
     pub core: usize,
     /// Number of instruction pairs in the schedule.
     pub pairs: usize,
@@ -122,8 +121,8 @@ pub fn schedule(source: &str) -> Result<String, AssemblyError> {
     Ok(out.into_inner())
 }
 
-/// Passes the operations of each stretch of linear code, with their pairs, to the function `linear`. Passes every other
-/// line of the source to the function `other`. The calls have the order of the source.
+/// Reads a source in order. For each stretch of linear code, calls `linear` with the operations and their schedule of
+/// pairs. For every line outside a stretch, calls `other`.
 fn stretches(
     source: &str,
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),

@@ -16,8 +16,8 @@ use rustc_hash::FxHashMap;
 /// Longest wait, in clocks, that a numbered scoreboard state can contain. States with longer waits get no number, so
 /// their clocks are not memoized.
 pub(crate) const MOST_CLOCKS: u8 = 15;
-/// Greatest number of scoreboard states that get a number. After any other state, code is counted instruction by
-/// instruction.
+/// Greatest number of scoreboard states that get a number. In a state without a number, the clocks of code are counted
+/// instruction by instruction.
 const MOST_NUMBERS: usize = 1 << 15;
 
 /// The number of a scoreboard state (the remaining waits for registers and units). The highest bit is set if an

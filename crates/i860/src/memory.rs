@@ -166,8 +166,7 @@ impl Cpu {
         Ok(self.after_store())
     }
 
-    /// Executes `flush`. The function does not check the alignment of the address. Memory need not exist at this
-    /// address.
+    /// Executes `flush`. The address can be unaligned, and can be an address without memory.
     pub(crate) fn flush_line(&mut self, i: &Instruction) {
         let offset = if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) };
         let address = offset.wrapping_add(self.state.r(i.src2));

@@ -1,4 +1,4 @@
-//! Profiles: the clocks of a run, by cause and by code address.
+//! Profiles: the clocks that programs have taken, by cause and by code address.
 
 use crate::timing::{FREEZES, Freeze, N_FREEZES};
 use std::fmt;

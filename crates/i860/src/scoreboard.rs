@@ -54,7 +54,7 @@ impl Left {
 /// Greatest number of waits that a [`PendingWaits`] can hold.
 const MOST_WAITS: u32 = u128::BITS / Left::BITS;
 
-/// The waits that remain at a certain clock: a compact copy of the scoreboard's state.
+/// A compact copy of the scoreboard's state at one clock: all waits that have not ended.
 ///
 /// Two scoreboards with equal pending waits delay all later instructions equally.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,8 +2,8 @@
 //! *seeds* of Newton steps.
 //!
 //! The chip's table is not public. Only a limit of the error is known: the error of the fraction is below 2^-7. The
-//! user therefore chooses a table. With another table, the results of programs that refine the seeds by Newton steps
-//! differ in the last bit or two. The number of clocks stays the same.
+//! user therefore chooses one of three tables. Programs refine the seeds by Newton steps, so the choice affects the
+//! last one or two bits of their results. The number of clocks stays the same.
 
 use crate::arithmetic::{narrow, widen};
 

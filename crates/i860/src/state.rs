@@ -99,8 +99,8 @@ pub enum Mode {
     /// Instructions execute one at a time.
     #[default]
     Single,
-    /// One more instruction executes alone, and pairs begin after this instruction. The instruction is the upper half
-    /// of 8 aligned bytes. The D bit of the lower half was set.
+    /// The next instruction executes alone, and pairs begin after it. This mode follows an instruction whose D bit is
+    /// set. The next instruction lies in the upper half of 8 aligned bytes.
     Entering,
     /// The next two instructions form a pair. This pair is the first or the last of dual-instruction mode. Another pair
     /// follows only if this pair has its D bit set.

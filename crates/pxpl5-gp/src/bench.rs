@@ -15,7 +15,7 @@ pub struct BoardBench {
 }
 
 impl BoardBench {
-    /// Makes a bench for a board and schedules the first poll of the board's programs at time zero.
+    /// Makes a test bench for a board. The board's programs start to run at time zero.
     #[must_use]
     pub fn new(board: GpBoard) -> Self {
         let mut bench = TestBench::new();

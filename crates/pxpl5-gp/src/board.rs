@@ -36,8 +36,8 @@ pub enum GpEvent {
     },
     /// The board runs its programs, which read the inputs that have arrived at this instant.
     Poll,
-    /// The running work of the CPU can end at this instant. If an interrupt has delayed the end of the work, the event
-    /// has no effect.
+    /// The running work of the CPU ends at this instant, unless an interrupt has delayed the end. In the latter case,
+    /// the event has no effect.
     WorkEnds,
 }
 
@@ -107,8 +107,8 @@ impl fmt::Debug for GpBoard {
 }
 
 impl GpBoard {
-    /// Makes a board without programs at a ring port. Each output leaves the board one `cycle` after the event that
-    /// causes the output.
+    /// Makes a board without programs at the ring port `node`. Each output leaves the board one `cycle` after the event
+    /// that causes the output.
     #[must_use]
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
@@ -361,7 +361,7 @@ impl GpBoard {
         Some(self.wait()?.what)
     }
 
-    /// Returns true if the board waits for an event other than a retrace. Only another board can cause such an event.
+    /// Returns true if the board waits for an event that only another board can cause. A retrace is not such an event.
     #[must_use]
     pub fn waits_for_a_board(&self) -> bool {
         self.wait().is_some_and(|wait| wait.ended_by != Cause::Retrace)

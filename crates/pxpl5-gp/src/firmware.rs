@@ -105,8 +105,8 @@ pub(crate) struct Shared {
     /// Number of the last batch of messages that the receivers have accepted completely.
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
-    /// Number of waits that have ended so far. The board polls its programs until a round of polls leaves this number
-    /// unchanged.
+    /// Number of waits that have ended so far. The board polls all its programs again and again until this number stays
+    /// the same.
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
     /// Fault in the message software of the board. This fault stops all programs.
@@ -129,7 +129,7 @@ pub(crate) enum Cause {
     Acceptance,
     /// A message, a retrace or a new value of a status signal has arrived, or the board's other program has progressed.
     Arrival,
-    /// A retrace. A retrace comes in every field, so a wait for a retrace always ends.
+    /// A retrace. Each field begins with a retrace, so a wait for a retrace always ends.
     Retrace,
     /// No event can end the wait, because the board has no program of this priority.
     Nothing,
@@ -197,7 +197,8 @@ impl Shared {
         Cause::Acceptance
     }
 
-    /// Returns the next batch of messages if the DMA is free, and records the receivers of the batch.
+    /// If the DMA is free, removes and returns the batch of messages that waits longest, and records the receivers of
+    /// the batch.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
         // All messages of the batch now wait for their acceptance.
@@ -224,7 +225,7 @@ pub struct Gp {
 }
 
 impl Gp {
-    /// Returns a handle to the same board for a program of another CPU priority.
+    /// Returns a handle to the same board for the program of the CPU priority `priority`.
     #[must_use]
     pub fn at_priority(&self, priority: Priority) -> Self {
         Self { shared: Rc::clone(&self.shared), priority }

@@ -16,8 +16,8 @@ pub struct GpSnapshot {
     /// Receivers that have not yet accepted their message of the current chain. A chain is a sequence of messages that
     /// the DMA sends together. The receivers have the order of the chain's messages.
     pub unaccepted: Vec<NodeId>,
-    /// Number of messages in each chain that waits for the DMA, the next chain first. The DMA sends the messages of a
-    /// chain together.
+    /// Number of messages in each chain that waits for the DMA, in the order of sending. The DMA sends the messages of
+    /// a chain together.
     pub chains: Vec<usize>,
     /// Bytes of memory in use for each purpose.
     pub memory: Vec<(Account, u64)>,

@@ -75,9 +75,9 @@ impl Gp {
         self.send_batch(vec![(destination, words, body)]).await
     }
 
-    /// Sends several messages as one DMA chain, in the background. The whole chain costs the CPU time of one message.
-    /// Messages to different receivers are sent at the same time. The DMA sends a chain only after the acceptance of
-    /// the previous chain.
+    /// Sends several messages as one DMA chain, in the background. The message software takes the same CPU time for the
+    /// whole chain as for one message. The DMA sends messages to different receivers at the same time. The DMA sends a
+    /// chain only after the acceptance of the previous chain.
     pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let chain = self.prepare(batch).await;
         self.start(chain)

@@ -45,7 +45,7 @@ pxpl5_sim::parameters::named!(Stage, "stage", Stage::ALL);
 pub enum StageEdge {
     /// The start of the stage.
     Begin,
-    /// The end of the last work, or of the last message, of the stage.
+    /// The end of the stage: the time at which the last work of the stage ends or its last message is accepted.
     End,
 }
 

@@ -19,11 +19,11 @@ pub enum CodeVersion {
     /// Code like the output of a compiler without optimization. The code is nearly twice as large as the instruction
     /// cache.
     Unoptimised,
-    /// Code like the output of a good compiler of about 1990. Slats of 1994 and 1995 used such code. The code was too
-    /// large for the instruction cache (I3D95).
+    /// Code like the output of a good compiler of about 1990. Slats used code of this kind in 1994 and 1995. That code
+    /// was too large for the instruction cache (I3D95).
     Compiled,
     /// Code that was scheduled by hand in dual-instruction mode and fits the instruction cache. Optimized PPHIGS used
-    /// such code (TR94). With such code, Slats would have been about 3 times faster (I3D95).
+    /// code of this kind (TR94). With this code, Slats would have been about 3 times faster (I3D95).
     Scheduled,
 }
 
@@ -112,8 +112,8 @@ fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
 
-/// The board's memory with the bus interface for the i860. The caches never hold the part that the i860 shares with the
-/// ring interface.
+/// The board's memory with the bus interface for the i860. The caches never hold data of the part of memory that the
+/// i860 shares with the ring interface.
 struct Memory(Ram);
 
 impl Bus for Memory {

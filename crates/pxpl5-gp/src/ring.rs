@@ -96,7 +96,7 @@ impl Processor {
 
     /// Runs the software that sends a chain of messages, and returns the time of this software. The software writes a
     /// header and a descriptor for each message, and releases the descriptors of earlier chains. The boolean beside
-    /// each message is true if the message keeps its receiver's port reserved. If there are more messages than
+    /// each message is true if the receiver's port stays reserved after this message. If there are more messages than
     /// descriptors, they form several chains.
     ///
     /// # Errors

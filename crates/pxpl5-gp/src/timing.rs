@@ -12,11 +12,12 @@ pxpl5_sim::parameters::parameter_table! {
         bin_bytes: 51_360, "bytes", Derived, 51_040..=51_680 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen. Each slave has 642 of them in 20 bins, with 4 bytes for a pointer. The value is twice as large if the bins hold 7,700 triangles for each eye";
         /// CPU time to send a batch of messages or to receive one message.
         message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the published latencies allow this range";
-        /// CPU time of one triangle for one eye: to transform, light and set up the triangle, and to make its commands.
+        /// CPU time of one triangle for one eye. In this time, the graphics processor transforms, lights and sets up
+        /// the triangle, and makes its commands.
         triangle_ns: 21_700, "ns", Derived, 18000..=32000 in 0..=MAX, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
         /// CPU time to put one entry into a bin.
         bin_entry_ns: 1_000, "ns", Assumed, 500..=2000 in 0..=MAX, "a pointer store and a count, partly out of cache";
-        /// CPU time of one bin entry in the answer to a token, when the bin is sent to its renderer.
+        /// CPU time of each bin entry when a slave receives a token and sends the bin to its renderer.
         token_entry_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a message, because no separate time was published; times of code count it separately";
         /// Additional CPU time of a triangle that needs clipping.
         guard_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the published time of a triangle; times of code count it separately";

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// Memory range of the message software: the end of the first megabyte. Other programs must not use this range.
+/// Memory range of the message software, which is the last 64 KB of the first megabyte. No program may use this range
+/// for other data.
 pub const RING_MEMORY: Range<u32> = 0xF_0000..0x10_0000;
 
 /// First address of the uncached part of memory. This part extends to the end of [`RING_MEMORY`]. The ring interface

@@ -66,7 +66,7 @@ pub trait PixelArray {
     fn faults(&self) -> u64;
 }
 
-/// Result of executing a list of instructions, in addition to the changes of pixels.
+/// Busy time and output of an executed list of instructions. The changes of pixel memory are not part of this type.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Executed {
     pub instructions: u32,
@@ -79,7 +79,7 @@ pub struct Executed {
 /// The pixels that an output instruction sends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputRegion {
-    /// Frame buffer, region and picture that receive the pixels.
+    /// Destination of the pixels: the frame buffer, the region and the picture.
     pub target: CopyTarget,
     /// Colours of the region's pixels: one word 0x00RRGGBB for each pixel, row by row.
     pub pixels: Arc<[Word]>,
@@ -89,7 +89,7 @@ pub struct OutputRegion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position}: {kind}")]
 pub struct ArrayFault {
-    /// Index, in the list of words, of the first word of the instruction.
+    /// Index, in the list of words, of the first word of the illegal instruction.
     pub position: usize,
     pub kind: FaultKind,
 }

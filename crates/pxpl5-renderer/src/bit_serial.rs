@@ -26,15 +26,16 @@ use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 
 /// Pixel array of 208 bit planes, an Enable plane and serial adders, like the hardware.
 ///
-/// Clocks are counted while planes move. The count is therefore an independent test of [`crate::isa::timing`]. The
-/// array is the reference model unless [`Self::skipping`] was called.
+/// The array counts a clock whenever a bit plane moves. The count is therefore an independent test of the formulas in
+/// [`crate::isa::timing`]. The array is the reference model unless [`Self::skipping`] was called.
 #[derive(Clone, Debug)]
 pub struct BitSerial {
     layout: Layout,
     vectors: PresentVectors,
     controller: Controller,
     tiles: Vec<Tile>,
-    /// Bit planes of each block of the backing store, ordered by tile. `None` if the block was not stored yet.
+    /// For each block of the backing store, the stored bit planes of all tiles. `None` if nothing was stored in the
+    /// block yet.
     backing: Vec<Option<Vec<TilePlane>>>,
     clock: u64,
     faults: u64,

@@ -137,9 +137,9 @@ impl CommandKind {
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
     pub kind: CommandKind,
-    /// Name of the layout that lacks the field, from `ContextPlan::name`.
+    /// Name of the layout that does not have the field, from `ContextPlan::name`.
     pub layout: &'static str,
-    /// The missing field, or the required number of scratch bits, as text.
+    /// Description of the missing field, or of the missing bits of scratch memory.
     pub missing: &'static str,
 }
 
@@ -248,7 +248,7 @@ impl Command {
         }
     }
 
-    /// Returns a command of this kind in which all operands are zero.
+    /// Returns a command of the kind `kind` whose operands are all zero.
     pub(crate) fn blank(kind: CommandKind) -> Self {
         match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::default()),
@@ -320,7 +320,7 @@ fn decode_range(words: &[Word], from: usize) -> Result<Vec<ArrayInstruction>, De
     Ok(out)
 }
 
-/// Returns component 0 (x), 1 (y) or 2 (z) of the layout's normal.
+/// Returns the field of the normal's component 0 (x), 1 (y) or 2 (z).
 fn normal(layout: &Layout, component: u8) -> Result<Operand, MissingField> {
     layout.normal(component).ok_or(MissingField("a normal"))
 }

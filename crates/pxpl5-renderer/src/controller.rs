@@ -76,20 +76,20 @@ impl Controller {
         [self.left.into(), self.top.into()]
     }
 
-    /// Returns the same linear expression with another origin: the array's upper left pixel instead of the picture's.
+    /// Moves the origin of a linear expression from the picture's upper left pixel to the array's upper left pixel.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }
 
-    /// Stores the last linear coefficients of a command that the array has executed in one step. A later instruction
-    /// can then reuse the coefficients.
+    /// Stores the linear coefficients that a command has used last, so that a later instruction can reuse the
+    /// coefficients. The array calls this function for commands that it executes in one step.
     pub(crate) fn hold(&mut self, linear: Linear) {
         self.linear = linear;
     }
 
-    /// Stores the last quadratic coefficients of a command that the array has executed in one step. A later instruction
-    /// can then reuse the coefficients.
+    /// Stores the quadratic coefficients that a command has used last, so that a later instruction can reuse the
+    /// coefficients. The array calls this function for commands that it executes in one step.
     pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
         self.quadratic = quadratic;
     }

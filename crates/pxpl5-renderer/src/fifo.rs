@@ -24,7 +24,7 @@ pub(crate) struct CommandBatch {
     pub(crate) span_each: Option<Span>,
 }
 
-/// Future times of the FIFO, which are computed when words arrive or when a copy ends.
+/// Future times at which the FIFO's state changes. These times are computed when words arrive or when a copy ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
     /// Time at which the last word of the arriving message enters the FIFO. `None` while this time is unknown.
@@ -121,7 +121,7 @@ impl StartTimes {
 pub(crate) struct InputFifo {
     depth: u64,
     word: Span,
-    /// Commands of the arriving message, until the arrival times of these commands are known.
+    /// Commands of the arriving message whose arrival times are not known yet.
     in_transit: VecDeque<CommandBatch>,
     transit_known: bool,
     last_word_at: Time,
@@ -129,7 +129,8 @@ pub(crate) struct InputFifo {
     left: StartTimes,
     words_left: u64,
     waiting: VecDeque<HeldCommand>,
-    /// Time from which the controller is free. `None` while a blocking command (the copy of a region) runs.
+    /// Time from which the controller can start another command. `None` while a blocking command (the copy of a region)
+    /// runs.
     free_at: Option<Time>,
     busy: Span,
     /// Total time for which blocking commands (copies of regions) have occupied the controller.
@@ -137,7 +138,7 @@ pub(crate) struct InputFifo {
     last_block: Block,
     /// Start and end of the last interval in which the controller waited for commands.
     last_wait: (Time, Time),
-    /// Record of arriving and leaving words. `None` if no caller has asked for this record.
+    /// Record of the words that enter and leave the FIFO. `None` if this record is off.
     watched: Option<Watched>,
 }
 
@@ -179,7 +180,8 @@ struct Watched {
 /// the last call of `discard_before` are removed.
 #[derive(Debug, Default)]
 struct Course {
-    /// Times at which the number of words grows, in ascending order. Each time has the new number of words.
+    /// The growth of the number of words, in the order of time. Each entry has a time and the number of words from this
+    /// time on.
     steps: VecDeque<(Time, u64)>,
     /// The number of words before the first entry of `steps`.
     before: u64,
@@ -240,7 +242,7 @@ impl InputFifo {
         self.in_transit.push_back(work);
     }
 
-    /// Announces a message with all commands that were [added](Self::take) since the previous message.
+    /// Computes the arrival of a message that consists of all commands [added](Self::take) since the previous message.
     ///
     /// The first word of the message is on the channel at time `begins`.
     pub(crate) fn message(&mut self, begins: Time) -> Progress {
@@ -395,8 +397,8 @@ impl InputFifo {
         }
     }
 
-    /// Returns the time at which the next `words` words have all entered the FIFO. Returns `None` while this time
-    /// depends on the end of a blocking command (copy of a region).
+    /// Returns the time at which the `words` words that arrive next have all entered the FIFO. Returns `None` while
+    /// this time depends on the end of a blocking command (copy of a region).
     fn arrival(&mut self, words: u32) -> Option<Time> {
         let first = self.words_in;
         let last = self.words_in + u64::from(words) - 1;

@@ -221,7 +221,7 @@ pub enum ArrayInstruction {
     Evaluate {
         /// Expression to evaluate, with new coefficients or with the coefficients of an earlier expression.
         expression: Expression,
-        /// Operation that each pixel performs with the bits of the expression.
+        /// Operation that each pixel performs with the bits of the expression, for example a comparison.
         usage: ExpressionUse,
     },
     /// Computes destination := source >> by. A shift by 0 copies the source.
@@ -320,7 +320,7 @@ pub enum ArrayInstruction {
     },
     /// Waits until all transfers of the backing store have ended.
     Wait,
-    /// Sends a field of 24 bits, from each pixel of the region, to a frame buffer.
+    /// Sends a colour of 24 bits, from each pixel of the region, to a frame buffer.
     Output {
         /// Field of pixel memory with the colour, 24 bits.
         field: Operand,

@@ -8,11 +8,11 @@ use std::fmt;
 use std::slice::Iter;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// A pool of pixel arrays. A thread borrows one array while it computes pixels.
+/// A pool of pixel arrays. A thread uses one array of the pool while the thread computes pixels.
 pub struct ArrayPool {
     layout: Layout,
     idle: Mutex<Vec<ArrayAndWords>>,
-    /// Cached pixels of regions without primitives. The key is the size of the region and its command words.
+    /// Cached pixels of regions without primitives. The cache key contains the size and the command words of a region.
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
 
@@ -89,8 +89,8 @@ pub(crate) struct PixelJob {
     /// True if the first command list overwrites the region's content in pixel memory, so that older content has no
     /// effect.
     pub(crate) cleared: bool,
-    /// True if two optimizations are on. The first leaves out commands that touch no pixel, and the second caches
-    /// regions without primitives.
+    /// True if commands that touch no pixel are left out and regions without primitives are cached. These are two
+    /// optimizations.
     pub(crate) saves: bool,
     /// Frame buffer and region that receive the pixels.
     pub(crate) target: CopyTarget,

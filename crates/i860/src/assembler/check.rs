@@ -77,8 +77,8 @@ pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usiz
 struct PipeFill(Option<usize>);
 
 impl PipeFill {
-    /// Returns true if the next result that leaves the pipe was destroyed by a scalar operation. `stages` is the length
-    /// of the pipe.
+    /// Returns true if a scalar operation has destroyed the result that leaves the pipe next. `stages` is the number of
+    /// stages of the pipe.
     fn is_result_lost(self, stages: usize) -> bool {
         self.0.is_some_and(|operations| operations < stages)
     }
@@ -218,7 +218,7 @@ fn integer_mask(n: u8) -> u64 {
     1 << n & !1
 }
 
-/// Checks every pair of the program, in the order in which dual-instruction mode reaches the pairs.
+/// Checks the rules for all pairs of a program, in address order. Returns the errors with their source lines.
 fn pairs(program: &[Located]) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut mode = Mode::Single;

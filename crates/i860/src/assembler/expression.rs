@@ -27,8 +27,8 @@ pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     }
 }
 
-/// Binary operators by precedence, the operators that bind most weakly first. [`PRODUCTS`] has the operators that bind
-/// most strongly.
+/// Binary operators in the order of precedence, the lowest precedence first. [`PRODUCTS`] has the operators of the
+/// highest precedence.
 const LEVELS: [&[&str]; 6] = [&["|"], &["^"], &["&"], &["==", "!="], &["<<", ">>"], &["+", "-"]];
 const PRODUCTS: &[&str] = &["*", "/", "%"];
 

@@ -12,17 +12,16 @@ pub(super) struct Line {
     pub(super) text: String,
 }
 
-/// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. The value is
-/// assumed, and permits a million repetitions of one line.
+/// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. The limit is
+/// chosen so that a line can be repeated a million times.
 const MOST_STEPS: usize = 1 << 21;
-/// Greatest size of the expanded text, in bytes. The value is assumed, and permits four bytes for each byte of
-/// the longest program.
+/// Greatest size of the expanded text, in bytes. The limit is chosen as four times the size of the longest program.
 const MOST_TEXT: usize = 64 << 20;
 /// Greatest nesting depth of macros and repetitions.
 const MOST_DEPTH: u32 = 32;
 
-/// The remaining budget of lines and bytes for macro expansion. For the error message, the budget also records the
-/// source line with the greatest use.
+/// The remaining budget of lines and bytes for macro expansion. The error message names the source line that has used
+/// the greatest part, so the budget also records this line.
 struct Budget {
     steps: usize,
     text: usize,

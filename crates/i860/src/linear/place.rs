@@ -106,8 +106,9 @@ struct Placer<'a> {
     now: u32,
     /// Index of the first operation that was not issued yet.
     first: usize,
-    /// Number of following multiplications that must stay single operations. A reciprocal approximation (`frcp`,
-    /// `frsqr`) has destroyed the values in the multiplier's pipe, so a dual operation would read a wrong product.
+    /// Number of multiplications, from the next multiplication on, that must not become dual operations. A reciprocal
+    /// approximation (`frcp`, `frsqr`) has destroyed the values in the multiplier's pipe, so a dual operation would
+    /// read a wrong product.
     after_seed: usize,
     /// Values in the adder's pipe, the oldest value first. `None` is a result that no operation reads.
     adder: Vec<Option<usize>>,
@@ -398,8 +399,8 @@ impl<'a> Placer<'a> {
         format!("{mnemonic} {}, {dest}", texts.join(", "))
     }
 
-    /// Turns a single-precision addition into a dual operation if no result is lost. The dual operation also pushes the
-    /// multiplier's pipe.
+    /// Replaces the mnemonic of a single-precision addition by the mnemonic of a dual operation, if no result is lost.
+    /// The dual operation also pushes the multiplier's pipe.
     fn with_multiplier(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfadd.ss" => "ra1p2.ss",
@@ -415,8 +416,8 @@ impl<'a> Placer<'a> {
         dual
     }
 
-    /// Turns a multiplication into a dual operation if no result is lost. The dual operation also pushes the adder's
-    /// pipe.
+    /// Replaces the mnemonic of a multiplication by the mnemonic of a dual operation, if no result is lost. The dual
+    /// operation also pushes the adder's pipe.
     fn with_adder(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfmul.ss" => "mm12mpm.ss",

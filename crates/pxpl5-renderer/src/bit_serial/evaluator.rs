@@ -51,8 +51,8 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
 /// leaf of a tree, which is a column or a row of pixels.
 type Streams = [u64; 8];
 
-/// Adjacent trees of serial adders. For each leaf, a tree multiplies a coefficient by the leaf's index and adds the
-/// product to a bit stream. Each leaf is one bit of a vector.
+/// Adjacent trees of serial adders. A tree multiplies a coefficient by the index of each leaf and adds the product to a
+/// bit stream of this leaf. Each leaf is one bit of a vector.
 pub(super) struct Trees<V, const LEVELS: usize> {
     /// Low and high 32 bits of the coefficients. Each lane holds the coefficient that enters the lane's tree.
     coefficients: [V; 2],
@@ -118,7 +118,7 @@ fn bit_of<V: SimdVector>([low, high]: [V; 2], t: usize) -> V {
     if t < 32 { low.bit(t as u32) } else { high.bit(t as u32 - 32) }
 }
 
-/// Returns the lanes of a vector as 64-bit words, followed by zeros.
+/// Returns the lanes of a vector as eight 64-bit words. Words beyond the end of the vector are zero.
 #[inline(always)]
 fn streams<V: SimdVector>(stream: V) -> Streams {
     let mut words = [0; 8];

@@ -78,7 +78,7 @@ pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     }
 }
 
-/// Returns a plane with `f(a, b)` in each word.
+/// Returns a bit plane whose words are `f` of the corresponding words of `a` and `b`.
 #[inline(always)]
 pub(super) fn combine(a: &TilePlane, b: &TilePlane, f: impl Fn(u64, u64) -> u64) -> TilePlane {
     let mut out = EMPTY;

@@ -31,7 +31,7 @@ const LEVELS: usize = 5;
 /// For each bit `l` of the index, the pixel columns (and rows) of a tile whose index has this bit set.
 const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff00, 0xffff_0000];
 
-/// Consecutive instructions that each tile executes before the next tile begins.
+/// A run: consecutive instructions that one tile executes completely before another tile begins.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InstructionRun {
     pub(super) steps: Vec<RunStep>,
@@ -51,7 +51,7 @@ pub(super) struct RunStep {
 /// Source of the bits that an instruction delivers to the pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
-    /// The expression with this index among the expressions of the instruction run.
+    /// An expression, given by its index among the expressions of the instruction run.
     Expression(usize),
     Constant(ConstantBits),
 }
@@ -162,8 +162,8 @@ impl InstructionRun {
 }
 
 impl Delivery {
-    /// Delivers the bits of an instruction to those vectors of a tile that contain enabled pixels. `word` selects the
-    /// expression's word in the outputs of the adder trees.
+    /// Delivers the bits of an expression or constant to those vectors of a tile that contain enabled pixels. `word`
+    /// selects the expression's word in the outputs of the adder trees.
     #[inline(always)]
     fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {

@@ -49,7 +49,7 @@ impl Tile {
     }
 }
 
-/// Returns true if any bit of `words` is set.
+/// Returns true if at least one bit of `words` is set.
 #[inline(always)]
 pub(super) fn any(words: &[u64]) -> bool {
     words.iter().fold(0, |any, word| any | word) != 0

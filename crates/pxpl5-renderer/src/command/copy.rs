@@ -58,7 +58,8 @@ impl Clear {
 /// Copies the colours of a region to a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CopyRegion {
-    /// Destination of the pixels: frame buffer, buffer, region and its grid, lines, and picture.
+    /// Destination of the pixels: frame buffer, number of its pixel buffer (0 or 1), grid of regions, region, lines,
+    /// and number of the picture.
     pub target: CopyTarget,
 }
 

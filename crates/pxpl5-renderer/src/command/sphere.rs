@@ -49,8 +49,8 @@ pub struct SphereBody {
 pub struct SphereCommand {
     /// Silhouette and depth of the sphere.
     pub body: SphereBody,
-    /// Linear part of red, green and blue, with [`COLOUR_FRACTION_BITS`] fraction bits. A multiple of the square root
-    /// is added to this part.
+    /// Linear expressions for red, green and blue, with [`COLOUR_FRACTION_BITS`] fraction bits. A multiple of the
+    /// square root is added to each expression.
     pub colour: [Linear; 3],
     /// Factor of the root for each component, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
     ///
@@ -86,7 +86,8 @@ const FACTOR_BITS: u8 = 10;
 pub(crate) struct SphereScratch {
     radicand: Operand,
     pub(crate) root: Operand,
-    /// New depth. The depth occupies the bits of the radicand, which is no longer needed after the root.
+    /// New depth. The depth occupies the bits of the radicand, because the radicand is no longer needed after the
+    /// square root.
     pub(crate) z: Operand,
     /// Product of the root and a colour's factor, 8 + 10 bits. The product also occupies the bits of the radicand.
     product: Operand,
@@ -123,8 +124,8 @@ impl SphereScratch {
     }
 }
 
-/// Appends the instructions for silhouette, square root and depth. The instructions disable pixels outside the sphere
-/// and pixels that are not nearer, and then store Z.
+/// Appends the instructions for silhouette, square root and depth. The instructions disable the pixels outside the
+/// sphere and the pixels at which the sphere is not nearer than the stored Z. Then the instructions store the new Z.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
     // Test the sign of the silhouette, then evaluate the same expression again as radicand.

@@ -205,8 +205,8 @@ impl Random {
     }
 }
 
-/// Returns a command that draws the same shape with other colours. The depths are also the same, so the depth test
-/// fails at every pixel that `command` has drawn.
+/// Returns a command that draws the same shape with other colours. The depths are the depths of `command`, so the depth
+/// test fails at every pixel that `command` has drawn.
 fn repainted(command: Command) -> Command {
     match command {
         Command::Triangle(mut t) => {

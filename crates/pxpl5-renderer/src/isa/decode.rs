@@ -10,7 +10,7 @@ use pxpl5_wire::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position} ({word:#010x}): {kind}")]
 pub struct DecodeError {
-    /// Index, in the list of words, of the first word of the instruction.
+    /// Index, in the list of words, of the first word of the instruction that cannot be decoded.
     pub position: usize,
     /// The first word of the instruction that cannot be decoded.
     pub word: Word,
@@ -89,7 +89,7 @@ impl ArrayInstruction {
     }
 }
 
-/// The parts of an instruction's first word, and the following words.
+/// The parts of an instruction's first word, and the words that follow the first word.
 struct EncodedInstruction<'a> {
     opcode: u8,
     modifier: u8,

@@ -136,15 +136,16 @@ pub(super) struct Boxes {
     /// First column (0 to 128) and last column (-1 to 127) of each triangle inside the array.
     pub(super) x: [PerTriangle<i32>; 2],
     pub(super) y: [PerTriangle<i32>; 2],
-    /// True if the edges enclose a finite triangle. In this case, the normals of the edges turn in the same direction
-    /// at all corners.
+    /// True if the edges enclose a finite triangle, which means that the normals of the edges turn in the same
+    /// direction at all corners.
     pub(super) closed: PerTriangle<bool>,
     /// True if the values of all edge expressions in the array fit in 32 bits. In this case, no value wraps around, and
     /// every edge is a straight line.
     straight: PerTriangle<bool>,
 }
 
-/// Distance from the array's upper left pixel, in pixels. Within this distance, edge values must fit 32 bits.
+/// A distance from the array's upper left pixel, in pixels. The fast computation of bounds requires that edge values
+/// within this distance fit in 32 bits.
 ///
 /// Each coefficient then has at most 22 bits, and the constant has 31 bits. The products of these numbers are therefore
 /// exact in the 53 bits of an `f64`.

@@ -1,4 +1,5 @@
-//! Pixel memory of the fast array. Every field of the layout is a column of 32-bit words, one word for each pixel.
+//! Pixel memory of the fast array. Every field of the layout is stored as a column, an array with one 32-bit word for
+//! each pixel.
 
 use crate::array::{PIXELS, Plane};
 use crate::command::{ShadeFields, SphereScratch};

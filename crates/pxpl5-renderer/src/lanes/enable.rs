@@ -39,8 +39,8 @@ impl Enable {
         &mut self.pixels
     }
 
-    /// Returns the Enable values of all pixels for modification. The caller must change only pixels in the rows of the
-    /// last call of [`Self::emptied`].
+    /// Returns the Enable values of all pixels for modification. The caller may change only pixels in the rows that
+    /// were passed to the last call of [`Self::emptied`].
     #[inline(always)]
     pub(super) fn rows_in_use(&mut self) -> &mut [u8; PIXELS] {
         &mut self.pixels

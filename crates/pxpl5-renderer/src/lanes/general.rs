@@ -196,8 +196,8 @@ impl Lanes {
         }
     }
 
-    /// Computes a value for every pixel from the expression, `shift` and the second operand buffer, by the function
-    /// `f`. Stores the values in the first operand buffer.
+    /// Computes `f` for every pixel and stores the results in the first operand buffer. The arguments of `f` are the
+    /// pixel's value of the expression, `shift`, and the pixel's value in the second operand buffer.
     fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {

@@ -45,7 +45,7 @@ impl<V: SimdVector> Walk<V> {
 
 /// A way to store surface values (colour or normal) in the pixels that pass the depth test.
 pub(super) trait PaintTriangle {
-    /// Sets the colour of the next triangle. The colour has no effect if colours are interpolated.
+    /// Sets the colour of the triangle that is drawn next. The colour has no effect if colours are interpolated.
     fn begin(&mut self, colour: Word);
     /// Stores the values of `walks` in those pixels of a vector for which `mask` is true. `at` is the index of the
     /// vector's first pixel.

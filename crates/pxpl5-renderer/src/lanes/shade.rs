@@ -21,7 +21,8 @@ pub(super) struct ShadeAll<'a> {
     pub(super) z: &'a Values,
     pub(super) normal: [&'a Values; 3],
     pub(super) results: [&'a mut Values; RESULTS],
-    /// Enable register, into which the covered pixels are written. `None` if no later instruction reads Enable.
+    /// Enable register, in which the function sets the pixels that a primitive has covered. `None` if no later
+    /// instruction reads Enable.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 

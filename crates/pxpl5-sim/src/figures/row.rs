@@ -57,7 +57,7 @@ pub struct FigureRow {
     pub statement: Cow<'static, str>,
     /// Paper that prints the figure, with the section or page.
     pub source: Cow<'static, str>,
-    /// Simulated experiment: its name, or its machine, pipeline and scene.
+    /// Description of the simulated experiment: a name, or the machine, the pipeline and the scene.
     pub experiment: &'static str,
     /// Scene that was drawn for the figure. `None` if the experiment defines its own scene or draws no scene.
     pub scene: Option<String>,

@@ -26,7 +26,7 @@ pub struct SettingError {
     pub expected: Box<str>,
     /// The value or name that the setting has.
     pub found: Box<str>,
-    /// The valid name that is most similar to an unknown name. Empty for other errors.
+    /// For an unknown name, the valid name that is most similar. Empty for errors of another kind.
     pub nearest: Box<str>,
 }
 
@@ -40,14 +40,14 @@ pub enum SettingErrorKind {
     Limits,
     /// A name denotes nothing, for example a pipeline that does not exist.
     UnknownName,
-    /// The setting is a fixed property of a chip. Programs can read it but not set it.
+    /// The setting is a fixed property of a chip. Programs can read the property but cannot change the property.
     ReadOnly,
     /// The setting is missing.
     Missing,
     /// Two settings exclude each other, a setting does not apply to the experiment, or the text of a setting has
     /// another fault.
     Combination,
-    /// A scene has contents that its reader cannot use.
+    /// A scene has contents that the program cannot use.
     Scene,
     /// A file that the setting names cannot be used.
     File(FileErrorKind),
