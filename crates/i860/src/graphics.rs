@@ -5,8 +5,8 @@ use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::Operands;
 use crate::state::PipeStage;
 
-/// Two numbers for each pixel size psr.PS: the mask of the bits that faddp copies into the register MERGE, and the
-/// number of bits by which faddp first shifts MERGE.
+/// Data of the instruction faddp for each pixel size psr.PS. The mask selects the bits that faddp copies into the
+/// register MERGE. The number is the count of bits by which faddp first shifts MERGE.
 const PIXEL_MERGE: [(u64, u32); 3] =
     [(0xFF00_FF00_FF00_FF00, 8), (0xFC00_FC00_FC00_FC00, 6), (0xFF00_0000_FF00_0000, 8)];
 

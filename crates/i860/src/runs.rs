@@ -34,8 +34,9 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Returns three flags for the key of a run (a part of a block) that ends at position `to`: a branch at the end was
-    /// taken, the last instruction trapped, and the first fetch is from a cache line that is still arriving.
+    /// Returns three flags for the key of a run (a part of a block) that ends at position `to`. The first flag is true
+    /// if the branch at the end was taken, the second if the last instruction trapped. The third flag (`continues`) is
+    /// true if the first fetch is from a cache line that is still arriving.
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;

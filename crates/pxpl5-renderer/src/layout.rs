@@ -34,8 +34,8 @@ pub struct ContextPlan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout(ContextPlan);
 
-/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 of Z and 36 of normal, and 124
-/// bits of scratch.
+/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 bits of Z and 36 bits of
+/// normal. The remaining 124 bits are scratch memory.
 const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     name: "rendering control, Phong",
     contexts: 1,

@@ -20,7 +20,7 @@ pub struct RendererSnapshot {
     pub copying: Option<CopyOrder>,
     /// True while the controller executes commands other than copies.
     pub executing: bool,
-    /// Region for which the commands that started last draw. The value becomes `None` when the region's copy command
+    /// Region that the most recently started commands draw. The value becomes `None` when the region's copy command
     /// starts. The value is also `None` without [`Renderer::watch_fifo`](crate::Renderer::watch_fifo), or if the sender
     /// of the commands does not state the region.
     pub drawing: Option<RegionPlace>,

@@ -95,7 +95,7 @@ impl PresentVectors {
         Self(if wanted.present() { wanted } else { Vectors::Portable })
     }
 
-    /// Runs the version of the loop `kernel` that is compiled for this unit.
+    /// Runs the loop `kernel` in the version that is compiled for this vector unit.
     #[inline]
     pub(crate) fn run<K: VectorKernel>(self, kernel: K) -> K::Output {
         match self.0 {
@@ -173,8 +173,8 @@ pub(crate) trait SimdVector: Copy {
     /// Overwrites the words of `to` in the lanes where the mask is true. `old` must be equal to the words of `to`
     /// before the call.
     fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
-    /// Overwrites the pixels that [`SimdVector::load_fours`] reads, where the mask is true. `old` must be the current
-    /// content of these pixels.
+    /// Overwrites the pixels that [`SimdVector::load_fours`] reads, in the lanes where the mask is true. `old` must be
+    /// equal to these pixels before the call.
     fn store_fours(self, mask: Self::Mask, old: Self, to: &mut [u32]);
     /// Stores one byte for each lane: 255 if the mask is true in this lane, else 0.
     fn store_mask(mask: Self::Mask, to: &mut [u8]);

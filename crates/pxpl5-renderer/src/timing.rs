@@ -20,7 +20,8 @@ pxpl5_sim::parameters::parameter_table! {
         sphere_clocks: 810, "clocks", Derived, 318..=810 in 0..=MAX, "its program, with an exact root; a paraboloid takes 318";
         /// Execution time of a sphere with interpolated normals, in each region to which it is sent.
         phong_sphere_clocks: 504, "clocks", Derived, 268..=504 in 0..=MAX, "its program, with an exact root; a paraboloid takes 268";
-        /// Execution time of the command that selects a region context and the region's origin.
+        /// Execution time of the command that selects a context (part of pixel memory for one region) and the region's
+        /// position on the screen.
         select_clocks: 6, "clocks", Derived, 1..=64 in 0..=MAX, "its program: one instruction";
         /// Execution time of the command that stores the background colour and the farthest depth in all pixels.
         clear_clocks: 62, "clocks", Derived, 16..=256 in 0..=MAX, "its program: one clock for each bit of colour and depth, and the fetches";

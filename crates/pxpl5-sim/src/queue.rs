@@ -51,8 +51,8 @@ pub struct EventQueue<E> {
     /// The earliest waiting events, at most [`NEAR`], with the next event at the end of the list. If at most [`NEAR`]
     /// events wait, the heap is empty.
     near: Vec<Due>,
-    /// Events in phase `Work` that were scheduled for the current instant during this instant. These events need no
-    /// sorting. The list is unused if events are shuffled.
+    /// Events in phase `Work` of the current instant that were also scheduled at the current instant. These events need
+    /// no sorting. The list is unused if events are shuffled.
     soon: VecDeque<E>,
     events: Vec<Option<E>>,
     free: Vec<u32>,
@@ -133,8 +133,8 @@ impl<E> EventQueue<E> {
         self.near.pop().or_else(|| self.heap.pop())
     }
 
-    /// Returns true if the next event is in `soon`. Two kinds of events come before the events of `soon`: events in
-    /// phase `Arrive` of the current instant, and events in phase `Work` that were scheduled at an earlier instant.
+    /// Returns true if the next event is in `soon`. Events of `soon` come after two kinds of events of the current
+    /// instant: events in phase `Arrive`, and events in phase `Work` that were scheduled at an earlier instant.
     fn is_current_work_next(&self, first: Option<Due>) -> bool {
         !self.soon.is_empty() && first.is_none_or(|first| first.key() >= work_key(self.now))
     }
@@ -164,7 +164,8 @@ impl<E> EventQueue<E> {
         Some((due.time, phase, event))
     }
 
-    /// Removes and returns the next event if its time is before `end`. The current time becomes the time of this event.
+    /// Removes and returns the next event if the event's time is before `end`. The current time becomes the time of
+    /// this event.
     pub fn next_event_before(&mut self, end: Time) -> Option<(Time, E)> {
         let first = self.first();
         if self.is_current_work_next(first) {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Statistics of a list of numbers: count, mean, sample standard deviation, minimum and maximum.
 ///
-/// For an empty list, all values but the count are NaN. For a single number, the deviation is NaN. JSON shows NaN as
+/// For an empty list, all values except the count are NaN. For a single number, the deviation is NaN. JSON shows NaN as
 /// null.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Statistics {

@@ -6,11 +6,12 @@ use std::fmt;
 use std::num::ParseIntError;
 use std::str::FromStr;
 
-/// The increment of SplitMix64: 2^64 / golden ratio, made odd.
+/// The constant that the generator SplitMix64 adds in each step: the odd number nearest to 2^64 divided by the golden
+/// ratio.
 pub(crate) const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// Mixes 64 bits: each input bit affects about half of the output bits. The function is the finaliser of SplitMix64, a
-/// bijection.
+/// Mixes 64 bits: each input bit affects about half of the output bits. The function is the last step of the generator
+/// SplitMix64. Different inputs give different outputs.
 #[must_use]
 pub const fn mix(value: u64) -> u64 {
     let a = value.wrapping_add(INCREMENT);

@@ -83,8 +83,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the place of row `y` of tile `number` in a bit plane of the array: the index of a word, and the row's first
-/// bit in this word.
+/// Returns the place of row `y` of tile `number` in a bit plane of the array. The first number is the index of a word,
+/// and the second number is the row's first bit in this word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

@@ -62,8 +62,8 @@ pub(super) struct DrawBatch<'a, P> {
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Access to the depth, components and colour of a triangle. These values are read only if needed. The origin of the
-/// expressions is the picture's upper left pixel.
+/// Access to the depth expression, the expressions of colour or normal, and the colour of a triangle. These data are
+/// read only if needed. The origin of the expressions is the picture's upper left pixel.
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
@@ -83,14 +83,14 @@ impl<const N: usize> Surface for &[Word; N] {
         [coefficients(self, p), coefficients(self, q), coefficients(self, r)]
     }
 
-    /// Returns the command's last word. In commands for Phong triangles, this word is the colour.
+    /// Returns the last word of the command, which is the colour in commands for Phong triangles.
     #[inline(always)]
     fn colour(&self) -> Word {
         self[N - 1]
     }
 }
 
-/// Depth, components and colour of triangle `i` of a batch.
+/// The depth expression, the expressions of colour or normal, and the colour of triangle `i` of a batch.
 struct BatchSurface<'a> {
     batch: &'a TriangleBatch<'a>,
     i: usize,
@@ -230,8 +230,8 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
 
     /// Draws a triangle whose rows each fit in one vector. The vectors begin at column `x`.
     ///
-    /// The function draws two rows at a time, because a mispredicted branch takes more time than a row outside the
-    /// triangle.
+    /// The function draws two rows at a time, even if one row lies outside the triangle. A branch to skip this row
+    /// would often be mispredicted, and would then take more time than the row.
     #[inline(always)]
     fn narrow<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);
@@ -328,8 +328,8 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
-/// Returns the values of three expressions for a vector that begins at pixel (x, y) of the array. The three calls are
-/// written out, because the compiler would not use the vector unit in a closure.
+/// Returns the values of three expressions for a vector that begins at pixel (x, y) of the array. The code has three
+/// separate calls, because the compiler would not use vector instructions in a closure.
 #[inline(always)]
 fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
     let x = x as i32;

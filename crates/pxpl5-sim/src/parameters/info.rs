@@ -11,13 +11,13 @@ pub enum Provenance {
     Published,
     /// The value follows by arithmetic from published figures.
     Derived,
-    /// The value comes from memory or from an estimate. The range of the value is as wide as the published figures
-    /// allow.
+    /// The value was remembered or estimated by the authors of this program. The range of the value is as wide as the
+    /// published figures allow.
     Assumed,
 }
 
 impl Provenance {
-    /// Every kind of provenance with its name, the best kind first.
+    /// All kinds of provenance with their names, the most reliable kind first.
     pub const ALL: [(&str, Self); 3] =
         [("published", Self::Published), ("derived", Self::Derived), ("assumed", Self::Assumed)];
 }
@@ -37,7 +37,7 @@ pub struct ParameterInfo {
     pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),
-    /// Smallest and largest value with which the model works.
+    /// Smallest and largest value that the model can process.
     pub limits: (Value, Value),
     /// Source of the value: the short name of a paper, a formula, or a reason.
     pub source: &'static str,

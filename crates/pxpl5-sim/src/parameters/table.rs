@@ -27,8 +27,8 @@ impl Entry {
     }
 }
 
-/// A table made by [`parameter_table!`](crate::parameters::parameter_table). A machine can hold tables of different
-/// types as `&dyn ParameterTable`.
+/// A table of parameters that was declared with [`parameter_table!`](crate::parameters::parameter_table). A machine can
+/// hold tables of different types as `&dyn ParameterTable`.
 pub trait ParameterTable {
     /// Returns unit, provenance, range and source of each parameter, in the order of the fields. The table's constant
     /// `INFOS` has the same content.

@@ -13,7 +13,7 @@ use std::hash::{Hash, Hasher};
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// An exact whole number: a count, or a time in whole units.
+    /// An exact whole number, such as a count of bytes or a time in whole nanoseconds.
     Whole(u64),
     /// A measured real number, such as an rms error.
     Real(f64),
