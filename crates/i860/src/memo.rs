@@ -49,7 +49,7 @@ pub(crate) struct Memo {
     /// Number of the current scoreboard state, if the latest clocks were memoized clocks. `None` means that the
     /// [`Scoreboard`] itself holds the state.
     present: Option<Number>,
-    /// Number of executed instructions whose clocks were taken from the memory instead of counted.
+    /// Number of executed instructions whose clocks were memoized clocks of an earlier execution.
     pub(crate) instructions: u64,
 }
 

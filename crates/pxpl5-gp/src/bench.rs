@@ -29,7 +29,8 @@ impl BoardBench {
         self.bench.feed(at, Phase::Arrive, event);
     }
 
-    /// Lets the receivers accept, at time `at`, all messages that the board has sent and that were not accepted before.
+    /// Schedules, at time `at`, the acceptance of all messages that the board has sent and that were not accepted
+    /// before.
     pub fn accept_all(&mut self, at: Time) {
         while let Some((_, GpOutput::Send { ticket, .. })) = self.bench.outputs.get(self.accepted) {
             let accepted = GpEvent::Accepted(*ticket);

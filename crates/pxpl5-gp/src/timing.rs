@@ -38,14 +38,12 @@ pxpl5_sim::parameters::parameter_table! {
 impl GpTiming {
     /// Timing of the Slats prototype of 1994: 30.0 us of CPU time for each triangle and eye. The time is fitted to the
     /// published limit of 110 triangles without the COPY optimization (TR94). Any time from 29.8 to 30.1 us gives a
-    /// limit of exactly
-    /// 110.
+    /// limit of exactly 110 triangles.
     pub const SLATS_1994: Self = Self { triangle_ns: 30_000, sphere_ns: 30_000, bin_entry_ns: 0, ..Self::PAPERS };
 
     /// Timing of the Slats code of 1995: 55.8 us of CPU time for each triangle and eye. The time is fitted to the
     /// published limit of about 100 triangles with the COPY optimization (I3D95). Any time from 55.4 to 56.3 us gives a
-    /// limit of exactly
-    /// 100.
+    /// limit of exactly 100 triangles.
     pub const SLATS_1995: Self = Self { triangle_ns: 55_800, sphere_ns: 55_800, bin_entry_ns: 0, ..Self::PAPERS };
 
     /// Timing of Slats with code that fits the instruction cache. The CPU time of a triangle is a third of the time in

@@ -145,7 +145,7 @@ impl PhongTriangleEncoder {
     }
 }
 
-/// Encodes a program whose words are exactly `N`, and returns the words.
+/// Encodes a program of exactly `N` words, and returns the words.
 fn blank<const N: usize>(program: &[ArrayInstruction]) -> [Word; N] {
     let mut words = Vec::with_capacity(N);
     program.iter().for_each(|instruction| instruction.encode(&mut words));

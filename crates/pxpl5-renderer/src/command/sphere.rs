@@ -19,9 +19,9 @@ use pxpl5_wire::{Linear, Quadratic};
 /// ```
 ///
 /// At the sphere's middle, `silhouette = 2^root_shift (bulge / 2^depth_shift)^2`. *Bulge* is the distance of the middle
-/// in front of the plane `depth`, in units of the depth expression. The sender must choose `depth_shift` so that `bulge
-/// >> depth_shift` is in 2048 .. 4096. The root then has at least 11 significant bits. The silhouette must stay within
-/// 48 bits on the whole region. A layout with roots of 10 bits uses the upper bits of the same operands.
+/// in front of the plane `depth`, in units of the depth expression. The sender must choose `depth_shift` such that the
+/// value `bulge >> depth_shift` is in 2048 .. 4096. The root then has at least 11 significant bits. The silhouette must
+/// stay within 48 bits on the whole region. A layout with roots of 10 bits uses the upper bits of the same operands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereBody {
     /// Silhouette expression of 48 bits. A pixel is inside the sphere if the expression is `>= 0` at this pixel.
