@@ -15,10 +15,11 @@ pub(crate) struct CoreAction {
     /// Number of the first source register, or r0 if the first operand is an immediate.
     pub(crate) first: u8,
     pub(crate) second: u8,
-    /// Number of the register that receives the address of a load or store, or r0 without auto-increment.
+    /// Number of the base register that receives the address of a load or store with auto-increment. The number is 0
+    /// (r0) for other instructions.
     pub(crate) increments: u8,
     /// Immediate operand or address displacement, which is added to the first source register. The value is 0 if the
-    /// instruction has neither.
+    /// instruction has no immediate and no displacement.
     pub(crate) immediate: u32,
 }
 
@@ -46,8 +47,8 @@ pub(crate) enum Core {
     PipelinedLoadSingle,
     PipelinedLoadDouble,
     StorePixels,
-    /// All other core operations, such as control-register moves, `flush`, `trap` and `lock`. The processor executes
-    /// these operations from the decoded instruction.
+    /// All remaining core operations, such as control-register moves, `flush`, `trap` and `lock`. The processor
+    /// executes these operations from the decoded instruction.
     System,
     Branch,
 }
@@ -179,7 +180,7 @@ impl Floating {
     }
 }
 
-/// The effects of a single instruction, or of both halves of a pair (a floating-point and a core instruction).
+/// The effects of a single instruction, or of a floating-point and a core instruction that execute together as a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Action {
     pub(crate) core: CoreAction,

@@ -1,9 +1,9 @@
-//! IEEE arithmetic on bit patterns, rounded to nearest even. The results have the same bits on every host.
+//! IEEE arithmetic on bit patterns, rounded to nearest even. The results have the same bits on every computer.
 //!
-//! Host `f32` and `f64` addition, subtraction, multiplication, division and square root are exact IEEE operations on
-//! every host. Only the bits of NaN results differ between hosts. The model therefore replaces a NaN result by the
-//! first NaN operand, made quiet. If no operand is NaN, the model uses the default NaN (sign set, as on Intel's other
-//! parts).
+//! Addition, subtraction, multiplication, division and square root of `f32` and `f64` give exactly rounded IEEE results
+//! on every computer. Only the bits of NaN results differ between computers. The model therefore replaces a NaN result
+//! by the first NaN operand, made quiet. If no operand is NaN, the model uses the default NaN (sign set, as on Intel's
+//! other parts).
 
 use crate::state::PipeStage;
 
@@ -103,7 +103,7 @@ pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result
     PipeStage { bits, double: true }
 }
 
-/// Converts a value from a pipe to the precision in which an instruction reads the value.
+/// Converts a value that leaves a pipe to a bit pattern in double precision (if `double` is true) or single precision.
 #[inline]
 pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     match (value.double, double) {
@@ -113,8 +113,8 @@ pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     }
 }
 
-/// Rounds to an integer. `mode` is the field fsr.RM, which selects the rounding: to nearest even, down, up, or towards
-/// zero.
+/// Rounds a number to an integer. `mode` is the field RM of the register fsr, which selects the rounding: to nearest
+/// even, down, up, or towards zero.
 pub(crate) fn round(value: f64, mode: u32) -> f64 {
     match mode {
         0 => value.round_ties_even(),
@@ -124,8 +124,9 @@ pub(crate) fn round(value: f64, mode: u32) -> f64 {
     }
 }
 
-/// Returns the low word of the result of `fix` or `ftrunc`. The real chip traps if a value is out of range. In this
-/// case, the model returns the nearest representable value, and 0 for NaN.
+/// Converts a rounded number to a 32-bit integer, the low word of the result of `fix` or `ftrunc`. The real chip traps
+/// if the number does not fit in 32 bits. In this case, the model returns the nearest representable value, and 0 for
+/// NaN.
 pub(crate) fn to_integer(rounded: f64) -> u32 {
     rounded as i32 as u32
 }

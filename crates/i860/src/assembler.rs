@@ -77,7 +77,7 @@ pub enum DataKind {
     Singles,
     /// Double-precision numbers of `.double`.
     Doubles,
-    /// Bytes skipped by `.align`, `.org` and `.space`.
+    /// Bytes that the directives `.align`, `.org` and `.space` skip.
     Gap,
 }
 
@@ -152,7 +152,7 @@ enum Item {
         operands: String,
     },
     /// Integer values, stored as the text of their source line. A separate string for each value would need several
-    /// times as much memory.
+    /// times the memory of this text.
     Integers {
         size: u32,
         values: String,
@@ -237,8 +237,8 @@ pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, Assembly
     assembler.finish()
 }
 
-/// Assembles one instruction at an address and returns its word. The function omits checks that need the neighbouring
-/// instructions.
+/// Assembles one instruction at an address and returns its word. The function cannot check rules about neighbouring
+/// instructions, such as the rules for pairs.
 ///
 /// # Errors
 ///
@@ -273,7 +273,8 @@ fn one(word: &str, operands: &str) -> Instructions {
     Ok(vec![plain(word, operands)?])
 }
 
-/// Replaces a pseudo-operation by real instructions. Returns `None` for real operations.
+/// Returns the real instructions of a pseudo-operation such as `mov`. Returns `None` if `word` is not a
+/// pseudo-operation.
 fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
     // Split off the D prefix and the p of pipelined moves.
     let (prefix, name) = word.strip_prefix("d.").map_or(("", word), |rest| ("d.", rest));

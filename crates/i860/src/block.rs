@@ -101,7 +101,7 @@ fn is_store(op: Op) -> bool {
 
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 
-/// Initial value of [`Block::held_in`]. No state of the instruction cache has this number.
+/// Initial value of [`Block::held_in`], which differs from the numbers of all states of the instruction cache.
 const NEVER: u64 = u64::MAX;
 
 /// A basic block of instructions and pairs. A block ends at a branch, at an instruction that cannot be executed, or at
@@ -118,18 +118,20 @@ pub(crate) struct Block {
     pub(crate) after: Mode,
     /// Address after the block's last instruction or pair before the delay slot.
     pub(crate) next: u32,
-    /// Number of instructions or pairs. A pair counts as one. The delay slot does not count.
+    /// Number of issues of the block: each single instruction and each pair counts as one. The delay slot does not
+    /// count.
     pub(crate) count: usize,
-    /// Number of instructions. A pair counts as two. The delay slot counts as well.
+    /// Number of instructions of the block. A pair counts as two instructions. The delay slot counts as well.
     pub(crate) instructions: u64,
-    /// Number of the latest state of the instruction cache in which the cache held the whole block.
+    /// Number of the latest cache state in which the instruction cache held the whole block. The cache numbers its
+    /// states.
     held_in: u64,
-    /// Effects of the instructions and pairs, in order. The effects of the delay slot come last.
+    /// Effects of the instructions and pairs, in the order of execution. The effects of the delay slot come last.
     pub(crate) actions: Box<[Action]>,
-    /// Instructions and pairs of the block that load or store data, in order.
+    /// Instructions and pairs of the block that load or store data, in the order of execution.
     pub(crate) accessing: Box<[AccessingUnit]>,
     pub(crate) remembered: BlockMemory,
-    /// All instructions and pairs of the block, in order. The delay slot is the last element.
+    /// All instructions and pairs of the block, in the order of execution. The delay slot is the last element.
     units: Box<[Unit]>,
     /// For each cache line of the block, the index of the first instruction or pair on the line.
     lines: Box<[u8]>,
@@ -137,7 +139,8 @@ pub(crate) struct Block {
     pub(crate) wrong_slot: Option<TrapCause>,
 }
 
-/// A load or store in the form that the timing model needs, without address and value.
+/// The properties of a load or store that the timing model needs: operation, register and size, but not the address and
+/// the data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Access {
     pub(crate) op: Op,
@@ -232,7 +235,7 @@ impl Block {
         self.units.get(..execution.units + usize::from(execution.slot)).unwrap_or_default()
     }
 
-    /// Returns the number of instructions of the block that were executed. A pair counts as two.
+    /// Returns the number of executed instructions of the block. A pair counts as two instructions.
     #[inline]
     pub(crate) fn instructions_of(&self, execution: Execution) -> u64 {
         let executed = self.executed(execution);
@@ -243,7 +246,7 @@ impl Block {
         }
     }
 
-    /// Returns the instruction or pair with index `number`. The delay slot has the last index.
+    /// Returns the instruction or pair with index `number` in the block. The delay slot has the last index.
     #[inline]
     pub(crate) fn unit(&self, number: usize) -> &Unit {
         &self.units[number]
@@ -260,7 +263,7 @@ impl Block {
         (self.pc.wrapping_add(line as u32 * LINE_BYTES), end)
     }
 
-    /// Returns true if all cache lines of the block are in the instruction cache.
+    /// Returns true if the instruction cache holds all cache lines of the block.
     #[inline]
     pub(crate) fn is_held(&mut self, cache: &InstructionTags) -> bool {
         self.held_in == cache.changes() || self.look_up(cache)

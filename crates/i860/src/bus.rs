@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// An error: an access to an address at which no memory or device answers.
+/// The error of an access to an address without memory and without a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no memory and no device answers")]
 pub struct Unmapped;
@@ -24,14 +24,14 @@ pub trait Bus {
     /// Returns [`Unmapped`] if no memory or device answers. The processor then takes a data access trap.
     fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped>;
 
-    /// Returns true if the caches can hold the line of `address` (the KEN# pin). The result must be false for addresses
-    /// of devices.
+    /// Returns true if the caches may hold the data at `address`, which the processor reads from its pin KEN#. The
+    /// result must be false for addresses of devices.
     fn is_cacheable(&self, _address: u32) -> bool {
         true
     }
 }
 
-/// Memory for a range of addresses.
+/// Memory for a range of addresses, which can serve as the bus of a processor.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Ram {
     base: u32,

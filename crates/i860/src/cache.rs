@@ -8,7 +8,8 @@ use crate::timing::ChipSizes;
 pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> {
     /// Tags of all sets. A tag is a line address with [`VALID`] and [`DIRTY`] in its low bits, or 0 for an empty way.
     sets: Box<[[u32; WAYS]; SETS]>,
-    /// Number of fills and clears so far. While this number stays the same, the array holds the same lines.
+    /// Number of times that the array was filled or cleared. While this number stays the same, the array holds the same
+    /// cache lines.
     changes: u64,
 }
 
@@ -39,8 +40,8 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Raises the number of changes above `latest`, so that later states of the array differ in this number from all
-    /// earlier states.
+    /// Raises the number of changes above `latest`. All later states of the array then have other numbers than the
+    /// states up to `latest`.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }
@@ -50,7 +51,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (address / LINE_BYTES) as usize % SETS
     }
 
-    /// Returns the tag of a cache line that is held and clean.
+    /// Returns the tag of the cache line of `address` for the case that the line is clean.
     #[inline]
     fn tag(address: u32) -> u32 {
         address & !(LINE_BYTES - 1) | VALID
@@ -62,7 +63,8 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.sets[Self::set(address)].iter().any(|held| held & !DIRTY == Self::tag(address))
     }
 
-    /// Returns true if the array holds the line of an address. If `stores` is true, the line is marked dirty.
+    /// Returns true if the array holds the cache line of an address. If `stores` is true, the function also marks the
+    /// line dirty.
     #[inline]
     pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
         let ways = &mut self.sets[Self::set(address)];
@@ -78,8 +80,8 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         false
     }
 
-    /// Adds the line of an address. The line goes into an empty way, or into the way that `random` selects if no way is
-    /// empty. Returns the address of a dirty line that was replaced.
+    /// Adds the cache line of an address to its set. If no way (place) of the set is empty, `random` selects the way
+    /// whose line is replaced. Returns the address of a dirty line that was replaced.
     pub(crate) fn fill(&mut self, address: u32, random: u32) -> Option<u32> {
         self.changes += 1;
         let ways = &mut self.sets[Self::set(address)];
@@ -89,7 +91,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (left & DIRTY != 0).then_some(left & !(VALID | DIRTY))
     }
 
-    /// Marks the line of an address clean, if the array holds it. Returns true if the line was dirty.
+    /// Marks the cache line of an address clean, if the array holds this line. Returns true if the line was dirty.
     pub(crate) fn clean(&mut self, address: u32) -> bool {
         let dirty = Self::tag(address) | DIRTY;
         let way = self.sets[Self::set(address)].iter_mut().find(|held| **held == dirty);

@@ -20,12 +20,14 @@ use crate::translation::Translation;
 
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
-/// Addresses of data accesses in program order. Each instruction or pair of a block has at most one access.
+/// Addresses of the data accesses of a block of code, in program order. Each instruction or pair has at most one
+/// access.
 #[derive(Clone, Debug)]
 pub(crate) struct Accesses {
     all: [u32; Accesses::MOST],
     count: usize,
-    /// True if every access so far was looked up in the data cache and found there.
+    /// True if the data cache has held the data of every access of the block so far. False if an access was not
+    /// checked.
     pub(crate) all_held: bool,
 }
 
@@ -37,8 +39,8 @@ impl Accesses {
         Accesses { all: [0; Accesses::MOST], count: 0, all_held: false }
     }
 
-    /// Discards the accesses of the previous block. If `looks_up` is false, the next accesses are not looked up in the
-    /// cache.
+    /// Discards the accesses of the previous block. `looks_up` is true if each access of the new block must be checked
+    /// for a cache hit.
     #[inline]
     pub(crate) fn begin(&mut self, looks_up: bool) {
         self.count = 0;
@@ -120,8 +122,8 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the numbering of scoreboard states with `numbers`, the numbering of a shared store of decoded
-    /// programs. The memoized clocks of the store refer to this numbering.
+    /// Exchanges the table of numbered scoreboard states with `numbers`, the table of a shared store of decoded
+    /// programs. The memoized clocks in the store contain numbers of this table.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -129,7 +131,7 @@ impl Clock {
         }
     }
 
-    /// Turns address translation on, with the page directory at the given address. With `None`, turns address
+    /// Turns address translation on, with the page directory at address `directory`. With `None`, turns address
     /// translation off.
     pub(crate) fn set_translation(&mut self, directory: Option<u32>) {
         self.translation.set_directory(directory);
@@ -137,8 +139,8 @@ impl Clock {
 
     // ---- blocks
 
-    /// Returns true if memoized clocks can be reused. With address translation or with a profile by address, every
-    /// instruction must be counted.
+    /// Returns true if memoized clocks can be reused. The result is false with address translation or a profile by
+    /// address, because every instruction must then be counted.
     #[inline]
     pub(crate) fn repeats(&self) -> bool {
         self.on && self.memo.is_some() && !self.translation.is_on() && self.sampler.is_none()
@@ -164,7 +166,7 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a block, one instruction or pair after the other, without memoized clocks.
+    /// Counts the clocks of a block instruction by instruction (or pair by pair), without memoized clocks.
     fn count<B: Bus>(&mut self, block: &Block, execution: Execution, accesses: &Accesses, bus: &B) {
         self.write_board();
         let mut accesses = accesses.addresses().iter();
@@ -245,8 +247,8 @@ impl Clock {
         self.common.now += 1;
     }
 
-    /// Counts the freeze of a pair, then the clock of its issue. The freeze of a pair is the longer freeze of its two
-    /// halves.
+    /// Counts the clocks of a pair's freeze, then the clock of the pair's issue. The freeze of a pair is the longer
+    /// freeze of its two instructions.
     #[inline]
     fn issue_pair(&mut self, floating: &Decoded, core: &Decoded) {
         // Find the longest wait of both halves.
@@ -277,8 +279,8 @@ impl Clock {
         }
     }
 
-    /// Counts an integer load. If the load misses the cache, execution continues and the destination becomes ready
-    /// later.
+    /// Counts the clocks of an integer load. If the load misses the cache, execution continues and the destination
+    /// becomes ready later.
     #[inline]
     fn load_integer<B: Bus>(&mut self, address: u32, dest: u8, bus: &B) {
         self.board.forget(dest);
@@ -290,8 +292,8 @@ impl Clock {
         }
     }
 
-    /// Counts a floating-point load. A cache miss stops the processor until all needed bytes have arrived. A load of 16
-    /// bytes takes two transfers.
+    /// Counts the clocks of a floating-point load. A cache miss stops the processor until all needed bytes have
+    /// arrived. A load of 16 bytes takes two transfers.
     #[inline]
     fn load_floating<B: Bus>(&mut self, address: u32, size: u8, bus: &B) {
         if let Some(transfer) = self.load(address, u32::from(size), bus)
@@ -313,16 +315,16 @@ impl Clock {
         Some(transfer)
     }
 
-    /// Delays instructions of a hazard class until a cache miss ends at clock `until`, if row `why` of the freeze table
-    /// is enabled.
+    /// If row `why` of the freeze table is enabled, delays all instructions of the class `hazard` until a cache miss
+    /// ends at clock `until`.
     fn delay_hazard(&mut self, hazard: u16, until: u64, why: Freeze) {
         if self.common.costs.applies(why) {
             self.board.set_hazard_until(hazard, until + self.common.costs.clocks(why), why);
         }
     }
 
-    /// Counts a store. A hit changes the cache line. A miss sends the data through the store pipe to the bus, and
-    /// allocates no cache line.
+    /// Counts the clocks of a store. If the data cache holds the line, the line becomes dirty. If not, the data go
+    /// through the store pipe to the bus, and no cache line is filled.
     #[inline]
     fn store(&mut self, address: u32, size: u32) {
         self.translation.translate(address, &mut self.common);

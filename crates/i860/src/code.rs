@@ -1,12 +1,12 @@
-//! Decoded code: basic blocks by address, and the set of decoded words.
+//! Decoded code: the basic blocks, found by address, and the set of memory words that were decoded.
 
 use crate::assembler::Program;
 use crate::block::Block;
 use crate::code_map::CodeMap;
 use crate::state::Mode;
 
-/// Number of entries in the host's table of decoded blocks. This number has no relation to the size of the processor's
-/// instruction cache.
+/// Number of entries in the simulator's table of decoded blocks. This number has no relation to the size of the
+/// processor's instruction cache.
 const BLOCKS: usize = 1 << 12;
 
 fn place(pc: u32) -> usize {

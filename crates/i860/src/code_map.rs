@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// The set of memory words that were decoded. The set shows whether a store changes decoded code.
+/// The set of memory words that were decoded. With this set, the processor finds out if a store can have changed
+/// decoded code.
 #[derive(Debug)]
 pub(crate) struct CodeMap {
     /// Address range of the assembled program, or an empty range without a program.

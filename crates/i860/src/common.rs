@@ -10,7 +10,7 @@ use crate::timing::{Config, Freeze};
 pub(crate) struct Common {
     /// The current clock, counted since reset.
     pub(crate) now: u64,
-    /// Clock at which the profile was started. Every clock since then is either a freeze or an issue.
+    /// Clock at which the profile was started. Every clock after the start is either a freeze clock or an issue clock.
     profile_start: u64,
     /// All counts of the profile except issue clocks. [`Common::profile`] computes the issue clocks from the other
     /// clocks.
@@ -19,8 +19,8 @@ pub(crate) struct Common {
     pub(crate) bus: Dram,
     /// Pseudo-random numbers that choose the line to replace in a full cache set.
     pub(crate) chance: Chance,
-    /// Clock at which the latest line fill of the data cache ends. An instruction-cache miss that begins earlier waits
-    /// longer.
+    /// Clock at which the latest line fill of the data cache ends. An instruction-cache miss that begins before this
+    /// clock takes more clocks (row 1b of the freeze table).
     pub(crate) data_fill_end: u64,
     /// Clock at which the latest line fill of the instruction cache ends. A freeze that begins earlier lasts at least
     /// until this clock.
@@ -78,8 +78,8 @@ impl Common {
         self.stand_still(until, Freeze::InstructionMiss);
     }
 
-    /// Freezes the processor for the additional clocks of an instruction-cache miss during a data-cache fill (row 1b of
-    /// the freeze table).
+    /// Freezes the processor for the additional clocks of row 1b of the freeze table: an instruction-cache miss begins
+    /// during a line fill of the data cache.
     pub(crate) fn await_instruction_behind_data(&mut self) {
         let until = self.now + self.costs.clocks(Freeze::InstructionMissBehindData);
         self.stand_still(until, Freeze::InstructionMissBehindData);

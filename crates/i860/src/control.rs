@@ -110,8 +110,8 @@ impl Cpu {
         immediate(equal == (i.op == Op::Bte), target)
     }
 
-    /// Executes `bla`, which branches if the loop condition code LCC was set. Afterwards, LCC is set if the sum of the
-    /// operands is not negative.
+    /// Executes `bla`, which adds two registers. The instruction branches if the loop condition code LCC was set
+    /// before. Afterwards, LCC is set if the sum is not negative.
     fn branch_on_loop(&mut self, i: &Instruction, target: u32) -> Flow {
         let a = self.state.r(i.src1);
         let b = self.state.r(i.src2);

@@ -1,4 +1,5 @@
-//! The processor: instruction fetch, pairs of instructions, delay slots, traps, and the main loop of a run.
+//! The processor: instruction fetch, pairs of instructions, delay slots, traps, and the main loop that executes a
+//! program.
 
 use crate::action::{Action, Floating};
 use crate::assembler::Program;
@@ -18,7 +19,8 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// An i860 XR with its caches and its clock. The caller passes the memory to every run.
+/// An i860 XR with its caches and its clock. The memory is not a part of the processor: each call of [`Cpu::run`] or
+/// [`Cpu::step`] takes a [`Bus`].
 pub struct Cpu {
     /// Registers, pipes and pairing mode: the complete state that a program can see.
     pub state: State,
@@ -28,7 +30,7 @@ pub struct Cpu {
     pub(crate) mode_after_slot: Option<Mode>,
     /// Addresses of the data that the current block has loaded or stored.
     pub(crate) accesses: Accesses,
-    /// Cause of the trap that the current instruction or pair has raised, if any.
+    /// Cause of the trap that the current instruction or pair has raised. `None` if no trap was raised.
     cause: Option<TrapCause>,
     /// New value of the directory-base register, if the current block has written the register.
     pub(crate) directory_base: Option<u32>,
@@ -91,14 +93,14 @@ impl Cpu {
         self.time.instructions()
     }
 
-    /// Returns the number of instructions, since reset, whose clocks were reused instead of counted
+    /// Returns the number of instructions, since reset, whose clocks came from an earlier execution of the same code
     /// ([`Config::memoise`]).
     #[must_use]
     pub fn repeated_instructions(&self) -> u64 {
         self.time.repeated_instructions()
     }
 
-    /// Returns the clocks and cache misses, sorted by cause.
+    /// Returns the clocks by cause, and the numbers of cache misses, since reset or [`Cpu::clear_profile`].
     #[must_use]
     pub fn profile(&self) -> Profile {
         self.time.profile()
@@ -109,8 +111,8 @@ impl Cpu {
         self.time.clear_profile();
     }
 
-    /// Empties the caches and the TLB without write-backs and without simulated time. A measurement then has a cold
-    /// start.
+    /// Empties the caches and the TLB without write-backs and without simulated time. A measurement can then start with
+    /// empty caches.
     pub fn empty_caches(&mut self) {
         self.time.empty_caches();
     }
@@ -184,7 +186,7 @@ impl Cpu {
     }
 
     /// Executes the block that begins at `pc`. If the block contains the address `stop` or has more than `most`
-    /// instructions, only the first instruction or pair of the block is executed.
+    /// instructions, the function executes only the first instruction or pair of the block.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
         let pc = self.state.pc;
         // Take the decoded block out of the store, or decode it now.
@@ -226,8 +228,8 @@ impl Cpu {
         self.time.pass(block, execution, &self.accesses, bus);
     }
 
-    /// Sets the address and pairing mode of the next block. If the last instruction was a taken delayed branch, its
-    /// delay slot is executed first.
+    /// Sets the address and pairing mode of the block that executes next. If the current block ended with a taken
+    /// delayed branch, the function first executes the branch's delay slot.
     #[inline]
     fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, execution: &mut Execution, bus: &mut B) {
         // Begin with the address directly after the executed code. A jump or trap overrides this address below.

@@ -30,8 +30,8 @@ impl DataCache {
     }
 
     /// Finds the first access that is not a cache hit, from access `from` on, before instruction or pair `limit`.
-    /// Returns the index of this access and the index of its instruction or pair. If all examined accesses hit, the
-    /// function returns the index of the first access that was not examined. Stores that hit mark their lines dirty.
+    /// Returns the index of this access and the index of its instruction or pair. If all these accesses hit, the
+    /// function returns the index of the next access and `None`. Stores that hit mark their lines dirty.
     #[inline]
     pub(crate) fn held(
         &mut self,
@@ -61,13 +61,15 @@ impl DataCache {
         (next, None)
     }
 
-    /// Returns true if the cache holds the line of an access. If the access is a store, the line becomes dirty.
+    /// Returns true if the data cache holds the cache line at `address`. If the access is a store, the line becomes
+    /// dirty.
     #[inline]
     pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
         self.0.access(address, stores)
     }
 
-    /// Starts a bus transfer for the `size` bytes of a load. Returns `None` if the cache holds the bytes.
+    /// Starts a bus transfer for a load of `size` bytes that misses the cache. Returns `None` if the cache holds the
+    /// bytes.
     #[inline]
     pub(crate) fn load<B: Bus>(
         &mut self,

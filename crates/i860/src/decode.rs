@@ -12,8 +12,8 @@ pub struct IllegalWord(
 );
 
 const D_BIT: u32 = 1 << 9;
-/// Number of epsr, the last control register of the XR. The later i860 XP has more control registers: bear, ccr and p0
-/// to p3.
+/// Register number of epsr, the control register with the highest number on the i860 XR. The later i860 XP has more
+/// control registers: bear, ccr and p0 to p3.
 const LAST_XR_CONTROL_REGISTER: u8 = 5;
 
 fn field(word: u32, low: u32) -> u8 {

@@ -3,7 +3,7 @@
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
-/// Hazards that can delay an instruction. Each hazard is one bit.
+/// Bits for the classes of hazards that can delay an instruction.
 pub(crate) mod hazard {
     pub(crate) const SCALAR: u16 = 1 << 0;
     pub(crate) const DOUBLE_MULTIPLY: u16 = 1 << 1;
@@ -17,7 +17,7 @@ pub(crate) mod hazard {
     pub(crate) const COUNT: usize = 9;
 }
 
-/// Hazards that an instruction causes for later instructions. Each class is one bit.
+/// Bits for the classes of hazards that an instruction causes for later instructions.
 pub(crate) mod arm {
     pub(crate) const LOAD: u16 = 1 << 0;
     pub(crate) const LONG_LOAD: u16 = 1 << 1;
@@ -43,7 +43,7 @@ pub(crate) struct Decoded {
     pub(crate) instruction: Instruction,
     pub(crate) sensitive: u16,
     pub(crate) arms: u16,
-    /// First source register if the multiplier reads this register, else [`NONE`].
+    /// Number of the first source register if the multiplier reads this register, else [`NONE`].
     pub(crate) multiplier_source: u8,
     marks: u8,
 }
@@ -95,21 +95,22 @@ impl Decoded {
         self.marks & mark::DUAL != 0
     }
 
-    /// Returns true if the instruction accesses data, branches or is `st.c`. Only the clocks of such instructions
-    /// depend on their execution.
+    /// Returns true if the instruction accesses data, branches or is `st.c`. Only the clocks of these instructions
+    /// depend on results of the execution, such as an address or a taken branch.
     #[inline]
     pub(crate) fn affects_clock(&self) -> bool {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 
-    /// Returns two booleans. The first is true if the first source is a pair of registers (double precision). The
-    /// second states the same for the second source.
+    /// Returns two booleans, for the first and the second source. A boolean is true if this source is in double
+    /// precision and therefore takes a pair of registers.
     #[inline]
     pub(crate) fn source_widths(&self) -> (bool, bool) {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
     }
 
-    /// Returns true if the destination of a pipelined operation can also be one of its sources.
+    /// Returns true if a source register of a pipelined operation can be its destination register. The operation then
+    /// reads the result that leaves the pipe.
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
         self.marks & mark::MAY_BYPASS != 0

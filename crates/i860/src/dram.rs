@@ -70,7 +70,8 @@ impl Dram {
         self.data_end.max(self.free)
     }
 
-    /// Counts the refreshes and the transfers of other bus masters that are due before a request at clock `now`.
+    /// Adds the times of the refreshes and of the transfers of other bus masters that take place before a request at
+    /// clock `now`.
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [
@@ -90,7 +91,7 @@ impl Dram {
         }
     }
 
-    /// Opens the DRAM row of an address. Returns true if the row was open already.
+    /// Opens the DRAM row that contains `address`. Returns true if this row was already open.
     fn open(&mut self, address: u32) -> bool {
         let page = u64::from(address) / self.timing.page_bytes.max(BUS_BYTES);
         let hit = page == self.open_page;
@@ -110,8 +111,9 @@ impl Dram {
 
     /// Reads `beats` transfers of 8 bytes. The requested 8 bytes arrive first.
     ///
-    /// Requests to the open DRAM row overlap. The first data of the next request follow [`DramTiming::next`] clocks
-    /// after the last data of this request. A DRAM row is closed after the transfer of its last data.
+    /// Requests to the open DRAM row overlap. If the next request is to the same row, its first data follow
+    /// [`DramTiming::next`] clocks after the last data of this request. A row is closed only after the transfer of its
+    /// last data.
     pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         self.steal(now);
         let hit = self.open(address);

@@ -1,8 +1,9 @@
-//! The data paths of the dual operations.
+//! The data paths of the dual operations, which use the adder and the multiplier at the same time.
 
 use crate::instruction::{Flags, Instruction, Op};
 
-/// Source of an operand of a dual operation. `M` and `A` are the results that leave the multiplier and the adder.
+/// A source from which the adder or the multiplier takes an operand in a dual operation. `M` and `A` are the results
+/// that leave the multiplier and the adder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Source {
@@ -73,8 +74,8 @@ const fn multiplier_for_adder(source: Source) -> Source {
     }
 }
 
-/// Returns two booleans. The first is true if the first source is a pair of registers (double precision). The second
-/// states the same for the second source.
+/// Returns two booleans, for the first and the second source. A boolean is true if this source is in double precision
+/// and therefore takes a pair of registers.
 pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     let s = i.has(Flags::SOURCE_DOUBLE);
     let r = i.has(Flags::RESULT_DOUBLE);

@@ -1,4 +1,5 @@
-//! Instruction fetch: the cache line of the last fetch, and the instruction cache.
+//! Instruction fetch: from the cache line of the last fetch, from another line of the instruction cache, or from
+//! memory.
 
 use crate::block::Block;
 use crate::bus::Bus;
@@ -21,7 +22,7 @@ pub(crate) struct Fetch {
     line: u32,
     /// Clocks at which the 8-byte transfers of the cache line arrive, sorted by their position in the line.
     arrivals: [u64; BEATS as usize],
-    /// Position, within the cache line, of the 8-byte transfer that arrives first.
+    /// Position (0 to 3) within the cache line of the 8-byte transfer that arrives first.
     first: u8,
 }
 
@@ -55,15 +56,15 @@ impl Fetch {
         !self.is_in_line(pc) && !self.cache.holds(pc)
     }
 
-    /// Returns the part of an instruction-cache line that has not arrived yet.
+    /// Returns the part of the instruction-cache line that is still arriving from memory.
     #[inline]
     pub(crate) fn filling(&self, common: &Common) -> ArrivingLine {
         let clocks = common.instruction_fill_end.saturating_sub(common.now);
         ArrivingLine { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
-    /// Makes the numbers of the next cache states start after `latest`, so that states of different processors have
-    /// different numbers.
+    /// Makes all later states of the instruction cache have numbers above `latest`, so that states of different
+    /// processors have different numbers.
     pub(crate) fn number_states_from(&mut self, latest: u64) {
         self.cache.number_changes_from(latest);
     }
@@ -73,7 +74,7 @@ impl Fetch {
         self.cache.changes()
     }
 
-    /// Returns true if all cache lines of the block are in the instruction cache.
+    /// Returns true if the instruction cache holds all cache lines of the block.
     #[inline]
     pub(crate) fn holds(&self, block: &mut Block) -> bool {
         block.is_held(&self.cache)
@@ -84,7 +85,7 @@ impl Fetch {
         self.line = NO_LINE;
     }
 
-    /// Counts the fetch of the instruction or pair at address `pc`.
+    /// Counts the clocks of the fetch of the instruction or pair at address `pc`.
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
         if pc / LINE_BYTES != self.line || common.is_filling() {

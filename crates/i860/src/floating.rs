@@ -10,7 +10,8 @@ use crate::operands::{Operands, last_product};
 use crate::state::{PipeStage, State, fsr, psr};
 
 impl Cpu {
-    /// Executes a floating-point instruction, alone or as half of a pair. The operands were read before the call.
+    /// Executes a floating-point instruction, alone or as half of a pair. The caller has already read the operands
+    /// `from`.
     #[inline(always)]
     pub(crate) fn floating<'a>(&mut self, action: &FloatingAction, unit: impl Fn() -> &'a Unit, from: Operands) {
         use Operation::{Add, Multiply, Subtract};
@@ -160,8 +161,8 @@ impl Cpu {
         self.adder_result(i, sum);
     }
 
-    /// Sets the condition code CC by a comparison. The real chip pushes an undefined value into the adder's pipe. This
-    /// model pushes zero.
+    /// Compares two operands and sets the condition code CC. The real chip also pushes an undefined value into the
+    /// adder's pipe. This model pushes zero.
     fn compare(&mut self, i: &Instruction, Operands { a, b }: Operands) {
         let double = i.has(Flags::SOURCE_DOUBLE);
         let x = number(a, double);
@@ -287,10 +288,11 @@ impl Cpu {
     }
 }
 
-/// Bit pattern that is NaN in both precisions. The NaN makes the use of an undefined value visible in results.
+/// Bit pattern that is NaN in both precisions. The model uses this NaN for undefined values, so that their use becomes
+/// visible in results.
 const LOST: u64 = 0x7FF8_0000_7FC0_0000;
 
-/// Pushes a result into a pipe and returns the value that leaves the last stage. `last` is the index of the last stage.
+/// Pushes a result into a pipe and returns the value that leaves the stage `last`, which is the last used stage.
 #[inline(always)]
 fn push(pipe: &mut [PipeStage; 3], last: usize, result: PipeStage) -> PipeStage {
     let [first, second, _] = *pipe;

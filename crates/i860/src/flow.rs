@@ -11,7 +11,7 @@ pub(crate) enum Flow {
     Jump(u32),
     /// Jump to the target address after the delay slot.
     Delayed(u32),
-    /// Skip the next instruction or pair, which is the delay slot of a branch that is not taken.
+    /// Skip one instruction or pair, which is the delay slot of a branch that is not taken.
     Skip,
     Trapped,
 }

@@ -10,8 +10,8 @@ use pxpl5_sim::parameters::{ParameterInfo, ParameterTable};
 pub struct FreezeRow {
     /// Name of the row in Rust code.
     pub id: Freeze,
-    /// Number of the row in Intel's list of instruction timings, quoted from memory. A letter is added if one row of
-    /// Intel's list has several delays.
+    /// Number of the row in Intel's list of instruction timings, quoted from memory. A letter follows the number if a
+    /// row of Intel's list has several delays.
     pub number: &'static str,
     /// Description of the condition under which the processor stops issuing instructions.
     pub condition: &'static str,
@@ -39,8 +39,8 @@ macro_rules! freezes {
         /// The freeze rules. Of several simultaneous freezes, only the longest freeze counts, but the clocks of cache
         /// misses are added.
         ///
-        /// In the conditions, the word "since" refers to clocks. If an intermediate instruction was frozen, its delay
-        /// shortens the wait by the same number of clocks.
+        /// In the conditions, the word "since" refers to clocks. If an instruction in between was frozen, the wait is
+        /// shorter by the number of clocks of this freeze.
         pub const FREEZES: [FreezeRow; N_FREEZES] = [$(FreezeRow {
             id: Freeze::$id,
             number: $number,
@@ -91,7 +91,7 @@ pub struct FreezeRules {
     enabled: u32,
     /// Constant parts of the delays in all rows of the freeze table, including disabled rows.
     pub clocks: FreezeClocks,
-    /// True if row 8 of the freeze table, the delay of a conditional branch after an operation that sets CC, also
+    /// Row 8 of the freeze table delays a conditional branch after an operation that sets CC. True if row 8 also
     /// applies after and, andnot, or and xor. Intel's list does not decide this question. The default is false.
     pub logicals_delay_branches: bool,
 }
@@ -110,22 +110,22 @@ impl FreezeRules {
         FreezeRules { enabled: 0, ..FreezeRules::all() }
     }
 
-    /// Returns the same rules with one row of the freeze table disabled.
+    /// Returns a copy of the rules in which row `id` of the freeze table is disabled.
     #[must_use]
     pub fn without(mut self, id: Freeze) -> FreezeRules {
         self.enabled &= !(1 << id as u32);
         self
     }
 
-    /// Returns the same rules with one row of the freeze table enabled.
+    /// Returns a copy of the rules in which row `id` of the freeze table is enabled.
     #[must_use]
     pub fn with(mut self, id: Freeze) -> FreezeRules {
         self.enabled |= 1 << id as u32;
         self
     }
 
-    /// Returns the numbers of the enabled rows of the freeze table, in order. If row 8 also applies after logical
-    /// operations, the list states this fact.
+    /// Returns a text with the numbers of the enabled rows of the freeze table, in order. If row 8 also applies after
+    /// logical operations, the text states this fact.
     pub(crate) fn names(&self) -> String {
         let applying = FREEZES.iter().filter(|row| self.applies(row.id)).map(|row| row.number);
         let logicals = self.logicals_delay_branches.then_some("logicals delay branches");

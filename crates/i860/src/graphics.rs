@@ -5,13 +5,14 @@ use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::Operands;
 use crate::state::PipeStage;
 
-/// Two numbers for each pixel size psr.PS. The first is the mask of the bits that faddp copies into MERGE. The second
-/// is the number of bits by which faddp first shifts MERGE.
+/// Data of the instruction faddp for each pixel size psr.PS. The mask selects the bits that faddp copies into the
+/// register MERGE. The number is the count of bits by which faddp first shifts MERGE.
 const PIXEL_MERGE: [(u64, u32); 3] =
     [(0xFF00_FF00_FF00_FF00, 8), (0xFC00_FC00_FC00_FC00, 6), (0xFF00_0000_FF00_0000, 8)];
 
-/// Returns the smaller field of each pair of fields in `a` and `b`. Also returns one bit for each pair. The bit is set
-/// if the field of `b` is not greater than the field of `a`.
+/// Compares the depths in `a` with the depths in `b`. Both words hold unsigned depths of `width` bits. Returns the
+/// smaller depth of each pair, and one bit for each pair. The bit is set if the depth in `b` is not greater than the
+/// depth in `a`.
 fn z_check(a: u64, b: u64, width: u32) -> (u64, u32) {
     let field = (1u64 << width) - 1;
     let mut result = (0, 0);

@@ -20,7 +20,8 @@ pub enum Op {
     Fld,
     /// `fst`: stores one, two or four floating-point registers.
     Fst,
-    /// `pfld`: pipelined load. The destination register receives the data of the third previous `pfld`.
+    /// `pfld`: pipelined load. The destination register receives the data that a `pfld` three pipelined loads earlier
+    /// has requested.
     Pfld,
     /// `pst`: stores the pixels whose bits in psr.PM are set.
     Pst,
@@ -82,19 +83,20 @@ pub enum Op {
     Shra,
     /// `and`: bitwise and. Sets CC if the result is 0.
     And,
-    /// `andh`: bitwise and with the immediate in the high half.
+    /// `andh`: bitwise and. An immediate is used as the high half of the operand.
     Andh,
     /// `andnot`: bitwise and with the complement of the first operand.
     Andnot,
-    /// `andnoth`: bitwise and with the complement of the immediate in the high half.
+    /// `andnoth`: bitwise and with the complement of the first operand. An immediate is used as the high half of this
+    /// operand.
     Andnoth,
     /// `or`: bitwise or. Sets CC if the result is 0.
     Or,
-    /// `orh`: bitwise or with the immediate in the high half.
+    /// `orh`: bitwise or. An immediate is used as the high half of the operand.
     Orh,
     /// `xor`: bitwise exclusive or. Sets CC if the result is 0.
     Xor,
-    /// `xorh`: bitwise exclusive or with the immediate in the high half.
+    /// `xorh`: bitwise exclusive or. An immediate is used as the high half of the operand.
     Xorh,
     /// `fnop`: no operation, for the floating-point half of a pair.
     Fnop,
@@ -165,7 +167,7 @@ impl Flags {
     /// The R bit: the result is in double precision.
     pub const RESULT_DOUBLE: Flags = Flags(32);
 
-    /// Returns true if all bits of `other` are set in this set.
+    /// Returns true if this set contains all flags of `other`.
     #[must_use]
     pub fn has(self, other: Flags) -> bool {
         self.0 & other.0 == other.0
@@ -186,7 +188,7 @@ impl Flags {
 /// and 0 for other operations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
-    /// Operation, without its precision and addressing form.
+    /// Operation. The precision and the addressing form are in `flags`.
     pub op: Op,
     /// Number of the destination register. The operation determines whether this is an integer or a floating-point
     /// register.
@@ -210,7 +212,7 @@ impl Instruction {
         Instruction { op, dest: 0, src1: 0, src2: 0, size: 0, flags: Flags(0), imm: 0 }
     }
 
-    /// Returns true if all bits of `flags` are set.
+    /// Returns true if the instruction has all flags of `flags`.
     #[must_use]
     pub fn has(&self, flags: Flags) -> bool {
         self.flags.has(flags)

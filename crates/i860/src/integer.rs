@@ -115,8 +115,8 @@ impl Cpu {
         self.directory_base = Some(value);
     }
 
-    /// Applies a new value of the directory-base register to caches and translation. The clocks of the writing
-    /// instruction were counted before.
+    /// Applies a new value of the directory-base register to caches and translation. The caller has already counted the
+    /// clocks of the instruction that writes the register.
     #[cold]
     pub(crate) fn apply_directory_base(&mut self, value: u32) {
         if value & dirbase::ITI != 0 {
@@ -135,7 +135,7 @@ impl Cpu {
     }
 }
 
-/// Returns `old` with the bits in the mask replaced by the bits of `new`.
+/// Returns `new` in the bits that `mask` contains, and `old` in the other bits.
 fn merge(old: u32, new: u32, mask: u32) -> u32 {
     old & !mask | new & mask
 }

@@ -34,7 +34,7 @@
 //! - All XR instructions are modelled: integer core, loads and stores with auto-increment, scalar and pipelined
 //!   arithmetic, the 62 dual operations, pipelined loads, graphics unit, delay slots, `bla`, dual-instruction mode, and
 //!   control registers.
-//! - Arithmetic is IEEE, rounded to nearest even, with the same bits on every host. fsr.FZ flushes results to zero.
+//! - Arithmetic is IEEE, rounded to nearest even, with the same bits on every computer. fsr.FZ flushes results to zero.
 //!   Without traps a NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
 //! - A scalar operation (including `frcp` and `frsqr`) destroys the contents of its unit's pipe. In this model, the
 //!   contents become NaN. The assembler prints a warning for code that reads a result from a pipe after a scalar
@@ -48,9 +48,9 @@
 //!
 //! # Timing
 //!
-//! An instruction or pair is issued in one clock unless a row of [`timing::FREEZES`] delays it. Of simultaneous freezes
-//! only the longest counts, but cache misses add up. Every row can be disabled or given another cost. Every DRAM time
-//! is a parameter with an allowed range. A [`Profile`] accounts for every clock.
+//! An instruction or pair is issued in one clock unless a row of [`timing::FREEZES`] delays it. If several freezes
+//! occur together, only the longest freeze counts, but the times of cache misses are added. Every row can be disabled
+//! or given another cost. Every DRAM time is a parameter with an allowed range. A [`Profile`] accounts for every clock.
 //!
 //! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte lines
 //! and pseudo-random replacement. A write miss allocates no line. The TLB has 64 entries.
@@ -101,9 +101,9 @@
 //!
 //! # Sources
 //!
-//! Intel, *i860 Microprocessor Programmer's Reference Manual*, from memory. Encodings of public assemblers. Kernels of
-//! the period with comments about clocks. [`timing::FREEZES`] and [`timing::FreezeClocks`] state the source of each
-//! row.
+//! Intel, *i860 Microprocessor Programmer's Reference Manual*, from memory. Encodings of public assemblers. Assembler
+//! routines of about 1990 with comments about clocks. [`timing::FREEZES`] and [`timing::FreezeClocks`] state the source
+//! of each row.
 
 mod action;
 mod arithmetic;

@@ -31,15 +31,15 @@
 //! | `prefetch` | core: a load whose data is not used; no other memory access is placed until the load ends |
 //!
 //! Each value has one name. `r0` to `r31` and `f0` are registers that the stretch does not change. A `.pool` line of
-//! the source lists the integer registers that [`schedule`] can use: `.pool r4 r5 r6`. Loads and stores can be placed
-//! in any order. To make a load wait for a store, write a label before the store, `@label st.l ..`, and `!label` at the
-//! end of the load. A stretch begins and ends in dual-instruction mode.
+//! the source lists the integer registers that [`schedule`] can use: `.pool r4 r5 r6`. The scheduler can place loads
+//! and stores in any order. If a load must wait for a store, the store has a label, `@label st.l ..`, and the load has
+//! `!label` at its end. A stretch begins and ends in dual-instruction mode.
 //!
 //! # Method
 //!
 //! The method is list scheduling, clock by clock. In each clock, the scheduler considers a *window*: a number of lines
-//! that begins with the first unissued line. Of the operations in the window that can be issued, the scheduler selects
-//! the operation with the longest path to the end.
+//! that begins with the first unissued line. From the operations in the window that can be issued, the scheduler
+//! selects the operation with the longest path to the end of the stretch.
 //!
 //! The first line in the window can take the last free registers. Later lines must leave a *reserve* of free registers.
 //! For each 64 lines of distance from the first line, the reserve increases (*slope*). With this reserve, no schedule
@@ -49,9 +49,10 @@
 //! In the second case, a value in the pipe is more urgent than the best operation by more than the *eagerness*. An
 //! operation that can be a dual operation also pushes the other pipe, if no result is lost.
 //!
-//! The scheduler applies the rows of the freeze table, so the scheduled code runs without freezes if all accesses hit
-//! the caches. A *shake* other than 0 changes the priorities a little. The lengths of schedules of the same text then
-//! differ by some per cent. A search can try many values and keep the shortest schedule.
+//! The scheduler respects the rules of the freeze table. The scheduled code therefore runs without freezes if all
+//! accesses hit the caches. If the parameter *shake* is not 0, the scheduler changes the priorities a little. The
+//! lengths of schedules of the same text then differ by some per cent. A search can try many values and keep the
+//! shortest schedule.
 
 mod machine;
 mod parse;
@@ -70,14 +71,13 @@ pub struct Slots {
     /// Number of floating-point operations. A multiply with double-precision sources counts twice, because the
     /// multiplier accepts one such multiply every second clock.
     pub floating: usize,
-    /// Number of core operations. The number of pairs in a schedule is at least the greater number of `floating` and
-    /// `core`.
+    /// Number of core operations. A schedule needs at least as many pairs as the maximum of `floating` and `core`.
     pub core: usize,
     /// Number of instruction pairs in the schedule.
     pub pairs: usize,
 }
 
-/// Returns the operation counts of each stretch of linear code in a source, in order.
+/// Returns the numbers of operations in each stretch of linear code of a source, in the order of the source.
 ///
 /// # Errors
 /// Returns the errors of [`schedule`].
@@ -121,8 +121,8 @@ pub fn schedule(source: &str) -> Result<String, AssemblyError> {
     Ok(out.into_inner())
 }
 
-/// Passes the operations of each stretch of linear code, with their pairs, to the function `linear`. Passes every other
-/// line of the source to the function `other`. The calls have the order of the source.
+/// Reads a source in order. For each stretch of linear code, calls `linear` with the operations and their schedule of
+/// pairs. For every line outside a stretch, calls `other`.
 fn stretches(
     source: &str,
     mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),

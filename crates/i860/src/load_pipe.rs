@@ -1,5 +1,5 @@
-//! The pipe of pipelined loads (`pfld`). The data of such loads bypass the cache and reach a register three loads
-//! later.
+//! The pipe of pipelined loads (`pfld`). The data of a `pfld` bypass the cache and reach a register when the third
+//! later `pfld` executes.
 
 use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
@@ -14,7 +14,8 @@ pub(crate) struct LoadPipe {
 }
 
 impl LoadPipe {
-    /// Starts a pipelined load after the data of the oldest load have arrived.
+    /// Starts a pipelined load. If three loads are outstanding, the processor first waits for the data of the oldest
+    /// load.
     pub(crate) fn load(&mut self, address: u32, size: u32, is_in_cache: bool, common: &mut Common) {
         // The pipe has three stages, so the fourth load waits for the first.
         let oldest = self.arrivals[0];
@@ -30,7 +31,7 @@ impl LoadPipe {
     }
 }
 
-/// Returns the clock at which data from the cache arrive. The data arrive after the end of all earlier bus cycles.
+/// Returns the clock at which data from the cache arrive. These data arrive after the end of all earlier bus cycles.
 fn from_cache(common: &mut Common) -> u64 {
     if common.costs.applies(Freeze::PipelinedLoadHit) {
         let until = common.bus.idle_at().max(common.now) + common.costs.clocks(Freeze::PipelinedLoadHit);

@@ -13,14 +13,15 @@ use crate::scoreboard::{PendingWaits, Scoreboard};
 use crate::timing::{FREEZES, N_FREEZES};
 use rustc_hash::FxHashMap;
 
-/// Longest remaining wait of a scoreboard that can get a number, in clocks. Scoreboards with longer waits get no
-/// number.
+/// Longest wait, in clocks, that a numbered scoreboard state can contain. States with longer waits get no number, so
+/// their clocks are not memoized.
 pub(crate) const MOST_CLOCKS: u8 = 15;
-/// Greatest number of scoreboard states that get a number. After any other state, code is counted instruction by
-/// instruction.
+/// Greatest number of scoreboard states that get a number. In a state without a number, the clocks of code are counted
+/// instruction by instruction.
 const MOST_NUMBERS: usize = 1 << 15;
 
-/// The number of a scoreboard state. One bit is set while an instruction-cache line is arriving.
+/// The number of a scoreboard state (the remaining waits for registers and units). The highest bit is set if an
+/// instruction-cache line is arriving in this state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Number(u32);
 
@@ -34,7 +35,7 @@ impl Number {
     }
 }
 
-/// All distinct scoreboard states with the numbers assigned to them.
+/// All scoreboard states that have occurred so far, with their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbers {
     numbers: FxHashMap<PendingWaits, Number>,
@@ -45,10 +46,10 @@ pub(crate) struct Numbers {
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard state, if memoized clocks were reused last. `None` means that the
+    /// Number of the current scoreboard state, if the latest clocks were memoized clocks. `None` means that the
     /// [`Scoreboard`] itself holds the state.
     present: Option<Number>,
-    /// Number of executed instructions whose memoized clocks were reused.
+    /// Number of executed instructions whose clocks were memoized clocks of an earlier execution.
     pub(crate) instructions: u64,
 }
 
@@ -118,8 +119,9 @@ pub(crate) struct Run(u64);
 
 impl Run {
     /// Makes the key of a run (a part of a block). `entry` is the number of the scoreboard state before the run. `from`
-    /// and `to` are the first and the last position in the block. The flags are true if the branch was taken, if the
-    /// last instruction trapped, and if the first fetch is from a cache line that is still arriving.
+    /// and `to` are the first and the last position in the block. `taken` is true if the branch was taken, and
+    /// `trapped` if the last instruction trapped. `continues` is true if the first fetch is from a cache line that is
+    /// still arriving.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
         let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;
@@ -149,8 +151,8 @@ impl WaitedClocks {
     /// Greatest number of causes of delay that a run (a part of a block) can have.
     const MOST: usize = 6;
 
-    /// Returns the clocks of delay between the profiles `before` and `after`, by cause. Returns `None` if there are too
-    /// many causes, or if the clocks of a cause exceed the size of an entry.
+    /// Returns the clocks of delay between the profiles `before` and `after`, by cause. Returns `None` if the clocks or
+    /// their causes do not fit into the packed format.
     fn between(before: &Profile, after: &Profile) -> Option<WaitedClocks> {
         let clocks = FREEZES.iter().map(|row| (row.id, after.frozen_by(row.id) - before.frozen_by(row.id)));
         let mut all = WaitedClocks::default();
@@ -174,7 +176,8 @@ impl WaitedClocks {
     }
 }
 
-/// The memoized clocks of a run, which is a part of a block. The entry fills half a cache line of most host computers.
+/// The memoized clocks of a run, which is a part of a block. The entry takes 32 bytes, half a cache line of most
+/// present computers.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct RememberedClocks {
@@ -199,8 +202,8 @@ impl RememberedClocks {
         waited: WaitedClocks([0; WaitedClocks::MOST]),
     };
 
-    /// Makes the memory entry of a run (a part of a block). The delays are the difference between the profiles before
-    /// and after the run. Returns `None` if a number is too large for its field.
+    /// Makes the entry that memoizes the clocks of a run (a part of a block). The delays are the difference between the
+    /// profiles before and after the run. Returns `None` if a number is too large for its field.
     pub(crate) fn new(run: Run, exit: Number, clocks: u64, line: u32, [before, after]: [&Profile; 2]) -> Option<Self> {
         let waited = WaitedClocks::between(before, after)?;
         let instructions = u16::try_from(after.instructions - before.instructions).ok()?;
@@ -217,7 +220,7 @@ impl BlockMemory {
     /// Smallest size of the hash table, in entries.
     const LEAST: usize = 8;
     const MOST: usize = 1 << 11;
-    /// Number of successive entries of the hash table in which a run (a part of a block) is searched.
+    /// Number of successive entries of the hash table that a search for a run (a part of a block) examines.
     const REACH: usize = 4;
 
     #[inline]

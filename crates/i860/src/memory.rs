@@ -147,8 +147,8 @@ impl Cpu {
         Ok(Flow::Next)
     }
 
-    /// Writes the pixels whose PM bits are set. Bit 0 belongs to the pixel at the lowest address. Afterwards, PM is
-    /// shifted by the number of pixels.
+    /// Executes `pst`: stores the pixels whose bits in psr.PM are set. Bit 0 belongs to the pixel at the lowest
+    /// address. Afterwards, PM is shifted right by the number of pixels.
     pub(crate) fn store_pixels<B: Bus>(&mut self, a: &CoreAction, bus: &mut B) -> Result<Flow, TrapCause> {
         let address = self.effective_address(a, 8)?;
         // If the address is not mapped, trap before the first write of a pixel.
@@ -166,8 +166,7 @@ impl Cpu {
         Ok(self.after_store())
     }
 
-    /// Executes `flush`. The function does not check the alignment of the address. Memory need not exist at this
-    /// address.
+    /// Executes `flush`. The address can be unaligned, and can be an address without memory.
     pub(crate) fn flush_line(&mut self, i: &Instruction) {
         let offset = if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) };
         let address = offset.wrapping_add(self.state.r(i.src2));

@@ -136,7 +136,7 @@ pub fn mnemonic(i: &Instruction) -> String {
     format!("{dual}{pipelined}{}{}", base_name(i.op), suffix(i))
 }
 
-/// Returns true if all bits that the operation ignores have the values of Intel's assembler.
+/// Returns true if all bits that the operation ignores have the values that Intel's assembler writes.
 fn is_canonical(i: &Instruction) -> bool {
     let double = Flags(Flags::SOURCE_DOUBLE.0 | Flags::RESULT_DOUBLE.0);
     match i.op {
@@ -170,7 +170,8 @@ fn every_word() -> impl Iterator<Item = u32> {
     core.chain(floating).chain([FNOP])
 }
 
-/// Returns the instruction that has a mnemonic. The prefix `d.` sets the D bit.
+/// Returns the instruction with the mnemonic `name`, or `None` if no instruction has this mnemonic. The prefix `d.`
+/// sets the D bit.
 pub(crate) fn lookup(name: &str) -> Option<Instruction> {
     let (plain, dual) = match name.strip_prefix("d.") {
         Some(rest) => (rest, true),

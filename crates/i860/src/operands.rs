@@ -8,8 +8,8 @@ use crate::dual_operation::first_has_bypass;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{PipeStage, State};
 
-/// Source operands of a floating-point instruction. Both operands are read before either half of a pair writes a
-/// result. A result that leaves a pipe in this clock can already be read.
+/// Source operands of a floating-point instruction. The operands are read before an instruction of the pair writes a
+/// result. However, an operand can be a result that leaves a pipe in the same clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Operands {
     pub(crate) a: u64,
@@ -60,8 +60,8 @@ pub(crate) fn last_product(state: &State, source_double: bool) -> PipeStage {
     state.multiplier[if source_double { 1 } else { 2 }]
 }
 
-/// Returns the result that leaves the pipe for the destination of a pipelined instruction. Returns `None` for a scalar
-/// instruction.
+/// For a pipelined instruction, returns the result that leaves the pipe and goes to the destination register. Returns
+/// `None` for a scalar instruction.
 fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     if i.op == Op::DualOp {
         let product = last_product(state, i.has(Flags::SOURCE_DOUBLE));
@@ -78,7 +78,8 @@ fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     })
 }
 
-/// Reads register `n`. The result that leaves the pipe counts as already written to register `dest`.
+/// Reads register `n`. If `n` belongs to the destination `dest`, the function returns the result that leaves the pipe,
+/// as if the register were already written.
 fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: PipeStage) -> u64 {
     if dest & 30 != n & 30 || dest < 2 {
         return state.f_bits(n, double);

@@ -1,9 +1,10 @@
-//! Profiles: the clocks of a run, by cause and by code address.
+//! Profiles: the clocks that programs have taken, by cause and by code address.
 
 use crate::timing::{FREEZES, Freeze, N_FREEZES};
 use std::fmt;
 
-/// Clocks since reset or the last [`Cpu::clear_profile`](crate::Cpu::clear_profile), by cause.
+/// Clocks by cause, and counts of instructions and misses, since reset or the last
+/// [`Cpu::clear_profile`](crate::Cpu::clear_profile).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Profile {
     /// Number of executed instructions. A pair counts as two. `fnop` and `nop` also count.
@@ -12,7 +13,7 @@ pub struct Profile {
     pub issue: u64,
     /// Number of clocks lost to each row of the freeze table, in the order of [`FREEZES`].
     pub frozen: [u64; N_FREEZES],
-    /// Number of requests on the bus.
+    /// Number of requests that the processor has made on the bus.
     pub bus_requests: u64,
     /// Number of bus requests that had to open a DRAM row.
     pub page_misses: u64,
@@ -61,7 +62,7 @@ impl fmt::Display for Profile {
     }
 }
 
-/// Clocks and executions of each instruction word in a range of addresses.
+/// Number of clocks and number of executions of each instruction word in a range of addresses.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AddressProfile {
     base: u32,
@@ -83,8 +84,8 @@ impl AddressProfile {
         }
     }
 
-    /// Returns the clocks and the number of executions of the instruction or pair at an address. Both numbers are zero
-    /// outside the range.
+    /// Returns the clocks and the number of executions of the instruction or pair at an address. Outside the profile's
+    /// range of addresses, the two numbers are zero.
     #[must_use]
     pub fn at(&self, pc: u32) -> (u64, u64) {
         let at = (pc.wrapping_sub(self.base) / 4) as usize;

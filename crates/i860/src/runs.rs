@@ -1,4 +1,4 @@
-//! The clocks of a basic block, counted run by run. A *run* is a part of a block whose instructions and data are all in
+//! The clocks of a basic block, counted in parts. A *run* is a part of a block whose instructions and data are all in
 //! the caches. The memoized clocks of a run are reused. Between runs, accesses that need the bus are counted.
 //!
 //! A *place* is a position in a block. The place is three times the index of an instruction or pair, plus 1 after its
@@ -34,9 +34,9 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Returns the flags in the key of a run (a part of a block) that ends at position `to`. The flags are true if the
-    /// branch was taken, if the last instruction trapped, and if the first fetch is from a cache line that is still
-    /// arriving.
+    /// Returns three flags for the key of a run (a part of a block) that ends at position `to`. The first flag is true
+    /// if the branch at the end was taken, the second if the last instruction trapped. The third flag (`continues`) is
+    /// true if the first fetch is from a cache line that is still arriving.
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;
@@ -62,7 +62,7 @@ impl Clock {
         true
     }
 
-    /// Returns true if no fetch from the block adds clocks. In this case, the instruction cache holds the block, or
+    /// Returns true if no fetch from the block adds clocks, because the instruction cache holds the block or because
     /// fetches take no time.
     #[inline]
     fn holds(&self, block: &mut Block) -> bool {
@@ -97,8 +97,8 @@ impl Clock {
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Writes the state after the last memoized part of a block into the scoreboard. The reuse of memoized clocks
-    /// changes only the number of this state.
+    /// Writes the state with the current number into the scoreboard. This is necessary because the reuse of memoized
+    /// clocks changes only the number of the state.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
@@ -106,8 +106,8 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks to the end of the current run (a part of the block), and the clocks of the access or cache
-    /// miss that ends the run.
+    /// Counts the clocks to the end of the current run (a part of the block). Also counts the clocks of the access or
+    /// cache miss that ends the run.
     #[inline]
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;
@@ -161,7 +161,7 @@ impl Clock {
         }
     }
 
-    /// Counts the fetch of a cache line that the instruction cache does not hold.
+    /// Counts the clocks of the fetch of a cache line that the instruction cache does not hold.
     fn miss<B: Bus>(&mut self, block: &Block, course: &mut Course<'_>, bus: &B) {
         self.write_board();
         let unit = block.unit(course.at / PLACES);

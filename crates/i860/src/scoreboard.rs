@@ -6,8 +6,7 @@ use crate::freeze::Costs;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::timing::{Config, FREEZES, Freeze};
 
-/// Register number that matches no source register. The number also differs from `NONE`, the number of an absent
-/// operand.
+/// Register number that differs from all source registers and from `NONE`, the number of an absent operand.
 const NO_RESULT: u8 = 0xFE;
 
 /// A delay that a hazard causes: the clock at which the delay ends, and the row of the freeze table that causes it.
@@ -24,8 +23,8 @@ pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
-/// A remaining wait, packed into 16 bits. The upper seven bits are the place: the register or hazard that is not ready.
-/// The next four bits hold the remaining clocks, and the lower five bits the row of the freeze table.
+/// A remaining wait, packed into 16 bits. The upper seven bits hold the number of the register or hazard that is not
+/// ready. The next four bits hold the remaining clocks. The lower five bits hold the row of the freeze table.
 struct Left {
     place: u8,
     clocks: u8,
@@ -55,7 +54,7 @@ impl Left {
 /// Greatest number of waits that a [`PendingWaits`] can hold.
 const MOST_WAITS: u32 = u128::BITS / Left::BITS;
 
-/// The waits that remain at a certain clock: a compact copy of the scoreboard's state.
+/// A compact copy of the scoreboard's state at one clock: all waits that have not ended.
 ///
 /// Two scoreboards with equal pending waits delay all later instructions equally.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -67,15 +66,15 @@ pub(crate) struct PendingWaits {
     stored: u64,
     last_result: u8,
     scalar_double: bool,
-    /// Two numbers of the instruction-cache line that is still arriving: the remaining clocks, and the transfer that
-    /// arrives first.
+    /// State of the instruction-cache line that is still arriving: the number of remaining clocks, and the position of
+    /// the 8-byte transfer that arrived first.
     beside: [u8; 2],
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Scoreboard {
     costs: Costs,
-    /// Hazard classes that at least one enabled row of the freeze table uses, as a bit mask.
+    /// Bit mask of the hazard classes for which at least one row of the freeze table is enabled.
     arms_seen: u16,
     /// Mask of the registers whose value may be unavailable: integer registers in the low word, floating-point
     /// registers in the high word.
@@ -90,7 +89,7 @@ pub(crate) struct Scoreboard {
     scalar_double: bool,
     graphics_result: u64,
     stored: u64,
-    /// A clock at which all recorded waits have ended.
+    /// A clock at which all waits in the scoreboard have ended.
     latest: u64,
 }
 
@@ -121,8 +120,8 @@ impl Scoreboard {
         }
     }
 
-    /// Returns the waits that remain at clock `now`, together with the two numbers `beside` of an arriving cache line.
-    /// Returns `None` if there are too many waits, or if a wait lasts longer than `most` clocks.
+    /// Returns the waits that remain at clock `now`, together with `beside`, the state of an arriving instruction-cache
+    /// line. Returns `None` if there are too many waits, or if a wait lasts longer than `most` clocks.
     pub(crate) fn leftover(&self, now: u64, most: u8, beside: [u8; 2]) -> Option<PendingWaits> {
         if self.latest > now + u64::from(most) {
             return None;
@@ -202,13 +201,14 @@ impl Scoreboard {
         self.pending &= !(1 << dest);
     }
 
-    /// Returns true if an instruction can be delayed. In this case, the caller must call [`Scoreboard::wait`].
+    /// Returns true if a wait in the scoreboard can delay the instruction `d`. The caller must then call
+    /// [`Scoreboard::wait`] to find the length of the wait.
     #[inline]
     pub(crate) fn may_wait(&self, d: &Decoded) -> bool {
         d.reads & self.pending != 0 || d.sensitive & self.armed != 0 || d.multiplier_source == self.last_result
     }
 
-    /// Returns the longest wait of an instruction, and removes the hazards that have ended.
+    /// Returns the longest of all waits that delay the instruction `d`. Also removes hazards that have ended.
     pub(crate) fn wait(&mut self, d: &Decoded, now: u64) -> Wait {
         let mut longest = self.wait_for_registers(d.reads, now);
         let mut bits = d.sensitive & self.armed;
@@ -283,8 +283,7 @@ impl Scoreboard {
 
     // ---- hazards that an instruction leaves
 
-    /// Records the hazards that an instruction causes for later instructions. The caller has already executed the
-    /// instruction.
+    /// Records the hazards that the executed instruction `d` causes for later instructions.
     #[inline]
     pub(crate) fn retire(&mut self, d: &Decoded, now: u64) {
         match d.arms & self.arms_seen {

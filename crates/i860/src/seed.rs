@@ -2,8 +2,8 @@
 //! *seeds* of Newton steps.
 //!
 //! The chip's table is not public. Only a limit of the error is known: the error of the fraction is below 2^-7. The
-//! user therefore chooses a table. With another table, the results of programs that refine the seeds by Newton steps
-//! differ in the last bit or two. The number of clocks stays the same.
+//! user therefore chooses one of three tables. Programs refine the seeds by Newton steps, so the choice affects the
+//! last one or two bits of their results. The number of clocks stays the same.
 
 use crate::arithmetic::{narrow, widen};
 
@@ -12,8 +12,8 @@ use crate::arithmetic::{narrow, widen};
 #[non_exhaustive]
 pub enum SeedTable {
     /// The correctly rounded result in double precision, with its fraction cut to 8 bits. The relative error is below
-    /// 2^-8, and the magnitude is never too great. This choice is assumed. Functional emulators usually have this
-    /// table.
+    /// 2^-8, and the magnitude is never too great. Assumed, because emulators without timing usually compute this
+    /// result.
     Truncated8,
     /// The result for the middle of the interval that contains the operand, rounded to 8 fraction bits. The first 8
     /// fraction bits of the operand determine the interval. A ROM of 256 entries can hold these values (512 entries for
@@ -24,7 +24,7 @@ pub enum SeedTable {
 }
 
 impl SeedTable {
-    /// Returns the name of the choice in lists of settings.
+    /// Returns the name of this table in lists of settings.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -55,7 +55,7 @@ fn midpoint(x: f64) -> f64 {
 }
 
 impl SeedTable {
-    /// Returns an upper bound of the results' relative error.
+    /// Returns an upper bound of the relative error of the results that this table gives.
     #[must_use]
     pub fn relative_error_bound(self) -> f64 {
         match self {
@@ -102,7 +102,7 @@ impl SeedTable {
     }
 }
 
-/// Replaces a NaN result by a quiet NaN, as the other floating-point operations do.
+/// Returns `result`, or a quiet NaN if `result` is NaN, as for all floating-point operations of the model.
 fn quiet(operand: u64, result: u64) -> u64 {
     match (f64::from_bits(result).is_nan(), f64::from_bits(operand).is_nan()) {
         (true, true) => operand | 0x0008_0000_0000_0000,

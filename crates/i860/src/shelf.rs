@@ -9,14 +9,14 @@ use std::sync::Arc;
 /// A shared store of decoded programs with their memoized clocks, for processors with the same freeze rules.
 ///
 /// Several processors can use one store in turn, because decoded code and clocks do not depend on the processor. If one
-/// processor has decoded a program and counted its clocks, the others reuse both ([`Cpu::open`](crate::Cpu::open),
-/// [`Cpu::close`](crate::Cpu::close)).
+/// processor has decoded a program and counted its clocks, other processors reuse the decoded code and the clocks
+/// ([`Cpu::open`](crate::Cpu::open), [`Cpu::close`](crate::Cpu::close)).
 #[derive(Default)]
 pub struct DecodedPrograms {
     pub(crate) numbers: Box<Numbers>,
     /// Programs with their decoded code. The code is `None` while a processor uses it.
     codes: Vec<(Arc<Program>, Option<Code>)>,
-    /// Highest number that any state of an instruction cache has had so far.
+    /// Highest number of a state of an instruction cache, among all processors that have used the store.
     pub(crate) cache_states: u64,
 }
 
@@ -43,8 +43,8 @@ impl DecodedPrograms {
         &mut self.codes[at].1
     }
 
-    /// Takes the decoded code of a program out of the store. If the store has no code of this program, the function
-    /// makes a [`Code`] without blocks.
+    /// Takes the decoded code of a program out of the store. If the store has no code of this program, returns a
+    /// [`Code`] without decoded blocks.
     pub(crate) fn take(&mut self, program: &Arc<Program>) -> Code {
         self.place(program).take().unwrap_or_else(|| Code::of(program))
     }

@@ -32,17 +32,17 @@ pub mod psr {
     pub const DS: u32 = 1 << 13;
     /// DIM: the trap occurred in dual-instruction mode.
     pub const DIM: u32 = 1 << 14;
-    /// KNF: request to skip (kill) the next floating-point instruction.
+    /// KNF: a request to skip (kill) the next floating-point instruction. The model ignores this bit.
     pub const KNF: u32 = 1 << 15;
-    /// Position of the lowest bit of SC, the shift count.
+    /// Position, in psr, of the lowest bit of SC, the shift count.
     pub const SC_SHIFT: u32 = 17;
     /// SC: shift count of `shrd`, five bits.
     pub const SC: u32 = 31 << SC_SHIFT;
-    /// Position of the lowest bit of PS, the pixel size.
+    /// Position, in psr, of the lowest bit of PS, the pixel size.
     pub const PS_SHIFT: u32 = 22;
     /// PS: pixel size. The values 0, 1, 2 stand for 8, 16, 32 bits.
     pub const PS: u32 = 3 << PS_SHIFT;
-    /// Position of the lowest bit of PM, the pixel mask.
+    /// Position, in psr, of the lowest bit of PM, the pixel mask.
     pub const PM_SHIFT: u32 = 24;
     /// PM: pixel mask, eight bits. `pst` stores only pixels whose bits are set.
     pub const PM: u32 = 0xFF << PM_SHIFT;
@@ -68,7 +68,7 @@ pub mod epsr {
 pub mod fsr {
     /// FZ: flush to zero. Results that underflow become zero.
     pub const FZ: u32 = 1;
-    /// Position of the lowest bit of RM, the rounding mode. In this model only `fix` uses RM.
+    /// Position, in fsr, of the lowest bit of RM, the rounding mode. In this model only `fix` uses RM.
     pub const RM_SHIFT: u32 = 2;
 }
 
@@ -99,8 +99,8 @@ pub enum Mode {
     /// Instructions execute one at a time.
     #[default]
     Single,
-    /// One more instruction executes alone, and pairs begin after this instruction. The instruction is the upper half
-    /// of 8 aligned bytes. The D bit of the lower half was set.
+    /// The next instruction executes alone, and pairs begin after it. This mode follows an instruction whose D bit is
+    /// set. The next instruction lies in the upper half of 8 aligned bytes.
     Entering,
     /// The next two instructions form a pair. This pair is the first or the last of dual-instruction mode. Another pair
     /// follows only if this pair has its D bit set.
@@ -155,9 +155,9 @@ pub struct State {
     pub t: u64,
     /// MERGE, the register in which the graphics unit collects pixels or depths.
     pub merge: u64,
-    /// Pipe of the adder. The last element leaves the pipe next.
+    /// Pipe of the adder. The value in the last element leaves the pipe at the next push.
     pub adder: [PipeStage; 3],
-    /// Multiplier pipe. Double-precision operations use only the first two stages.
+    /// Pipe of the multiplier. Double-precision operations use only the first two stages.
     pub multiplier: [PipeStage; 3],
     /// Pipe of the pipelined loads (`pfld`).
     pub load: [PipeStage; 3],

@@ -5,7 +5,7 @@ use crate::timing::{ChipSizes, Freeze};
 
 const DEPTH: usize = ChipSizes::PAPERS.store_depth as usize;
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
-/// Number of bus transfers for one cache line.
+/// Number of bus transfers (of 8 bytes each) for one cache line.
 const LINE_BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug, Default)]
@@ -16,7 +16,7 @@ pub(crate) struct StorePipe {
 }
 
 impl StorePipe {
-    /// Sends a store to the bus after the oldest store and any write-back have left the pipe.
+    /// Sends a store to the bus. If the pipe is full or a write-back is pending, the processor first waits.
     pub(crate) fn store(&mut self, address: u32, size: u32, common: &mut Common) {
         if common.costs.applies(Freeze::StorePipeFull) {
             self.wait_for_room(common);

@@ -2,7 +2,7 @@
 
 use crate::instruction::{Instruction, Op};
 
-/// Operands of an instruction in assembler text, in order. Each variant is one form.
+/// The form of an instruction's operands in assembler text, in the order in which the operands are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Syntax {
     /// No operands: the instruction is only a mnemonic.
@@ -17,9 +17,9 @@ pub(crate) enum Syntax {
     FloatingLoad,
     /// Operands `fdest, address`: a store from floating-point registers. The address can have auto-increment, `++`.
     FloatingStore,
-    /// `control, dest`: reads a control register.
+    /// Operands `control, dest` of an instruction that reads a control register.
     LoadControl,
-    /// `src1, control`: writes a control register.
+    /// Operands `src1, control` of an instruction that writes a control register.
     StoreControl,
     /// `src1, fdest`: copies an integer register to a floating-point register.
     ToFloating,
@@ -27,7 +27,7 @@ pub(crate) enum Syntax {
     ToInteger,
     /// `address`: the only operand of `flush`. The address can have auto-increment, `++`.
     Flush,
-    /// `src1, src2, dest`, or no operands.
+    /// Operands `src1, src2, dest` of `trap`, which can be left out.
     Trap,
     /// `src1`: one integer register, such as the target address of `bri`.
     Register,
@@ -75,7 +75,7 @@ impl Syntax {
 /// Names of the control registers, by register number.
 pub(crate) const CONTROL_REGISTERS: [&str; 6] = ["fir", "psr", "dirbase", "db", "fsr", "epsr"];
 
-/// Returns the mask of the register fields that this instruction uses in its word.
+/// Returns the mask of those register fields of an instruction word that the instruction `i` uses.
 pub(crate) fn register_mask(i: &Instruction, immediate: bool) -> u32 {
     const SRC2: u32 = 31 << 21;
     const DEST: u32 = 31 << 16;

@@ -89,8 +89,8 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 pxpl5_sim::parameters::parameter_table! {
-    /// Timing of the memory on the bus: one bank of page-mode DRAM with a data path of 64 bits. The defaults lie in
-    /// the middle of the known values of boards of the period.
+    /// Timing of the memory on the bus: one bank of page-mode DRAM with a data path of 64 bits. The defaults lie in the
+    /// middle of the known values of i860 boards of about 1990.
     pub struct DramTiming {
         /// Time from a request to the arrival of the first 8 bytes if the DRAM row is already open.
         first_hit: 8, "clocks", Assumed, 5..=10 in 0..=1_000_000, "line fill of about 14 clocks on boards of the period";
@@ -149,7 +149,8 @@ pxpl5_sim::parameters::parameter_table! {
 const FREEZES_PATH: &str = "i860.freezes";
 const DRAM_PATH: &str = "i860.dram";
 
-/// Prefix of the names of on-chip sizes. Lists of parameters show these sizes, but users cannot set them.
+/// Prefix of the parameter names of on-chip sizes. Lists of parameters show these sizes, but users cannot set the
+/// sizes.
 pub const CHIP_PATH: &str = "i860.chip";
 
 /// Configuration of a processor: timing rules, memory timing, and results of the reciprocal approximations.
@@ -161,18 +162,20 @@ pub struct Config {
     pub freezes: FreezeRules,
     /// Timing of the memory on the bus.
     pub dram: DramTiming,
-    /// Results of the reciprocal approximations `frcp` and `frsqr`, as a table.
+    /// Table from which `frcp` and `frsqr` take their results, the first approximations of reciprocals and reciprocal
+    /// roots.
     pub seeds: crate::SeedTable,
     /// Seed of the pseudo-random sequence that chooses the cache line to replace.
     pub replacement_seed: u16,
-    /// True if the clocks of repeated code are reused instead of counted again. The reuse requires that the code and
-    /// its data hit the caches. The method comes from FastSim (Schnarr and Larus, 1998). This optimization changes only
-    /// the host's time, and is on by default.
+    /// True if the clocks of repeated code are reused instead of counted again. Clocks are reused only for code that is
+    /// in the instruction cache and whose data are in the data cache. The method comes from FastSim (Schnarr and Larus,
+    /// 1998). This optimization changes only the computing time of the simulation, and is on by default.
     pub memoise: bool,
 }
 
 impl Config {
-    /// Returns the configuration that counts every clock, with all freeze rules and the default memory.
+    /// Returns the configuration with all rows of the freeze table and the default memory timing. A processor with this
+    /// configuration counts its clocks.
     #[must_use]
     pub fn cycle() -> Config {
         Config {
@@ -191,14 +194,14 @@ impl Config {
         [(FREEZES_PATH, &self.freezes.clocks), (DRAM_PATH, &self.dram), (CHIP_PATH, &ChipSizes::PAPERS)]
     }
 
-    /// Returns the tables that can be set: all tables except the on-chip sizes.
+    /// Returns the tables of timing parameters whose values can be changed: all tables except the on-chip sizes.
     pub fn tables_mut(&mut self) -> [(&'static str, &mut dyn ParameterTable); 2] {
         [(FREEZES_PATH, &mut self.freezes.clocks), (DRAM_PATH, &mut self.dram)]
     }
 
-    /// Returns the settings that differ from [`Config::cycle`], as keys and values. The list has settings that change
-    /// results and are not in the parameter tables. Names of experiments include these settings. Memoization changes no
-    /// result and is left out.
+    /// Returns the settings that differ from [`Config::cycle`], as keys and values. The list has only settings that
+    /// change results and are not in the parameter tables. Names of experiments include these settings. Memoization
+    /// changes no result, so the list does not contain memoization.
     #[must_use]
     pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
         // The pattern lists every field, so that the compiler reports a new field that is not handled here.

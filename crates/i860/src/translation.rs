@@ -11,7 +11,7 @@ const SETS: usize = ChipSizes::PAPERS.tlb_entries as usize / WAYS;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Translation {
-    /// Address of the page directory while translation is on.
+    /// Address of the page directory, or `None` while address translation is off.
     directory: Option<u32>,
     tlb: Tags<SETS, WAYS, PAGE_BYTES>,
 }
@@ -26,7 +26,7 @@ impl Translation {
         self.directory.is_some()
     }
 
-    /// Turns address translation on, with the page directory at the given address. With `None`, turns address
+    /// Turns address translation on, with the page directory at address `directory`. With `None`, turns address
     /// translation off.
     pub(crate) fn set_directory(&mut self, directory: Option<u32>) {
         self.directory = directory;

@@ -10,7 +10,8 @@ pub enum TrapCause {
         /// The instruction word that was fetched.
         word: u32,
     },
-    /// A pair that is not a floating-point instruction followed by a core instruction.
+    /// A pair whose first instruction is not a floating-point instruction, or whose second instruction is not a core
+    /// instruction.
     #[error("a pair must be one floating-point and one core instruction")]
     IllegalPair,
     /// A branch in a delay slot (undefined on the real chip).
@@ -22,7 +23,7 @@ pub enum TrapCause {
     /// The instruction `trap` was executed.
     #[error("trap instruction")]
     Instruction,
-    /// `intovr` was executed while OF was set.
+    /// The instruction `intovr` was executed while the overflow flag epsr.OF was set.
     #[error("intovr with OF set")]
     Overflow,
     /// A fetch from an address at which no memory answers.

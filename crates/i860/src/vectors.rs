@@ -17,12 +17,12 @@ use std::fmt;
 /// fewer than 1,000 instructions.
 pub const BUDGET: u64 = 10_000;
 
-/// One conformance vector: a program, the state before its run and the state expected after its run.
+/// One conformance vector: a program, the memory before the program runs, and the state expected afterwards.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct TestVector {
     /// Identifier, unique in its file.
     pub id: String,
-    /// Name of the group to which the vector belongs in the collection.
+    /// Name of the group of vectors, within the file, to which this vector belongs.
     #[serde(default)]
     pub group: String,
     /// Description of the tested behaviour.
@@ -37,13 +37,13 @@ pub struct TestVector {
     pub entry: u32,
     /// Address at which the run must end.
     pub stop: u32,
-    /// Addresses and words that are written to memory before the run.
+    /// Words that are written to memory before the program runs, each with its address.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
     pub expect: Expectation,
 }
 
-/// The state that is expected after the run of a vector.
+/// The registers and memory words that are expected after the program of a vector has run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Expectation {
     /// Expected values of the integer registers, as bit patterns.
@@ -52,7 +52,7 @@ pub struct Expectation {
     /// Expected values of the floating-point registers, as bit patterns.
     #[serde(deserialize_with = "registers")]
     pub f: [u32; 32],
-    /// Addresses and expected words of memory after the run.
+    /// Words that memory must contain after the program has run, each with its address.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
 }
@@ -78,7 +78,7 @@ fn registers<'de, D: Deserializer<'de>>(from: D) -> Result<[u32; 32], D::Error> 
     list.try_into().map_err(|_| serde::de::Error::custom(format_args!("expected 32 registers, found {found}")))
 }
 
-/// Memory that exists at every address. Words without a write are zero.
+/// Memory that exists at every address. Words that were never written are zero.
 #[derive(Clone, Debug, Default)]
 struct Sparse(BTreeMap<u32, u32>);
 
@@ -119,14 +119,14 @@ impl Bus for Sparse {
     }
 }
 
-/// One difference between the expected state and the state after a run.
+/// One register or memory word that differs from its expected value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// Name of the register (such as `r5` or `f12`), or address of the memory word.
     pub place: String,
     /// Bit pattern that the vector expects.
     pub expected: u32,
-    /// Bit pattern that the run has produced in this model.
+    /// Bit pattern that the model has produced.
     pub found: u32,
 }
 
@@ -243,7 +243,7 @@ impl TestVector {
     }
 }
 
-/// Results of the conformance tests with a set of vectors.
+/// Results of a conformance test with a list of vectors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct VectorSummary {
     /// Number of vectors that passed.

@@ -15,7 +15,7 @@ pub struct BoardBench {
 }
 
 impl BoardBench {
-    /// Makes a bench for a board and schedules the first poll of the board's programs at time zero.
+    /// Makes a test bench for a board. The board's programs start to run at time zero.
     #[must_use]
     pub fn new(board: GpBoard) -> Self {
         let mut bench = TestBench::new();
@@ -23,13 +23,14 @@ impl BoardBench {
         Self { board, bench, accepted: 0 }
     }
 
-    /// Schedules an event for the board at time `at`, in phase `Arrive` of the event queue.
+    /// Schedules an event for the board at time `at`. At this time, the board handles the event before its programs
+    /// work.
     pub fn feed(&mut self, at: Time, event: GpEvent) {
         self.bench.feed(at, Phase::Arrive, event);
     }
 
-    /// Schedules, at time `at`, the acceptance of all messages that the board has sent and the receivers have not yet
-    /// accepted.
+    /// Schedules, at time `at`, the acceptance of all messages that the board has sent and that were not accepted
+    /// before.
     pub fn accept_all(&mut self, at: Time) {
         while let Some((_, GpOutput::Send { ticket, .. })) = self.bench.outputs.get(self.accepted) {
             let accepted = GpEvent::Accepted(*ticket);
@@ -43,8 +44,8 @@ impl BoardBench {
         self.bench.run_until(until, |event, context| self.board.handle(event, context));
     }
 
-    /// Iterates over the sent messages in order. Each item is the time at which a message left the board, and the
-    /// message.
+    /// Iterates over the messages that the board has sent, in the order of sending. Each item is the time at which a
+    /// message left the board, and the message.
     pub fn sent(&self) -> impl Iterator<Item = (Time, &Message)> {
         self.bench.outputs.iter().map(|(time, GpOutput::Send { message, .. })| (*time, message))
     }

@@ -1,5 +1,5 @@
-//! The graphics processor board. After each event that can end the wait of a program, the board polls its programs:
-//! each program continues until it must wait again.
+//! The graphics processor board. After each event that can end the wait of a program, the board polls its programs. A
+//! polled program continues until it must wait again.
 
 use crate::cpu::{Cpu, Priority};
 use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Shared, Wait};
@@ -21,13 +21,13 @@ use std::task::{Context as TaskContext, Poll, Waker};
 pub enum GpEvent {
     /// The last word of a message has arrived. The event belongs to phase `Arrive` of the event queue.
     Delivered(Message),
-    /// A receiver has accepted a message of a batch (messages that were sent together). The number is the `ticket` of
-    /// the message in [`GpOutput::Send`]. The event belongs to phase `Arrive` of the event queue.
+    /// A receiver has accepted a message of a batch, a group of messages that a program sent together. The number is
+    /// the `ticket` of the message in [`GpOutput::Send`]. The event belongs to phase `Arrive` of the event queue.
     Accepted(u64),
     /// A retrace begins a field. The event belongs to phase `Arrive` of the event queue.
     Retrace(PeriodNumber),
-    /// The status signal of another board has changed. This signal carries one number. The event belongs to phase
-    /// `Arrive` of the event queue.
+    /// The status signal of another board has changed. A status signal carries one number, for example the count of a
+    /// frame buffer's swaps. The event belongs to phase `Arrive` of the event queue.
     Status {
         /// Port of the board whose status signal has changed.
         from: NodeId,
@@ -36,8 +36,8 @@ pub enum GpEvent {
     },
     /// The board runs its programs, which read the inputs that have arrived at this instant.
     Poll,
-    /// The running work of the CPU can end at this instant. If an interrupt has delayed the end of the work, the event
-    /// has no effect.
+    /// The running work of the CPU ends at this instant, unless an interrupt has delayed the end. In the latter case,
+    /// the event has no effect.
     WorkEnds,
 }
 
@@ -49,8 +49,8 @@ pub enum GpOutput {
     Send {
         /// Message with its destination.
         message: Message,
-        /// Number of the batch (messages that are sent together), followed by the index of the message in the batch.
-        /// The index occupies the lower [`PLACE_BITS`] bits.
+        /// Two numbers in one word. The lower [`PLACE_BITS`] bits have the index of the message in its batch, a group
+        /// of messages that are sent together. The upper bits have the number of the batch.
         ticket: u64,
         /// True if the receiver's port stays reserved for the next message of this board.
         hold: bool,
@@ -68,8 +68,8 @@ pub struct GpUse {
     pub busy: Span,
     /// CPU time of the software that receives and sends messages.
     pub messages: Span,
-    /// CPU time of work that [answers](crate::Gp::answer) messages. This work sends a bin to a renderer when the token
-    /// of the region arrives.
+    /// CPU time of work that [answers](crate::Gp::answer) messages. For example, a slave answers the token of a region
+    /// with the transfer of its bin to the renderer.
     pub tokens: Span,
 }
 
@@ -92,8 +92,8 @@ struct Task {
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
-    /// Times at which a [`GpEvent::WorkEnds`] is scheduled. The list has the next end of work. The list can also have
-    /// earlier times, at which work would have ended without an interrupt.
+    /// Times at which a [`GpEvent::WorkEnds`] is scheduled. The list has the next end of CPU work. It can also have
+    /// earlier times, at which the work would have ended without an interrupt.
     announced: Vec<Time>,
     poll_pending: bool,
     cycle: Span,
@@ -107,8 +107,8 @@ impl fmt::Debug for GpBoard {
 }
 
 impl GpBoard {
-    /// Makes a board without programs at a ring port. Each output leaves the board one `cycle` after the event that
-    /// causes the output.
+    /// Makes a board without programs at the ring port `node`. Each output leaves the board one `cycle` after the event
+    /// that causes the output.
     #[must_use]
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
@@ -159,7 +159,7 @@ impl GpBoard {
         }
     }
 
-    /// Returns a handle to the board for the program of this priority.
+    /// Returns the handle through which the program of priority `priority` uses the board.
     #[must_use]
     pub fn handle_for(&self, priority: Priority) -> Gp {
         Gp { shared: Rc::clone(&self.shared), priority }
@@ -172,7 +172,7 @@ impl GpBoard {
         self.tasks.sort_by_key(|task| task.priority);
     }
 
-    /// Handles one event at the time of `context`.
+    /// Handles one event at time `context.now()`.
     pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
         let mut shared = self.shared.borrow_mut();
         shared.now = context.now();
@@ -240,7 +240,8 @@ impl GpBoard {
     }
 
     /// Polls the programs in turn until all programs wait for an event outside the board. A poll lets a program
-    /// continue until it must wait again. A program is polled again only after progress of the board's other program.
+    /// continue until it must wait again. Each program is polled again only if the board's other program has
+    /// progressed.
     fn poll_until_quiet(&mut self) {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         let mut quiet = 0;
@@ -269,7 +270,7 @@ impl GpBoard {
         }
     }
 
-    /// Ends all programs if a fault in the board's own software has stopped the board. Returns true in this case.
+    /// If the message software of the board has had a fault, ends all programs and returns true.
     fn stop(&mut self) -> bool {
         let Some(fault) = self.shared.borrow_mut().software_fault.take() else { return false };
         self.fault.get_or_insert(fault);
@@ -277,13 +278,15 @@ impl GpBoard {
         true
     }
 
-    /// Returns the fault (an input that cannot be processed) that has stopped a program or the board, if any.
+    /// Returns the fault (an input that cannot be processed) that has stopped a program or the board, or `None` without
+    /// a fault.
     #[must_use]
     pub const fn fault(&self) -> Option<&Fault> {
         self.fault.as_ref()
     }
 
-    /// Removes the records of stages that the programs have made, and passes each record to `take` in order.
+    /// Removes the records of stages that the programs have made, and passes the records to `take` in the order of
+    /// their making.
     pub fn drain_marks(&mut self, take: impl FnMut(Mark)) {
         let marks = &mut self.shared.borrow_mut().marks;
         if !marks.is_empty() {
@@ -297,7 +300,7 @@ impl GpBoard {
         self.shared.borrow().cpu.busy()
     }
 
-    /// Returns the CPU time spent up to `now`, by kind of work. `now` must not be earlier than the last event.
+    /// Returns the CPU time spent up to `now`, by kind of work. `now` must not be earlier than the last handled event.
     #[must_use]
     pub fn used(&self, now: Time) -> GpUse {
         let shared = self.shared.borrow();
@@ -311,7 +314,7 @@ impl GpBoard {
         self.shared.borrow().vertex_transforms
     }
 
-    /// Returns true if a program has decided otherwise because the backing store of a renderer was full
+    /// Returns true if a decision of a program has depended on the fact that the backing store of a renderer was full
     /// ([`Gp::note_full_store`]).
     #[must_use]
     pub fn found_store_full(&self) -> bool {
@@ -324,14 +327,15 @@ impl GpBoard {
         self.shared.borrow().memory.peak()
     }
 
-    /// Returns a snapshot of the board at time `now`, which must not be earlier than the last event. The board stays
-    /// unchanged.
+    /// Returns a snapshot of the board at time `now`, which must not be earlier than the last handled event. The board
+    /// stays unchanged.
     #[must_use]
     pub fn look(&self, now: Time) -> GpSnapshot {
         GpSnapshot::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
     }
 
-    /// Calls `look` with the board's i860 and returns the result. Returns `None` if the board does not run i860 code.
+    /// Calls `look` with the board's i860 and returns the result of `look`. Returns `None` if the board does not run
+    /// i860 code.
     pub fn with_processor<T>(&self, look: impl FnOnce(&Processor) -> T) -> Option<T> {
         self.shared.borrow().processor.as_deref().map(look)
     }
@@ -350,14 +354,14 @@ impl GpBoard {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
-    /// Returns the name of the condition that the board waits for, for a deadlock report. If both programs wait, the
-    /// condition of the foreground program is returned.
+    /// Returns the name of the condition for which the board waits. Deadlock reports contain this name. If the two
+    /// programs wait, the function returns the condition of the foreground program.
     #[must_use]
     pub fn blocked(&self) -> Option<&'static str> {
         Some(self.wait()?.what)
     }
 
-    /// Returns true if the board waits for an event other than a retrace. Only another board can cause such an event.
+    /// Returns true if the board waits for an event that only another board can cause. A retrace is not such an event.
     #[must_use]
     pub fn waits_for_a_board(&self) -> bool {
         self.wait().is_some_and(|wait| wait.ended_by != Cause::Retrace)

@@ -24,14 +24,15 @@ pub(crate) struct Cpu {
 }
 
 impl Cpu {
-    /// Starts CPU work of length `span` for the program at this priority.
+    /// Starts CPU work of length `span` for the program of priority `priority`.
     pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
         self.remaining[priority as usize] = Some(span);
         self.dispatch(now);
     }
 
-    /// Charges the CPU time up to `now` to the running program. Work that ends exactly at `now` is finished.
+    /// Subtracts the CPU time up to `now` from the remaining work of the running program. Work that ends exactly at
+    /// `now` counts as finished.
     pub(crate) fn settle(&mut self, now: Time) {
         let Some((priority, since)) = self.running else {
             return;
@@ -61,7 +62,8 @@ impl Cpu {
         Some(since + self.remaining[priority as usize]?)
     }
 
-    /// Returns the remaining CPU time of the unfinished work at this priority. Returns `None` if there is no such work.
+    /// Returns the remaining CPU time of the work of priority `priority` at time `now`, or `None` if all this work is
+    /// finished.
     pub(crate) fn left(&self, priority: Priority, now: Time) -> Option<Span> {
         let left = self.remaining[priority as usize]?;
         match self.running {

@@ -14,8 +14,8 @@ use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board. The program runs forever or ends with a fault. A program must wait for only one future at a
-/// time. If a program polls several futures together, the board records only the last wait.
+/// A program on a board. The program runs forever or ends with a fault. A program must await only one future at a time,
+/// because the board records only one wait for each program.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
@@ -49,7 +49,8 @@ pub struct Received {
     pub body: Body,
 }
 
-/// The number of a batch of messages that a program has passed to the DMA.
+/// The number of a batch of messages that a program has passed to the DMA. The DMA (direct memory access) is the part
+/// of the board that sends messages in the background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(pub(crate) u64);
 
@@ -78,9 +79,9 @@ pub(crate) struct Shared {
     pub(crate) memory: Memory,
     /// The i860 that runs code, or `None` if all times come from the timing table.
     pub(crate) processor: Option<Box<Processor>>,
-    /// Number of vertices that the programs have transformed since the start of the run.
+    /// Number of vertices that the programs have transformed since the start of the simulation.
     pub(crate) vertex_transforms: u64,
-    /// True if a program has decided otherwise because a backing store was full.
+    /// True if a decision of a program has depended on the fact that a backing store was full.
     pub(crate) found_store_full: bool,
     /// CPU time requested so far for the message software.
     pub(crate) message_software: Span,
@@ -88,14 +89,14 @@ pub(crate) struct Shared {
     pub(crate) answer_work: Span,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
-    /// Messages of the current batch (messages that were sent together) that are not accepted yet. Each entry has the
-    /// message's index in the batch and its receiver.
+    /// Messages of the current batch (the messages that were sent together) that the receivers have not accepted yet.
+    /// Each entry has the message's index in the batch and its receiver.
     pub(crate) in_flight: Vec<(u64, NodeId)>,
     /// Receivers that have accepted no message of the current batch so far.
     pub(crate) unaccepting_receivers: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
-    /// Ends of stages that are recorded when a batch of messages is accepted. Each entry has the number of the batch
-    /// and the record. The batches are in order.
+    /// Records of ends of stages that must be made when a batch of messages is accepted. Each entry has the number of
+    /// the batch and the record. The entries are sorted by batch.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
@@ -104,15 +105,15 @@ pub(crate) struct Shared {
     /// Number of the last batch of messages that the receivers have accepted completely.
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
-    /// Number of waits that have ended so far. The board polls its programs until a round of polls leaves this number
-    /// unchanged.
+    /// Number of waits that have ended so far. The board polls all its programs again and again until this number stays
+    /// the same.
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
-    /// Fault in the board's own software. Such a fault stops all programs.
+    /// Fault in the message software of the board. This fault stops all programs.
     pub(crate) software_fault: Option<Fault>,
 }
 
-/// A condition that a program waits for: its name, and the kind of event that can end the wait.
+/// A wait of a program: the name of the condition, and the kind of event that can make the condition true.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wait {
     pub(crate) what: &'static str,
@@ -128,29 +129,30 @@ pub(crate) enum Cause {
     Acceptance,
     /// A message, a retrace or a new value of a status signal has arrived, or the board's other program has progressed.
     Arrival,
-    /// A retrace. A retrace comes in every field, so a wait for a retrace always ends.
+    /// A retrace. Each field begins with a retrace, so a wait for a retrace always ends.
     Retrace,
-    /// No event: the board has no program of this priority.
+    /// No event can end the wait, because the board has no program of this priority.
     Nothing,
 }
 
 impl Cause {
-    /// Returns true if an event of kind `other` can end a wait for this kind of event.
+    /// Returns true if an event of the kind `other` can end a wait whose kind is `self`.
     fn includes(self, other: Self) -> bool {
         self == other || (self == Self::Arrival && other == Self::Retrace)
     }
 }
 
 impl Wait {
-    /// The entry in `Shared::waits` for a priority without a program.
+    /// The wait that is recorded for a priority without a program.
     pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Nothing };
 
-    /// The entry in `Shared::waits` for a program that has not run for the first time yet.
+    /// The wait that is recorded for a program before its first poll.
     pub(crate) const NOT_STARTED: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
 impl Shared {
-    /// Returns true if an event of this kind can end the wait of a program, or can let the DMA send its next chain.
+    /// Returns true if an event of the kind `cause` can end the wait of a program, or can allow the DMA to send another
+    /// chain.
     pub(crate) fn can_end_wait(&self, cause: Cause) -> bool {
         let next_chain = cause == Cause::Acceptance && self.in_flight.is_empty() && !self.batches.is_empty();
         next_chain || self.waits.iter().any(|wait| wait.ended_by.includes(cause))
@@ -195,7 +197,8 @@ impl Shared {
         Cause::Acceptance
     }
 
-    /// Returns the next batch of messages if the DMA is free, and records the receivers of the batch.
+    /// If the DMA is free, removes and returns the batch of messages that waits longest, and records the receivers of
+    /// the batch.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
         // All messages of the batch now wait for their acceptance.
@@ -222,7 +225,7 @@ pub struct Gp {
 }
 
 impl Gp {
-    /// Returns a handle to the same board for a program of another CPU priority.
+    /// Returns a handle to the same board for the program of the CPU priority `priority`.
     #[must_use]
     pub fn at_priority(&self, priority: Priority) -> Self {
         Self { shared: Rc::clone(&self.shared), priority }
@@ -246,7 +249,7 @@ impl Gp {
         self.shared.borrow().timing
     }
 
-    /// Returns the current field of the first display. The field began with the last retrace.
+    /// Returns the number of the current field of the first display. This field began at the last retrace.
     #[must_use]
     pub fn field(&self) -> PeriodNumber {
         self.shared.borrow().field
@@ -295,7 +298,7 @@ impl Gp {
         self.wait(wait, || self.shared.borrow().cpu.is_done(self.priority).then_some(())).await;
     }
 
-    /// Waits for the next retrace and returns the number of the field that begins with it.
+    /// Waits for the next retrace and returns the number of the field that begins at this retrace.
     pub async fn retrace(&self) -> PeriodNumber {
         self.field_from(self.field().next()).await
     }
@@ -326,7 +329,7 @@ impl Gp {
         self.wait(wait, || (self.shared.borrow().accepted >= ticket.0).then_some(())).await;
     }
 
-    /// Sets the number of memory bytes in use for the purpose `account`.
+    /// Sets the number of memory bytes that the purpose `account` uses.
     ///
     /// # Errors
     ///
@@ -335,15 +338,15 @@ impl Gp {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
-    /// Returns true if the bins of a context (one of two sets of bins) can occupy `bytes` bytes of memory. The bins of
-    /// the other context reduce the available memory.
+    /// Returns true if the bins of `context` (one of two sets of bins) can occupy `bytes` bytes of memory beside the
+    /// bins of the other set.
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)
     }
 
-    /// Records that the program has decided otherwise because the backing store of a renderer was full. The record takes
-    /// no time.
+    /// Records that a decision of the program depended on the fact that the backing store of a renderer was full. The
+    /// record takes no time.
     pub fn note_full_store(&self) {
         self.shared.borrow_mut().found_store_full = true;
     }
@@ -359,8 +362,8 @@ impl Gp {
         self.mark(stage, picture, surface, StageEdge::End, self.now());
     }
 
-    /// Records the end of a stage at the later time at which the batch `ticket` is accepted. The program continues
-    /// without waiting for this time.
+    /// Records the end of a stage at the time at which the receivers have accepted the batch `ticket`. The program
+    /// continues immediately.
     pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: PictureNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
@@ -370,7 +373,7 @@ impl Gp {
             .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: StageEdge::End, view: None }));
     }
 
-    /// Records that a stage begins or ends at `time`, a time that the program has read from a message.
+    /// Records that a stage began or ended at `time`, which the program has read from a message.
     pub fn mark(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>, edge: StageEdge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;

@@ -9,11 +9,11 @@
 //!                 +-----------------------------------------------+
 //! ```
 //!
-//! A message passes these parts in order:
+//! A message passes the parts of the board in this order:
 //!
 //! - A message that has arrived waits in the inbox, in order of arrival.
-//! - *Firmware* is straight-line `async fn` code that holds a [`Gp`]. Every `.await` is a visible cost ([`Gp::spend`])
-//!   or a visible wait ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
+//! - *Firmware* is straight-line `async fn` code that holds a [`Gp`]. Every `.await` in the code either spends CPU time
+//!   ([`Gp::spend`]) or waits for an event ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
 //! - There are two priorities with one program each. While the program of [`Priority::Interrupt`] spends CPU time, the
 //!   program of [`Priority::Foreground`] is suspended.
 //! - [`Gp::send`] costs the CPU a fixed software time. The messages then go to the DMA, which sends them in the
@@ -29,8 +29,8 @@
 //! The host workstation uses the same board model with its own timing table.
 //!
 //! **Not modelled here:** the bus between CPU and DMA, and the instant of an interrupt within a call of i860 code. A
-//! call of i860 code runs as a whole when it begins. The interrupt's code therefore finds the caches in their state
-//! after the call.
+//! call of i860 code runs as a whole when it begins. The code of an interrupt during this call therefore finds the
+//! caches in their state after the call.
 //!
 //! Sources: TR94 (memory, clock, background rendering). The timing table states the source of each parameter.
 

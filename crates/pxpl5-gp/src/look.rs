@@ -11,19 +11,20 @@ use pxpl5_wire::{NodeId, PeriodNumber};
 pub struct GpSnapshot {
     /// Snapshots of the board's programs, the interrupt program first.
     pub programs: Vec<ProgramSnapshot>,
-    /// Messages that have arrived but that no program has taken, in order of arrival.
+    /// Messages that have arrived and that no program has received yet, in order of arrival.
     pub inbox: Vec<WaitingMessageInfo>,
-    /// Receivers that have not accepted their message of the current chain (messages that the DMA sends together), in
-    /// the order of the chain's messages.
+    /// Receivers that have not yet accepted their message of the current chain. A chain is a sequence of messages that
+    /// the DMA sends together. The receivers have the order of the chain's messages.
     pub unaccepted: Vec<NodeId>,
-    /// Number of messages in each chain that waits for the DMA, the next chain first. The DMA sends the messages of a
-    /// chain together.
+    /// Number of messages in each chain that waits for the DMA, in the order of sending. The DMA sends the messages of
+    /// a chain together.
     pub chains: Vec<usize>,
     /// Bytes of memory in use for each purpose.
     pub memory: Vec<(Account, u64)>,
-    /// CPU time that the board has spent up to its last event.
+    /// CPU time that the board has spent from the start of the simulation to its last event.
     pub busy: Span,
-    /// Current period of the first display (a field), which began at its last retrace.
+    /// Number of the current period (a field on an NTSC display) of the first display. The period began at this
+    /// display's last retrace.
     pub period: PeriodNumber,
 }
 

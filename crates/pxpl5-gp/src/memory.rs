@@ -4,7 +4,7 @@ use pxpl5_wire::{NodeId, RegionId};
 use serde::Serialize;
 use std::fmt;
 
-/// A purpose for which a board's memory is used.
+/// A purpose for which a board uses memory, such as bins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum Account {
     /// The program, its stacks and message buffers.
@@ -59,9 +59,9 @@ pub struct OutOfMemory {
     pub account: Account,
     /// Region whose bin did not fit into memory, if the request was for bins.
     pub region: Option<RegionId>,
-    /// Number of bytes that the purpose would have needed.
+    /// Number of bytes that the purpose `account` would have used after the request.
     pub needed_bytes: u64,
-    /// Number of bytes that were available for the purpose.
+    /// Number of bytes that the purpose `account` could use at most.
     pub available_bytes: u64,
 }
 
@@ -108,8 +108,8 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the number of bytes that the bins of a context (one of two sets of bins) can use while the bins of the
-    /// other context keep their size.
+    /// Returns the number of bytes that the bins of `context` (one of two sets of bins) can use while the other set
+    /// keeps its size.
     #[must_use]
     pub const fn room_for_bins(&self, context: u8) -> u64 {
         self.bins.saturating_sub(self.used[Account::Bins(context ^ 1).slot()])

@@ -1,5 +1,5 @@
-//! Messages from the point of view of a program. A program receives messages from the inbox and sends messages in
-//! chains. Each received message and each sent chain costs CPU time of the message software.
+//! Functions with which a program receives and sends messages. A program receives messages from the inbox and sends
+//! messages in chains. Each received message and each sent chain costs CPU time of the message software.
 //!
 //! The cost is `message_ns` of the timing table, or the time of the i860 code that handles the message on the board's
 //! processor ([`Processor::receive_message`], [`Processor::send_chain`]).
@@ -10,7 +10,7 @@ use crate::work::Work;
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, Message, NodeId};
 
-/// A chain of messages that the DMA sends together. [`Gp::prepare`] has already paid the software cost, and
+/// A chain of messages that the DMA sends together. [`Gp::prepare`] makes the chain and spends its CPU time.
 /// [`Gp::start`] sends the chain.
 #[derive(Debug)]
 pub struct Chain(Vec<ChainLink>);
@@ -41,9 +41,9 @@ impl Gp {
         self.software(|processor| processor.receive_message(received.source, &received.body)).await;
     }
 
-    /// Answers a message. The function spends the CPU time of the message's reception and does `work`. The function
-    /// then sends the messages of the list `messages` one by one, and sends the message `last` in the background.
-    /// Before each message of the list, the function waits for a free clump buffer (the memory for outgoing messages).
+    /// Answers a message. The function first spends the CPU time of the message's reception and does `work`. It then
+    /// sends the messages of `messages` one by one, and finally sends `last` in the background. Before each message of
+    /// the list, the function waits for a free clump buffer (the memory for outgoing messages).
     ///
     /// # Errors
     ///
@@ -69,23 +69,23 @@ impl Gp {
         Ok(())
     }
 
-    /// Sends one message in the background. The program spends the software cost, and then the message waits in a queue
-    /// behind earlier messages.
+    /// Sends one message in the background. The program spends the CPU time of the message software. The message then
+    /// waits in a queue behind earlier messages.
     pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
         self.send_batch(vec![(destination, words, body)]).await
     }
 
-    /// Sends several messages as one DMA chain, in the background. The whole chain costs the CPU time of one message.
-    /// Messages to different receivers are sent at the same time. The DMA sends a chain only after the acceptance of
-    /// the previous chain.
+    /// Sends several messages as one DMA chain, in the background. The message software takes the same CPU time for the
+    /// whole chain as for one message. The DMA sends messages to different receivers at the same time. The DMA sends a
+    /// chain only after the acceptance of the previous chain.
     pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let chain = self.prepare(batch).await;
         self.start(chain)
     }
 
     /// Sends groups of messages as one DMA chain, as [`Gp::send_batch`] does. Each group has one receiver. The
-    /// receiver's port stays reserved from the first to the last message of a group, so no message of another board
-    /// comes between them.
+    /// receiver's port stays reserved from the first to the last message of a group. No message of another board can
+    /// therefore arrive between messages of the group.
     pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
         let links = groups.into_iter().flat_map(|(destination, group)| {
             // The last message of a group releases the port of the receiver.
@@ -97,7 +97,8 @@ impl Gp {
         self.start(chain)
     }
 
-    /// Spends the software cost of a chain of messages. [`Gp::start`] sends the chain later.
+    /// Makes a chain of messages and spends the CPU time of the message software. The program sends the chain later
+    /// with [`Gp::start`].
     pub async fn prepare(&self, batch: Vec<(NodeId, u32, Body)>) -> Chain {
         self.pay_for_chain(self.unheld(batch)).await
     }
@@ -120,7 +121,7 @@ impl Gp {
 
     /// Makes a chain of messages, which the DMA sends together. Each item has the receiver, the number of words, the
     /// content of a message and a boolean. The boolean is true if the receiver's port stays reserved for the next
-    /// message.
+    /// message of the chain.
     fn chain(&self, batch: impl Iterator<Item = (NodeId, u32, Body, bool)>) -> Chain {
         let source = self.node();
         let links = batch.map(|(destination, words, body, hold)| ChainLink {
@@ -154,7 +155,8 @@ impl Gp {
         }
     }
 
-    /// Stops the board because of a fault in its own software. The calling program never continues.
+    /// Stops the board because of a fault in its message software. The program that awaits this function never
+    /// continues.
     async fn stop(&self, fault: Fault) {
         self.shared.borrow_mut().software_fault = Some(fault);
         std::future::pending().await

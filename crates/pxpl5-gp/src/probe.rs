@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
-    /// The tracker measured the pose of the head that the picture shows.
+    /// The instant at which the tracker measured the pose of the head for which the picture is drawn.
     Sample,
     /// The host sends edits, attributes and transforms to the graphics processors.
     Send,
@@ -25,7 +25,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// All stages with their names in reports, in the order of the pipelines.
+    /// All stages with their names in reports, in the order in which a picture passes the stages.
     pub const ALL: [(&str, Self); 7] = [
         ("sample", Self::Sample),
         ("send", Self::Send),
@@ -39,18 +39,18 @@ impl Stage {
 
 pxpl5_sim::parameters::named!(Stage, "stage", Stage::ALL);
 
-/// The begin or the end of a stage.
+/// One end of a stage: its begin or its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StageEdge {
     /// The start of the stage.
     Begin,
-    /// The end of the last work, or of the last message, of the stage.
+    /// The end of the stage: the time at which the last work of the stage ends or its last message is accepted.
     End,
 }
 
 impl StageEdge {
-    /// Both edges, begin and end, with their names.
+    /// The two edges of a stage with their names in reports.
     pub const ALL: [(&str, Self); 2] = [("begin", Self::Begin), ("end", Self::End)];
 }
 
@@ -63,10 +63,11 @@ pub struct Mark {
     pub time: Time,
     /// Ring port of the board that made the record.
     pub node: NodeId,
-    /// Number of the picture that the stage makes. For a host that sends views independently of pictures, the number
-    /// counts the host's transmissions.
+    /// Number of the picture that the stage makes. If the host sends views independently of pictures, its records have
+    /// the number of the transmission instead.
     pub picture: PictureNumber,
-    /// Surface for which the stage draws, if the stage draws one eye at a time.
+    /// Surface (such as the picture of an eye) for which the stage draws. `None` if the stage does not draw one surface
+    /// at a time.
     pub surface: Option<SurfaceId>,
     /// Stage that began or ended.
     pub stage: Stage,

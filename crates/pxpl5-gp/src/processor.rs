@@ -1,4 +1,4 @@
-//! The board's i860 with its memory. The i860 runs code and counts its clocks.
+//! The board's i860 with its memory. The i860 runs the code of the programs and counts the clocks of the code.
 
 use crate::window;
 use i860::{Bus, Cpu, DecodedPrograms, Program, Ram, RunEnd, State, Trap, Unmapped};
@@ -19,11 +19,11 @@ pub enum CodeVersion {
     /// Code like the output of a compiler without optimization. The code is nearly twice as large as the instruction
     /// cache.
     Unoptimised,
-    /// Code like the output of a good compiler of about 1990. Slats of 1994 and 1995 used such code. The code was too
-    /// large for the instruction cache (I3D95).
+    /// Code like the output of a good compiler of about 1990. Slats used code of this kind in 1994 and 1995. That code
+    /// was too large for the instruction cache (I3D95).
     Compiled,
     /// Code that was scheduled by hand in dual-instruction mode and fits the instruction cache. Optimized PPHIGS used
-    /// such code (TR94). With such code, Slats would have been about 3 times faster (I3D95).
+    /// code of this kind (TR94). With this code, Slats would have been about 3 times faster (I3D95).
     Scheduled,
 }
 
@@ -80,7 +80,7 @@ pub enum ProcessorFault {
         /// Number of words in the requested access.
         words: usize,
     },
-    /// The memory is too small for the outputs of both bin contexts (the two sets of bins).
+    /// The memory is too small for the outputs of the two bin contexts (two sets of bins).
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
         /// Port of the board.
@@ -89,8 +89,8 @@ pub enum ProcessorFault {
         context: u8,
         /// Number of bytes that the context requested.
         needed_bytes: u32,
-        /// Number of bytes that are free for the context. The free range lies between two neighbours: the program's
-        /// data or the lower context, and the upper context or the end of memory.
+        /// Number of bytes that are free for the context. The free range of context 0 ends at context 1 or at the end
+        /// of memory. The free range of context 1 begins after context 0 or after the program's data.
         available_bytes: u32,
     },
     /// The program has no label with the name of the requested entry.
@@ -103,7 +103,8 @@ pub enum ProcessorFault {
     },
 }
 
-/// Return address of every call. Memory has no code at this address, and a run stops when it reaches the address.
+/// Return address of every call. There is no code at this address. The i860 stops when its program counter reaches the
+/// address.
 const RETURN: u32 = 0x0800;
 
 /// Returns the range of memory addresses that an assembled program occupies.
@@ -111,8 +112,8 @@ fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
 
-/// The board's memory with the bus interface for the i860. The caches never hold the part that the i860 shares with the
-/// ring interface.
+/// The board's memory with the bus interface for the i860. The caches never hold data of the part of memory that the
+/// i860 shares with the ring interface.
 struct Memory(Ram);
 
 impl Bus for Memory {
@@ -141,18 +142,18 @@ const LINK: usize = 1;
 /// An i860 with the memory of a board.
 ///
 /// The i860's clock stops between calls. Caches, queues and the open DRAM row keep their state until the next call. A
-/// write by Rust code counts as a write by i860 code before the call: it takes no time and changes no cache.
+/// write by Rust code stands for an earlier write by i860 code, so this write takes no time and changes no cache.
 ///
 /// The clocks of a whole call cannot be reused, because no call repeats exactly. While the head is still, 96 % of the
 /// calls have the code, arguments and parameters of an earlier call. While the head moves, no call repeats in this
 /// sense. The measurements covered 48 fields each: 188 calls of Slats with 110 triangles, and 2,800 calls of Rendering
-/// Control with the aircraft scene. However, even a call with equal inputs finds other lines in the caches, because the
-/// replacement of lines is pseudo-random. The phase of the memory refresh differs as well. The clocks of short runs of
-/// instructions can be reused (see [`i860::Config::memoise`]).
+/// Control with the aircraft scene. However, even calls with equal inputs find different lines in the caches, because
+/// the replacement of lines is pseudo-random. The time to the next memory refresh also differs from call to call. The
+/// clocks of short sequences of instructions can be reused (see [`i860::Config::memoise`]).
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,
-    /// Configuration of the i860, used again at every reset.
+    /// Configuration of the i860: the timing of its instructions and of its memory.
     core: i860::Config,
     cpu: Cpu,
     memory: Memory,
@@ -161,7 +162,7 @@ pub struct Processor {
     is_as_loaded: bool,
     /// Decoded programs with their memoized clocks. Several boards share this store.
     shelf: Rc<RefCell<DecodedPrograms>>,
-    /// All programs that were ever loaded, in the order in which they were called for the first time.
+    /// All programs that were loaded so far, in the order of their first calls.
     programs: Vec<Arc<Program>>,
     /// Address range of the output of each bin context (one of two sets of bins). `None` if no range is reserved.
     outputs: [Option<Range<u32>>; 2],
@@ -187,7 +188,7 @@ pub struct BreakpointHit {
     pub state: Box<State>,
 }
 
-/// Greatest number of hits that are kept until [`Processor::take_hits`]. Later hits are dropped.
+/// Greatest number of breakpoint hits that are kept until [`Processor::take_hits`]. Further hits are not recorded.
 pub const KEPT_HITS: usize = 64;
 
 impl fmt::Debug for Processor {
@@ -321,7 +322,8 @@ impl Processor {
     /// Calls a program at its label `entry`. Before the call, the function writes the values of `registers` to integer
     /// registers. Returns the time from the call to the return.
     ///
-    /// If memory holds another program, this program is loaded first. Loading takes no simulated time.
+    /// If memory does not hold the called program, the program is loaded before the call. Loading takes no simulated
+    /// time.
     ///
     /// # Errors
     ///
@@ -388,12 +390,13 @@ impl Processor {
         }
     }
 
-    /// Replaces all breakpoints by the given addresses. Breakpoints do not change the number of clocks of a call.
+    /// Replaces all breakpoints by breakpoints at `addresses`. Breakpoints do not change the number of clocks of a
+    /// call.
     pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
         self.breakpoints = addresses;
     }
 
-    /// Removes and returns the hits recorded since the last call of this function. At most [`KEPT_HITS`] hits are kept.
+    /// Removes and returns the breakpoint hits recorded since the last call of this function, at most [`KEPT_HITS`].
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         std::mem::take(&mut self.hits)
     }
@@ -404,20 +407,20 @@ impl Processor {
         &self.cpu.state
     }
 
-    /// Returns the number of i860 clocks in all calls so far.
+    /// Returns the total number of clocks that all calls so far have taken.
     #[must_use]
     pub fn clocks(&self) -> u64 {
         self.cpu.clocks()
     }
 
-    /// Returns the program that was called last, if any.
+    /// Returns the program that was called last, or `None` before the first call.
     #[must_use]
     pub const fn program(&self) -> Option<&Arc<Program>> {
         self.loaded.as_ref()
     }
 
-    /// Returns the programs that memory still holds unchanged. The most recently called program comes first. The others
-    /// follow in the order of their first calls.
+    /// Returns the programs that memory still holds unchanged. The most recently called program comes first. The
+    /// remaining programs follow in the order of their first calls.
     pub fn programs(&self) -> impl Iterator<Item = &Arc<Program>> {
         let is_last = |program: &&Arc<Program>| self.loaded.as_ref().is_some_and(|last| Arc::ptr_eq(last, program));
         let others = self.programs.iter().filter(move |program| !is_last(program));

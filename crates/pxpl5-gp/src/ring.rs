@@ -7,12 +7,13 @@
 //!   |         | frame, stack      | to send    | of messages and chains | that have arrived   |
 //! ```
 //!
-//! The original software is not published. kernels/ring_rules.md states the assumptions about the original software,
-//! and how the code was written.
+//! The original message software is not published. The file kernels/ring_rules.md states the assumptions about this
+//! software, and how the code was written.
 //!
-//! Before each call, Rust code does the work of the interface's DMA. The simulated inbox of the board holds any number
-//! of messages. The Rust code therefore puts a message into the next receive buffer only when the message software
-//! begins. The code finds all earlier chains sent, because [`crate::Gp::start`] simulates the queue of chains.
+//! Before each call, Rust code does the work of the DMA of the ring interface. The simulated inbox of the board holds
+//! any number of messages. The Rust code therefore puts a message into the next receive buffer only when the message
+//! software begins. The i860 code always finds that all earlier chains were sent, because [`crate::Gp::start`]
+//! simulates the queue of chains.
 
 use crate::firmware::Fault;
 use crate::processor::{Processor, ProcessorFault};
@@ -32,7 +33,7 @@ const BUFFERS: u32 = WINDOW + 0x3000;
 // The sizes of rings, queue and buffers are assumptions, because the interface is an assumption too
 // (kernels/ring_rules.md, last table).
 
-/// Number of receive buffers. There is one descriptor for each buffer.
+/// Number of buffers for received messages. Each buffer has one descriptor.
 const RX_COUNT: u32 = 8;
 const RX: u32 = WINDOW + 256;
 /// Size of a receive buffer in bytes. A buffer holds a header of two words and the longest message, in whole cache
@@ -58,13 +59,15 @@ const HANDLERS: u32 = DATA + 64;
 const CAUSE: u32 = WINDOW;
 const DONE: u32 = WINDOW + 12;
 
-/// Number of kinds of messages that a header can state: words for a program, commands, and pixels.
+/// Number of kinds of messages: words for a program, commands for a renderer, and pixels. The header of a message
+/// states the kind.
 const KINDS: u32 = 3;
 
 /// Flag of a request to send a message: the receiver's port stays reserved for the next message.
 const HOLD: Word = 1;
 
-/// Instruction budget of a call of the message software. A message needs only a small part of the budget.
+/// Greatest number of instructions that a call of the message software may execute. A message needs far fewer
+/// instructions.
 const BUDGET: u64 = 10_000;
 
 impl Processor {
@@ -93,7 +96,7 @@ impl Processor {
 
     /// Runs the software that sends a chain of messages, and returns the time of this software. The software writes a
     /// header and a descriptor for each message, and releases the descriptors of earlier chains. The boolean beside
-    /// each message is true if the message keeps its receiver's port reserved. If there are more messages than
+    /// each message is true if the receiver's port stays reserved after this message. If there are more messages than
     /// descriptors, they form several chains.
     ///
     /// # Errors
@@ -127,7 +130,7 @@ impl Processor {
 /// A send request of four words: receiver, kind and flags, length in words, and address.
 type Request = [Word; 4];
 
-/// A received message in the form in which a program takes it from the queue.
+/// A received message in the form in which the message software passes the message to a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Taken {
     place: u32,
@@ -135,7 +138,7 @@ struct Taken {
     sender: u32,
 }
 
-/// The error number that the message software returns if it refuses a message. The numbers are defined in ring.s.
+/// The error number, defined in ring.s, that the message software returns for a message that it cannot process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Refusal(Word);
 

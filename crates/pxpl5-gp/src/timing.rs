@@ -12,11 +12,12 @@ pxpl5_sim::parameters::parameter_table! {
         bin_bytes: 51_360, "bytes", Derived, 51_040..=51_680 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen. Each slave has 642 of them in 20 bins, with 4 bytes for a pointer. The value is twice as large if the bins hold 7,700 triangles for each eye";
         /// CPU time to send a batch of messages or to receive one message.
         message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the published latencies allow this range";
-        /// CPU time of one triangle for one eye: to transform, light and set up the triangle, and to make its commands.
+        /// CPU time of one triangle for one eye. In this time, the graphics processor transforms, lights and sets up
+        /// the triangle, and makes its commands.
         triangle_ns: 21_700, "ns", Derived, 18000..=32000 in 0..=MAX, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
         /// CPU time to put one entry into a bin.
         bin_entry_ns: 1_000, "ns", Assumed, 500..=2000 in 0..=MAX, "a pointer store and a count, partly out of cache";
-        /// CPU time of one bin entry in the answer to a token, when the bin is sent to its renderer.
+        /// CPU time of each bin entry when a slave receives a token and sends the bin to its renderer.
         token_entry_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the time of a message, because no separate time was published; times of code count it separately";
         /// Additional CPU time of a triangle that needs clipping.
         guard_ns: 0, "ns", Assumed, 0..=0 in 0..=MAX, "included in the published time of a triangle; times of code count it separately";
@@ -35,18 +36,18 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 impl GpTiming {
-    /// Timing of the Slats prototype of 1994: 30.0 us per triangle and eye. The time is fitted to the published limit
-    /// of 110 triangles without the COPY optimization (TR94). Any time from 29.8 to 30.1 us gives a limit of exactly
-    /// 110.
+    /// Timing of the Slats prototype of 1994: 30.0 us of CPU time for each triangle and eye. The time is fitted to the
+    /// published limit of 110 triangles without the COPY optimization (TR94). Any time from 29.8 to 30.1 us gives a
+    /// limit of exactly 110 triangles.
     pub const SLATS_1994: Self = Self { triangle_ns: 30_000, sphere_ns: 30_000, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Timing of the Slats code of 1995: 55.8 us per triangle and eye. The time is fitted to the published limit of
-    /// about 100 triangles with the COPY optimization (I3D95). Any time from 55.4 to 56.3 us gives a limit of exactly
-    /// 100.
+    /// Timing of the Slats code of 1995: 55.8 us of CPU time for each triangle and eye. The time is fitted to the
+    /// published limit of about 100 triangles with the COPY optimization (I3D95). Any time from 55.4 to 56.3 us gives a
+    /// limit of exactly 100 triangles.
     pub const SLATS_1995: Self = Self { triangle_ns: 55_800, sphere_ns: 55_800, bin_entry_ns: 0, ..Self::PAPERS };
 
-    /// Timing of Slats with code that fits the instruction cache. The time of a triangle is a third of its time in 1994
-    /// (I3D95).
+    /// Timing of Slats with code that fits the instruction cache. The CPU time of a triangle is a third of the time in
+    /// [`Self::SLATS_1994`] (I3D95).
     pub const SLATS_OPTIMISED: Self = Self {
         triangle_ns: Self::SLATS_1994.triangle_ns / 3,
         sphere_ns: Self::SLATS_1994.sphere_ns / 3,
@@ -54,8 +55,7 @@ impl GpTiming {
     };
 }
 
-/// The pipeline whose i860 code for triangles and spheres determines the times of the timing table. Each pipeline has
-/// other times.
+/// A pipeline with its own i860 code for triangles and spheres. The times in the timing table depend on this code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CodeUse {
     /// PPHIGS: whole frames, Phong shading, commands in bins.
@@ -77,11 +77,11 @@ pub enum CodeUse {
 // `pass_ns` is the time at the start of a pass that does not belong to structures: to reset bins and to load code into
 // the caches. A structure with culling takes 3.2 us more than others. The table does not contain this difference.
 impl GpTiming {
-    /// Returns this table with the times of primitives that the i860 code takes. `version` is the version of the code,
-    /// and `of` is the pipeline whose code is used.
+    /// Replaces the times of triangles and spheres in this table by the times that the i860 code takes. `version` is
+    /// the version of the code, and `of` is the pipeline whose code is used.
     ///
-    /// PPHIGS has times only for scheduled code. This code fits the instruction cache, like the code of every PPHIGS in
-    /// the papers.
+    /// PPHIGS has times only for scheduled code. This code fits the instruction cache, like all PPHIGS code in the
+    /// papers.
     #[must_use]
     pub const fn of_code(self, version: CodeVersion, of: CodeUse) -> Self {
         match (of, version) {
@@ -199,8 +199,8 @@ pxpl5_sim::parameters::parameter_table! {
         /// Mean time of the application on the host between the EDIT of a frame and the next frame. This time has an
         /// effect only if the host waits for EDIT.
         application_ns: 0, "ns", Assumed, 0..=20000000 in 0..=MAX, "0: the host asks at once; within the range, and with the jitter, a trivial scene keeps its printed 30 frames/s";
-        /// Half of the width of the uniform distribution from which the application's time is chosen. The value must
-        /// not exceed the mean time.
+        /// Greatest deviation of the application's time from its mean. The time of each frame is chosen from a uniform
+        /// distribution. The deviation must not exceed the mean.
         application_jitter_ns: 0, "ns", Assumed, 0..=10000000 in 0..=MAX, "a tick of a Unix clock of 100 Hz";
     }
 }
@@ -225,8 +225,8 @@ impl HostTiming {
         Span::from_ns(self.application_ns - jitter + spread as u64)
     }
 
-    /// Returns the timing table of the board model that represents the host. Only the software costs and the memory
-    /// size of the table have an effect.
+    /// Returns the timing table of the board model that represents the host. For the host, only the CPU times of
+    /// messages and the memory size in this table have an effect.
     #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }

@@ -10,8 +10,8 @@ pub trait Work {
     /// Returns the CPU time of the work according to the timing table.
     fn by_table(&self, timing: &GpTiming) -> Span;
 
-    /// Runs the work as i860 code on the board's processor and returns its time. If a part of the work has no code, the
-    /// timing table gives its time.
+    /// Runs the work as i860 code on the board's processor and returns the time of the code. For a part of the work
+    /// without code, the function adds the time from the timing table.
     ///
     /// # Errors
     ///
@@ -19,14 +19,14 @@ pub trait Work {
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault>;
 
     /// Returns the number of vertices that the work transforms: corners of triangles and centres of spheres. A vertex
-    /// counts once for each view. Most kinds of work transform no vertices.
+    /// that is transformed for two views counts twice. Most kinds of work transform no vertices, so the default is 0.
     fn vertex_transforms(&self) -> u64 {
         0
     }
 }
 
 impl Gp {
-    /// Does a unit of work, and spends its CPU time at the priority of this program.
+    /// Does a unit of work. The program spends the CPU time of the work at its own priority.
     ///
     /// # Errors
     ///
@@ -37,7 +37,8 @@ impl Gp {
         Ok(())
     }
 
-    /// Does a unit of work that answers a message. [`GpUse`](crate::GpUse) counts the CPU time of this work separately.
+    /// Does a unit of work that answers a message. [`GpUse::tokens`](crate::GpUse::tokens) counts the CPU time of this
+    /// work.
     pub(crate) async fn answer_work(&self, work: &impl Work) -> Result<(), Fault> {
         let span = self.time_of(work)?;
         self.shared.borrow_mut().answer_work += span;

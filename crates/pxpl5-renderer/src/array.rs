@@ -25,12 +25,12 @@ pub trait PixelArray {
     /// The illegal instruction and the rest of the list are not executed. Faults are counted.
     fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault>;
 
-    /// Executes the commands of a list that touch the region, and returns the regions whose pixels the list copies to
-    /// frame buffers.
+    /// Executes those commands of a list that touch the selected region. Returns one entry for each region whose pixels
+    /// the list copies to a frame buffer.
     ///
-    /// A fault ends the execution, as on the hardware. Pixels drawn before the fault stay. The final pixel memory is
-    /// the same as after [`Self::execute`], but the Enable register can differ. `room` is scratch space for the words
-    /// of the commands.
+    /// An illegal instruction ends the execution, as on the hardware. Pixels drawn before the illegal instruction stay.
+    /// The final pixel memory is the same as after [`Self::execute`], but the Enable register can differ. `room` is
+    /// scratch space for the words of the commands.
     fn draw(&mut self, commands: &CommandContent, room: &mut Vec<Word>) -> Vec<OutputRegion> {
         room.clear();
         commands.append_visible(room);
@@ -62,11 +62,11 @@ pub trait PixelArray {
     /// Sets pixel memory, the Enable register, the backing store, the selected region and the count of faults to zero.
     fn reset(&mut self);
 
-    /// Returns the number of faults since the last reset.
+    /// Returns the number of illegal instructions since the last call of [`Self::reset`].
     fn faults(&self) -> u64;
 }
 
-/// Result of executing a list of instructions, in addition to the changes of pixels.
+/// Busy time and output of an executed list of instructions. The changes of pixel memory are not part of this type.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Executed {
     pub instructions: u32,
@@ -79,7 +79,7 @@ pub struct Executed {
 /// The pixels that an output instruction sends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputRegion {
-    /// Frame buffer, region and picture that receive the pixels.
+    /// Destination of the pixels: the frame buffer, the region and the picture.
     pub target: CopyTarget,
     /// Colours of the region's pixels: one word 0x00RRGGBB for each pixel, row by row.
     pub pixels: Arc<[Word]>,
@@ -89,7 +89,7 @@ pub struct OutputRegion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position}: {kind}")]
 pub struct ArrayFault {
-    /// Index, in the list of words, of the first word of the instruction.
+    /// Index, in the list of words, of the first word of the illegal instruction.
     pub position: usize,
     pub kind: FaultKind,
 }
@@ -101,8 +101,8 @@ pub enum FaultKind {
     /// The words do not encode an instruction.
     #[error("{0}")]
     Illegal(DecodeErrorKind),
-    /// A field extends beyond the end of pixel memory. The field's address is relative to the selected context, the
-    /// part of pixel memory that holds one region.
+    /// A field (a sequence of bits of pixel memory) extends beyond the end of pixel memory. The field's address is
+    /// relative to the selected context, the part of pixel memory that holds one region.
     #[error("{} bits at {base} + {} reach beyond pixel memory", .operand.width, .operand.address)]
     FieldOutOfRange {
         /// The field as encoded in the instruction: address relative to the context's first bit, and width in bits.
@@ -110,7 +110,7 @@ pub enum FaultKind {
         /// First bit, in pixel memory, of the selected context (the part that holds one region).
         base: u8,
     },
-    /// An operand overlaps the destination, and the instruction does not allow this overlap.
+    /// An operand and the destination share bits of pixel memory, and the instruction does not allow this overlap.
     #[error("the operand at bit {operand} overlaps the destination at bit {destination}")]
     Overlap {
         /// First bit, in pixel memory, of the field that receives the result.

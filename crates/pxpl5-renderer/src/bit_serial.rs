@@ -26,20 +26,22 @@ use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 
 /// Pixel array of 208 bit planes, an Enable plane and serial adders, like the hardware.
 ///
-/// Clocks are counted while planes move. The count is therefore an independent test of [`crate::isa::timing`]. The
-/// array is the reference model unless [`Self::skipping`] was called.
+/// The array counts a clock whenever a bit plane moves. The count is therefore an independent test of the formulas in
+/// [`crate::isa::timing`]. The array is the reference model unless [`Self::skipping`] was called.
 #[derive(Clone, Debug)]
 pub struct BitSerial {
     layout: Layout,
     vectors: PresentVectors,
     controller: Controller,
     tiles: Vec<Tile>,
-    /// Bit planes of each block of the backing store, ordered by tile. `None` if the block was not stored yet.
+    /// For each block of the backing store, the stored bit planes of all tiles. `None` if nothing was stored in the
+    /// block yet.
     backing: Vec<Option<Vec<TilePlane>>>,
     clock: u64,
     faults: u64,
     skipping: bool,
-    /// Buffer for a run of consecutive instructions. The array reuses the buffer to avoid allocations.
+    /// Buffer for a sequence of instructions that are executed together. The array reuses the buffer to avoid
+    /// allocations.
     run: InstructionRun,
 }
 
@@ -50,8 +52,8 @@ impl BitSerial {
         Self::with_vectors(layout, Vectors::best())
     }
 
-    /// Creates an array of zeros that uses the given vector unit, or the portable unit if the processor lacks the given
-    /// unit.
+    /// Creates an array of zeros that computes with the vector instructions `vectors`. If the computer lacks these
+    /// instructions, the array uses portable code.
     #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
@@ -69,9 +71,9 @@ impl BitSerial {
 
     /// Turns on the skipping mode, which leaves out work that changes no bit.
     ///
-    /// Disabled pixels move no planes. If the signs at the corners of a tile determine the sign in the whole tile, the
-    /// adders are not simulated. Clocks, faults and all bits stay the same. The default mode takes ten times as long as
-    /// the skipping mode.
+    /// Disabled pixels move no planes. The signs of an expression at the corners of a tile of 32 x 16 pixels often
+    /// determine the sign in the whole tile. In this case, the adders are not simulated. Clocks, faults and all bits
+    /// stay the same. The default mode takes ten times as long as the skipping mode.
     #[must_use]
     pub fn skipping(self) -> Self {
         Self { skipping: true, ..self }

@@ -19,28 +19,30 @@ use std::sync::{Arc, OnceLock};
 /// An event of a renderer board.
 #[derive(Clone, Debug)]
 pub enum RendererEvent {
-    /// A message begins to arrive. The event has phase `Arrive`.
+    /// A message begins to arrive. The event must be scheduled in phase `Arrive`.
     Announce {
-        /// Message with commands for the FIFO. Other words are discarded and counted as illegal.
+        /// Message with commands for the FIFO. Words that are not commands are discarded and counted as illegal.
         message: Message,
         /// Time at which the message's first word is on the channel.
         first_word_at: Time,
     },
-    /// The controller starts the next copy command, which copies a region to a frame buffer.
+    /// The controller starts a copy command, which copies a region to a frame buffer.
     CopyBegins,
     /// The colours of the region that the renderer copies are now complete in the backing store.
     Stored,
-    /// The ring has delivered the last pixel of the region that the renderer copies. The event has phase `Arrive`.
+    /// The ring has delivered the last pixel of the region that the renderer copies. The event must be scheduled in
+    /// phase `Arrive`.
     Sent,
 }
 
 /// An output of a renderer board.
 #[derive(Debug)]
 pub enum RendererOutput {
-    /// Notice to the sender: the time at which the last word of the announced message enters the FIFO.
+    /// The renderer has accepted an announced message. The sender must know when the last word of the message enters
+    /// the FIFO.
     Accept {
-        /// Time at which the last word is in the FIFO. Each word takes one word time, plus the wait for room in the
-        /// FIFO.
+        /// Time at which the last word of the message is in the FIFO. Each word takes one word time of the channel,
+        /// plus the wait for room in the FIFO.
         last_word_at: Time,
     },
     /// A message for the ring.
@@ -49,17 +51,17 @@ pub enum RendererOutput {
         message: Message,
         /// True if the ring must report the delivery of the message with [`RendererEvent::Sent`].
         ticket: bool,
-        /// True if the receiver's port must stay reserved for the next message of this renderer.
+        /// True if the ring must keep the receiver's port reserved for the next message of this renderer.
         hold: bool,
     },
 }
 
-/// Counters of a renderer board.
+/// Counters of a renderer board since the start of the simulation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RendererStats {
     /// Number of commands received, including copies and unknown commands.
     pub commands: u64,
-    /// Number of words received, without the overhead of messages on the ring.
+    /// Number of words of commands received. Additional words with which the ring transports messages do not count.
     pub words: u64,
     /// Number of regions whose last pixel has arrived at a frame buffer.
     pub regions_copied: u64,
@@ -69,7 +71,7 @@ pub struct RendererStats {
 
 /// One renderer board. The FIFO and the controller run in simulated time. The pixels of regions are pixel jobs.
 ///
-/// A pixel job computes its pixels only when they are read.
+/// A pixel job is a stored computation, which runs only when the pixels are read.
 #[derive(Debug)]
 pub struct Renderer {
     node: NodeId,
@@ -77,8 +79,8 @@ pub struct Renderer {
     cycle: Span,
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
-    /// True if two optimizations are on. The first caches regions without primitives, and the second leaves out
-    /// commands that touch no pixel.
+    /// True if regions without primitives are cached and commands that touch no pixel are left out. These are two
+    /// optimizations.
     caches_empty_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
@@ -103,17 +105,18 @@ pub struct Renderer {
 /// A region that a renderer has drawn, with the times of the region's commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnRegion {
-    /// Frame buffer and place for which the region is drawn.
+    /// Frame buffer that receives the region, and the region's place in the picture.
     pub target: CopyTarget,
     /// Number of words of the message that transfers the region's pixels to the frame buffer.
     pub words: u32,
     /// Time at which the controller finished its work on the previous region.
     pub begun_at: Time,
-    /// Time at which the last command before the copy command ended. The controller then waited for the copy command.
+    /// Time at which the last command before the copy command ended. From this time on, the controller waited for the
+    /// copy command.
     pub finished_at: Time,
     /// Start time of the copy command. This time is later than `finished_at` if the copy command arrived later.
     pub copy_at: Time,
-    /// Time since `begun_at` in which the controller executed commands. For the rest of the time, the controller waited
+    /// Time since `begun_at` in which the controller executed commands. In the remaining time, the controller waited
     /// for commands.
     pub executed: Span,
 }
@@ -139,7 +142,7 @@ impl ContextLog {
     }
 }
 
-/// A received copy command, and the object that computes the pixels of its region.
+/// A received copy command, and the job that computes the pixels of the region to copy.
 #[derive(Debug)]
 struct PendingCopy {
     order: CopyOrder,
@@ -177,7 +180,7 @@ impl Renderer {
         }
     }
 
-    /// Handles one event at time `context.now()`. Later events and outputs go to `context`.
+    /// Handles one event at time `context.now()`. The function adds the resulting events and outputs to `context`.
     pub fn handle(&mut self, event: RendererEvent, context: &mut Context<RendererEvent, RendererOutput>) {
         match event {
             RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),
@@ -394,8 +397,8 @@ impl Renderer {
         self.store_next(context);
     }
 
-    /// Returns true if a finished region has waited for room in the backing store. Otherwise the board works the same
-    /// with a larger backing store.
+    /// Returns true if a finished region has waited for room in the backing store. If the result is false, a larger
+    /// backing store would change nothing.
     #[must_use]
     pub const fn waited_for_room(&self) -> bool {
         self.waited_for_room
@@ -413,7 +416,8 @@ impl Renderer {
         self.fifo.busy()
     }
 
-    /// Returns the time spent executing commands until `now`, without copies. `now` must not be before the last event.
+    /// Returns the time until `now` in which the board has executed commands, without copies. `now` must not be earlier
+    /// than the last handled event.
     #[must_use]
     pub fn busy_at(&self, now: Time) -> Span {
         self.fifo.busy_at(now)
@@ -462,7 +466,7 @@ impl Renderer {
         self.sent.get_or_insert_default();
     }
 
-    /// Returns a snapshot of the board at time `now`, which must not be before the last event.
+    /// Returns a snapshot of the board at time `now`, which must not be earlier than the last handled event.
     #[must_use]
     pub fn look(&self, now: Time) -> RendererSnapshot {
         let passed = self.fifo.passed(now);
@@ -478,8 +482,8 @@ impl Renderer {
         }
     }
 
-    /// Returns the pixel array with the effects of all commands that have started by `now`. `now` must not be before
-    /// the last event.
+    /// Returns the pixel array with the effects of all commands that have started by `now`. `now` must not be earlier
+    /// than the last handled event.
     ///
     /// A command takes effect when it starts. Returns `None` if [`Renderer::watch_fifo`] was not called, or if no
     /// command has changed a pixel.
@@ -491,13 +495,13 @@ impl Renderer {
 
     /// Returns the changes of the number of words in the FIFO since the last call. The changes are not sorted by time.
     ///
-    /// A positive change is the number of words of a command that has arrived completely. A negative change belongs to
-    /// a command that starts. A time in the future is a prediction from the input that has arrived so far.
+    /// The arrival of a complete command increases the number. The start of a command decreases the number. A change in
+    /// the future is a prediction from the messages that have arrived so far.
     pub fn take_fifo_changes(&mut self) -> Vec<(Time, i64)> {
         self.fifo.take_changes()
     }
 
-    /// Returns the frame buffer and region that the board waits for, if a copy blocks the board.
+    /// If a copy blocks the board, returns the region to copy and the frame buffer that receives the region.
     #[must_use]
     pub fn blocked(&self) -> Option<CopyTarget> {
         Some(self.copying.filter(|_| self.fifo.is_blocked())?.target)

@@ -6,8 +6,8 @@
 //!
 //! # Formats
 //!
-//! - Edge: a pixel is inside if the expression is `>= 0` at this pixel. The sender adjusts the constant coefficient of
-//!   the expression so that pixels exactly on the edge follow the tie rule.
+//! - Edge: a pixel is inside if the expression is `>= 0` at this pixel. A pixel exactly on an edge of two triangles
+//!   must belong to one of the two. For this purpose, the sender adjusts the constant coefficient of the expression.
 //! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, where nearer is smaller. A pixel passes if the new depth is
 //!   **strictly less** than the stored depth. A layout with a narrower Z stores and compares the upper bits of the
 //!   depth.
@@ -132,14 +132,14 @@ impl CommandKind {
     }
 }
 
-/// An error for a command that needs a field. The layout lacks this field.
+/// An error for a command that needs a field of pixel memory that the layout does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
     pub kind: CommandKind,
-    /// Name of the layout that lacks the field, from `ContextPlan::name`.
+    /// Name of the layout that does not have the field, from `ContextPlan::name`.
     pub layout: &'static str,
-    /// The missing field, or the required number of scratch bits, as text.
+    /// Description of the missing field, or of the missing bits of scratch memory.
     pub missing: &'static str,
 }
 
@@ -248,7 +248,7 @@ impl Command {
         }
     }
 
-    /// Returns a command of this kind in which all operands are zero.
+    /// Returns a command of the kind `kind` whose operands are all zero.
     pub(crate) fn blank(kind: CommandKind) -> Self {
         match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::default()),
@@ -265,8 +265,8 @@ impl Command {
         }
     }
 
-    /// Extracts the operands from the program of a command. The other parts of the program are not checked, so the
-    /// caller must compare the whole program.
+    /// Extracts the operands from the program of a command. Only the operands are read, so the caller must compare the
+    /// rest of the program with the expected program.
     fn from_program(kind: CommandKind, program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
         Some(match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::read(program, layout)?),
@@ -284,13 +284,13 @@ impl Command {
     }
 }
 
-/// Returns the error for valid instructions that differ from the program of a command. `label` is the number of this
+/// Returns the error for valid instructions that differ from the program of a command. `label` is the opcode of the
 /// command's kind.
 fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
     DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
 }
 
-/// Name of a field that is missing in a layout.
+/// Name of a field of pixel memory that a layout does not have.
 pub(crate) struct MissingField(&'static str);
 
 fn encode_all(program: &[ArrayInstruction], out: &mut Vec<Word>) {
@@ -320,7 +320,7 @@ fn decode_range(words: &[Word], from: usize) -> Result<Vec<ArrayInstruction>, De
     Ok(out)
 }
 
-/// Returns component 0 (x), 1 (y) or 2 (z) of the layout's normal.
+/// Returns the field of the normal's component 0 (x), 1 (y) or 2 (z).
 fn normal(layout: &Layout, component: u8) -> Result<Operand, MissingField> {
     layout.normal(component).ok_or(MissingField("a normal"))
 }

@@ -19,7 +19,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("after {after}: {difference}")]
 pub struct Mismatch {
-    /// Name of the last executed list, as given by the caller.
+    /// Name of the list of instructions after which the arrays differ.
     pub after: String,
     /// Description of the difference, including the first pixel that differs.
     pub difference: String,
@@ -197,8 +197,8 @@ fn corner_expressions() -> Vec<ArrayInstruction> {
     out
 }
 
-/// Returns a coefficient that tests overflow: some of its bits lie above the 48 bits of a quadratic expression's value.
-/// The lowest bit is also set.
+/// Returns a coefficient that tests overflow. The coefficient has bits above the 48 bits of a quadratic expression's
+/// value, and its lowest bit is set.
 const fn beyond_48_bits(v: i32) -> i64 {
     (v as i64) << 17 | 1
 }
@@ -219,8 +219,8 @@ fn uses(expression: Expression) -> Vec<ArrayInstruction> {
     usages.into_iter().map(|usage| ArrayInstruction::Evaluate { expression, usage }).collect()
 }
 
-/// Widths in bits of the destination and the two operands of tested instructions: equal, narrower, wider, one bit, and
-/// the largest.
+/// Widths, in bits, of the destination and the two operands of tested instructions. Operands are as wide as the
+/// destination, narrower, or wider.
 const WIDTHS: [[u8; 3]; 7] = [[8, 8, 8], [5, 12, 9], [20, 7, 11], [1, 1, 1], [64, 64, 64], [64, 3, 33], [2, 40, 1]];
 
 fn corner_fields() -> Vec<ArrayInstruction> {

@@ -1,4 +1,4 @@
-//! Effects of a command list on pixel memory, as far as the kinds of the commands determine the effects.
+//! Effects of a command list on pixel memory that follow from the kinds of the commands alone, without the operands.
 
 use crate::command::CommandKind;
 use pxpl5_wire::CommandRun;

@@ -32,7 +32,7 @@ pub(crate) struct Controller {
     quadratic: Quadratic,
 }
 
-/// An expression whose origin is the array's upper left pixel.
+/// A linear or quadratic expression in the coordinates of the array: the array's upper left pixel is (0, 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LocalExpression {
     Linear(Linear),
@@ -55,8 +55,9 @@ impl Controller {
         Ok((instruction, used))
     }
 
-    /// Stores the coefficients of an expression. An expression without coefficients uses the coefficients of the last
-    /// expression of its kind. Returns the expression with the array's upper left pixel as origin.
+    /// Stores the coefficients of an expression, and returns the expression with the array's upper left pixel as
+    /// origin. An expression without coefficients uses the stored coefficients of the last linear or quadratic
+    /// expression.
     pub(crate) fn latch(&mut self, expression: &Expression) -> LocalExpression {
         match expression {
             Expression::Linear(linear) => self.linear = *linear,
@@ -75,20 +76,20 @@ impl Controller {
         [self.left.into(), self.top.into()]
     }
 
-    /// Returns the same linear expression with another origin: the array's upper left pixel instead of the picture's.
+    /// Moves the origin of a linear expression from the picture's upper left pixel to the array's upper left pixel.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }
 
-    /// Stores the last linear coefficients of a command that the array has executed in one step. A later instruction
-    /// can then reuse the coefficients.
+    /// Stores the linear coefficients that a command has used last, so that a later instruction can reuse the
+    /// coefficients. The array calls this function for commands that it executes in one step.
     pub(crate) fn hold(&mut self, linear: Linear) {
         self.linear = linear;
     }
 
-    /// Stores the last quadratic coefficients of a command that the array has executed in one step. A later instruction
-    /// can then reuse the coefficients.
+    /// Stores the quadratic coefficients that a command has used last, so that a later instruction can reuse the
+    /// coefficients. The array calls this function for commands that it executes in one step.
     pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
         self.quadratic = quadratic;
     }
@@ -192,7 +193,8 @@ const fn overlap(destination: &FieldBits, operand: &FieldBits) -> FaultKind {
 }
 
 impl LocalExpression {
-    /// Returns the expression's value at a column and row. The value has 32 or 48 bits and is sign-extended.
+    /// Returns the expression's value at column `x` and row `y`. A linear value is sign-extended from 32 bits, and a
+    /// quadratic value from 48 bits.
     pub(crate) fn at(&self, x: i32, y: i32) -> i64 {
         match self {
             Self::Linear(e) => i64::from(e.at(x, y)),

@@ -24,7 +24,7 @@ pub(crate) struct CommandBatch {
     pub(crate) span_each: Option<Span>,
 }
 
-/// Future times of the FIFO, which are computed when words arrive or when a copy ends.
+/// Future times at which the FIFO's state changes. These times are computed when words arrive or when a copy ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
     /// Time at which the last word of the arriving message enters the FIFO. `None` while this time is unknown.
@@ -46,7 +46,7 @@ struct HeldCommand {
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     /// Index of the first word that fits into the FIFO when the first command of this sequence starts. Words are
-    /// counted from 0 since the start of the run.
+    /// counted from 0 since the start of the simulation.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -67,7 +67,7 @@ impl Departure {
         if place < self.count { place } else { self.count - 1 }
     }
 
-    /// Returns this sequence of commands without its first `commands` commands.
+    /// Returns the rest of this sequence after its first `commands` commands.
     fn behind(self, commands: u64) -> Self {
         Self {
             made_room_for: self.made_room_for + commands * self.words_each,
@@ -86,10 +86,10 @@ impl StartTimes {
     /// Returns the time at which all words with indices `first` to `last` have entered the FIFO. The result is at least
     /// `soonest`.
     ///
-    /// Each word waits until the FIFO has room for it, and then takes one word time on the channel. `first` must not
-    /// decrease from call to call. Of each sequence of commands that start at equal intervals, only the last command
-    /// that makes room matters. The reason is that an interval is at least as long as the transfer of a command's
-    /// words.
+    /// Each word waits until the FIFO has room for it, and then takes one word time on the channel. `first` must be at
+    /// least the `first` of the previous call. Of each sequence of commands that start at equal intervals, only the
+    /// last command that makes room matters. The reason is that an interval is at least as long as the transfer of a
+    /// command's words.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -116,12 +116,12 @@ impl StartTimes {
     }
 }
 
-/// The FIFO and its controller. Depths are in words, times are simulated times.
+/// The FIFO and the controller that empties the FIFO. Sizes are in words, and times are simulated times.
 #[derive(Debug)]
 pub(crate) struct InputFifo {
     depth: u64,
     word: Span,
-    /// Commands of the arriving message, until the arrival times of these commands are known.
+    /// Commands of the arriving message whose arrival times are not known yet.
     in_transit: VecDeque<CommandBatch>,
     transit_known: bool,
     last_word_at: Time,
@@ -129,7 +129,8 @@ pub(crate) struct InputFifo {
     left: StartTimes,
     words_left: u64,
     waiting: VecDeque<HeldCommand>,
-    /// Time from which the controller is free. `None` while a blocking command (the copy of a region) runs.
+    /// Time from which the controller can start another command. `None` while a blocking command (the copy of a region)
+    /// runs.
     free_at: Option<Time>,
     busy: Span,
     /// Total time for which blocking commands (copies of regions) have occupied the controller.
@@ -137,13 +138,13 @@ pub(crate) struct InputFifo {
     last_block: Block,
     /// Start and end of the last interval in which the controller waited for commands.
     last_wait: (Time, Time),
-    /// Record of arriving and leaving words. `None` if no caller has asked for this record.
+    /// Record of the words that enter and leave the FIFO. `None` if this record is off.
     watched: Option<Watched>,
 }
 
-/// Longest execution time of commands that count as the selection of the region to copy. Commands that take longer
-/// count as drawing. If the controller waits before the selection, the drawing of the region ends at the start of this
-/// wait. A selection takes 6 clocks of 40 MHz, which are 150 ns.
+/// Longest execution time of a command that counts as the selection of the region to copy. A command that takes more
+/// time counts as drawing. If the controller waits before the selection, the drawing of the region ends at the start of
+/// this wait. A selection takes 6 clocks of 40 MHz, which are 150 ns.
 const SELECTION: Span = Span::from_ns(1_000);
 
 /// Times of the last blocking command (copy of a region) and of the commands before it.
@@ -159,7 +160,7 @@ pub(crate) struct Block {
     pub(crate) start: Time,
     /// Execution time of the commands between the previous blocking command and this command.
     pub(crate) executed: Span,
-    /// Execution time of all commands before this command, since the start of the run.
+    /// Execution time of all commands before this command, since the start of the simulation.
     busy: Span,
     /// Time of the latest end of a blocking command.
     resumed_at: Time,
@@ -175,10 +176,12 @@ struct Watched {
     left: Course,
 }
 
-/// A growing number of words as a function of simulated time. The record begins at the last call of `discard_before`.
+/// A number of words that grows with simulated time, for example the words that have entered the FIFO. Entries before
+/// the last call of `discard_before` are removed.
 #[derive(Debug, Default)]
 struct Course {
-    /// Times at which the number of words grows, in ascending order. Each time has the new number of words.
+    /// The growth of the number of words, in the order of time. Each entry has a time and the number of words from this
+    /// time on.
     steps: VecDeque<(Time, u64)>,
     /// The number of words before the first entry of `steps`.
     before: u64,
@@ -203,7 +206,7 @@ impl Course {
     }
 }
 
-/// Numbers of words that have entered and left a FIFO since the start of the run.
+/// Numbers of words that have entered and left a FIFO since the start of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct WordsPassed {
     /// Number of words in commands that have arrived completely.
@@ -233,12 +236,13 @@ impl InputFifo {
         }
     }
 
-    /// Adds commands to the message that the next call of [`Self::message`] announces. Commands must be added in order.
+    /// Adds commands to the message that the next call of [`Self::message`] announces. Commands must be added in the
+    /// order of their words in the message.
     pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
     }
 
-    /// Announces a message with all commands that were [added](Self::take) since the previous message.
+    /// Computes the arrival of a message that consists of all commands [added](Self::take) since the previous message.
     ///
     /// The first word of the message is on the channel at time `begins`.
     pub(crate) fn message(&mut self, begins: Time) -> Progress {
@@ -260,8 +264,8 @@ impl InputFifo {
         self.busy
     }
 
-    /// Returns the total execution time until `now`, without blocking commands. `now` must not be before the last
-    /// event. The function assumes that all received but unfinished commands run without a gap from `now` on.
+    /// Returns the total execution time until `now`, without blocking commands. `now` must not be earlier than the last
+    /// handled event. The function assumes that all received but unfinished commands run without a gap from `now` on.
     pub(crate) fn busy_at(&self, now: Time) -> Span {
         let ahead = self.free_at.map_or(0, |free_at| free_at.0.saturating_sub(now.0));
         Span(self.busy.0.saturating_sub(ahead))
@@ -284,7 +288,7 @@ impl InputFifo {
     }
 
     /// Returns the numbers of words that have entered and left the FIFO by `now`. Returns `None` if these numbers are
-    /// not recorded. `now` must not be before the last event.
+    /// not recorded. `now` must not be earlier than the last handled event.
     pub(crate) fn passed(&self, now: Time) -> Option<WordsPassed> {
         let watched = self.watched.as_ref()?;
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
@@ -303,7 +307,7 @@ impl InputFifo {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
 
-    /// Returns true while a non-blocking command runs. The function uses only the commands received so far.
+    /// Returns true if a non-blocking command runs at time `now`. The function uses only the commands received so far.
     pub(crate) fn is_executing(&self, now: Time) -> bool {
         self.free_at.is_some_and(|free_at| free_at > now)
     }
@@ -393,8 +397,8 @@ impl InputFifo {
         }
     }
 
-    /// Returns the time at which the next `words` words have all entered the FIFO. Returns `None` while this time
-    /// depends on the end of a blocking command (copy of a region).
+    /// Returns the time at which the `words` words that arrive next have all entered the FIFO. Returns `None` while
+    /// this time depends on the end of a blocking command (copy of a region).
     fn arrival(&mut self, words: u32) -> Option<Time> {
         let first = self.words_in;
         let last = self.words_in + u64::from(words) - 1;
@@ -406,7 +410,7 @@ impl InputFifo {
     }
 
     /// Starts the waiting commands in order, up to and including the first blocking command (copy of a region). Returns
-    /// the start time of the blocking command, if there is one.
+    /// the start time of the blocking command, or `None` if no blocking command has started.
     fn start_waiting(&mut self) -> Option<Time> {
         while let Some(free_at) = self.free_at {
             let command = self.waiting.pop_front()?;
@@ -430,8 +434,8 @@ impl InputFifo {
         }
     }
 
-    /// Starts a command that has arrived completely, at `free_at` or later. Returns the start time if the command
-    /// blocks.
+    /// Starts a command that has arrived completely, at the time `free_at` or at its arrival, whichever is later.
+    /// Returns the start time if the command blocks.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
         // The words of a copy command arrive after the words of the selection. This wait is not a wait for the commands

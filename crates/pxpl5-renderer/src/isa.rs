@@ -88,9 +88,9 @@ pub enum Expression {
     Linear(Linear),
     /// A quadratic expression with its coefficients.
     Quadratic(Quadratic),
-    /// Repetition of the most recent linear expression. The evaluator uses its stored coefficients.
+    /// The most recent linear expression again, with the coefficients that the evaluator has stored.
     LinearAgain,
-    /// Repetition of the most recent quadratic expression. The evaluator uses its stored coefficients.
+    /// The most recent quadratic expression again, with the coefficients that the evaluator has stored.
     QuadraticAgain,
 }
 
@@ -116,36 +116,36 @@ impl Expression {
 pub enum ExpressionUse {
     /// Disables pixels where the expression is negative.
     DisableNegative,
-    /// Stores the bits of the expression in a field. The low `shift` bits of the expression are left out.
+    /// Stores the bits of the expression in a field of pixel memory, from bit `shift` of the expression on.
     Load {
-        /// Field that receives the bits of the expression.
+        /// Field of pixel memory that receives the bits of the expression.
         field: Operand,
-        /// Number of low bits of the expression that are left out.
+        /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
-    /// Adds the bits of the expression to a field. The low `shift` bits of the expression are left out.
+    /// Adds the bits of the expression to a field of pixel memory, from bit `shift` of the expression on.
     Add {
-        /// Field to which the bits of the expression are added.
+        /// Field of pixel memory to which the bits of the expression are added.
         field: Operand,
-        /// Number of low bits of the expression that are left out.
+        /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
-    /// Disables pixels unless the bits of the expression from bit `shift` on are less than the field. Both numbers are
-    /// unsigned.
+    /// Compares the bits of the expression from bit `shift` on with a field of pixel memory, as unsigned numbers.
+    /// Disables the pixels in which the number from the expression is not less than the field.
     DisableNotLess {
-        /// Field with which the bits of the expression are compared.
+        /// Field of pixel memory with which the bits of the expression are compared.
         field: Operand,
-        /// Number of low bits of the expression that are left out.
+        /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
     /// Computes the expression minus `subtrahend << left_shift`, and stores the bits of this difference from bit
     /// `shift` on.
     LoadMinus {
-        /// Field that receives the bits of the difference.
+        /// Field of pixel memory that receives the bits of the difference.
         field: Operand,
-        /// Number of low bits of the difference that are left out.
+        /// Number of lowest bits of the difference that are ignored.
         shift: u8,
-        /// Field to subtract, sign-extended if it is signed, otherwise zero-extended.
+        /// Field of pixel memory to subtract, sign-extended if it is signed, otherwise zero-extended.
         subtrahend: Operand,
         /// Left shift of the subtrahend before the subtraction, in bits.
         left_shift: u8,
@@ -205,7 +205,7 @@ pub enum ArrayInstruction {
     EnableLoad(Operand),
     /// Stores the Enable register in a field of one bit, in every pixel.
     EnableStore(Operand),
-    /// Combines the Enable register with a field of one bit: E := E AND field.
+    /// Disables the pixels in which a field of one bit is 0: E := E AND field.
     EnableAnd(Operand),
     /// Selects the region for the following instructions, and the context (part of pixel memory) that holds it.
     Select {
@@ -221,64 +221,64 @@ pub enum ArrayInstruction {
     Evaluate {
         /// Expression to evaluate, with new coefficients or with the coefficients of an earlier expression.
         expression: Expression,
-        /// Operation that each pixel performs with the bits of the expression.
+        /// Operation that each pixel performs with the bits of the expression, for example a comparison.
         usage: ExpressionUse,
     },
     /// Computes destination := source >> by. A shift by 0 copies the source.
     ShiftRight {
-        /// Field that receives the result.
+        /// Field of pixel memory that receives the result.
         destination: Operand,
-        /// Field to read, sign-extended if it is signed, otherwise zero-extended.
+        /// Field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Number of bits to shift, 0 to 63.
         by: u8,
     },
-    /// Computes destination := source << by.
+    /// Computes destination := source << by in every enabled pixel.
     ShiftLeft {
-        /// Field that receives the result.
+        /// Field of pixel memory that receives the result.
         destination: Operand,
-        /// Field to read, sign-extended if it is signed, otherwise zero-extended.
+        /// Field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Number of bits to shift, 0 to 63.
         by: u8,
     },
     /// Computes destination := source limited to 0 .. 2^w - 1, for a destination of w bits.
     Saturate {
-        /// Field that receives the result.
+        /// Field of pixel memory that receives the result.
         destination: Operand,
-        /// Field to read, sign-extended if it is signed, otherwise zero-extended.
+        /// Field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
     },
     /// Computes destination := floor(sqrt(radicand)). The remainder replaces the radicand.
     SquareRoot {
-        /// Field that receives the root, 1 to 32 bits.
+        /// Field of pixel memory that receives the root. The field has 1 to 32 bits.
         destination: Operand,
-        /// Field of the radicand, twice as wide as the root.
+        /// Field of pixel memory with the radicand. The field has twice as many bits as the root.
         radicand: Operand,
     },
-    /// Computes destination := a op b.
+    /// Computes destination := a op b in every enabled pixel, for the operation `op`.
     Arithmetic {
         op: ArithmeticOp,
-        /// Field that receives the result.
+        /// Field of pixel memory that receives the result.
         destination: Operand,
-        /// First operand, sign-extended if it is signed, otherwise zero-extended.
+        /// First operand: a field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         a: Operand,
-        /// Second operand, sign-extended if it is signed, otherwise zero-extended.
+        /// Second operand: a field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         b: Operand,
     },
     /// Compares two fields, and disables the pixels for which the comparison is false.
     Compare {
-        /// Comparison that must be true for a pixel to stay enabled.
+        /// Comparison of two numbers in each pixel. A pixel is disabled if the comparison is false.
         test: Test,
-        /// First operand, sign-extended if it is signed, otherwise zero-extended.
+        /// First operand: a field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         a: Operand,
-        /// Second operand, sign-extended if it is signed, otherwise zero-extended.
+        /// Second operand: a field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         b: Operand,
     },
     /// Compares a field with a constant, and disables the pixels for which the comparison is false. The constant has
     /// the width and signedness of the field.
     CompareConstant {
-        /// Comparison that must be true for a pixel to stay enabled.
+        /// Comparison of two numbers in each pixel. A pixel is disabled if the comparison is false.
         test: Test,
         a: Operand,
         /// Constant. A field of less than 32 bits uses its low bits. For a field of more than 32 bits, the constant is
@@ -288,16 +288,16 @@ pub enum ArrayInstruction {
     /// Computes destination := value. For a destination of more than 32 bits, the value is sign-extended if the
     /// destination is signed, otherwise zero-extended.
     LoadConstant {
-        /// Field that receives the constant.
+        /// Field of pixel memory that receives the constant.
         destination: Operand,
         /// Constant that every enabled pixel stores.
         value: u32,
     },
-    /// Computes destination := source * factor.
+    /// Multiplies a field by a constant: destination := source * factor.
     MultiplyConstant {
-        /// Field that receives the product.
+        /// Field of pixel memory that receives the product.
         destination: Operand,
-        /// Field to multiply, sign-extended if it is signed, otherwise zero-extended.
+        /// Field of pixel memory to multiply, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Factor in two's complement. Only its low `factor_bits` bits are used.
         factor: i32,
@@ -320,9 +320,9 @@ pub enum ArrayInstruction {
     },
     /// Waits until all transfers of the backing store have ended.
     Wait,
-    /// Sends a field of 24 bits, from each pixel of the region, to a frame buffer.
+    /// Sends a colour of 24 bits, from each pixel of the region, to a frame buffer.
     Output {
-        /// Field of the colour, 24 bits.
+        /// Field of pixel memory with the colour, 24 bits.
         field: Operand,
         /// Frame buffer, region and lines that receive the pixels.
         target: CopyTarget,

@@ -8,15 +8,15 @@ use std::fmt;
 use std::slice::Iter;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// A pool of pixel arrays. A thread borrows one array while it computes pixels.
+/// A pool of pixel arrays. A thread uses one array of the pool while the thread computes pixels.
 pub struct ArrayPool {
     layout: Layout,
     idle: Mutex<Vec<ArrayAndWords>>,
-    /// Cached pixels of regions without primitives. The key is the size of the region and its command words.
+    /// Cached pixels of regions without primitives. The cache key contains the size and the command words of a region.
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
 
-/// Working memory of one thread that computes pixels.
+/// The pixel array and the word buffer of one thread that computes pixels.
 struct ArrayAndWords {
     array: Lanes,
     /// Buffer for the words of command lists. The thread reuses the buffer to avoid allocations.
@@ -42,7 +42,7 @@ impl fmt::Debug for ArrayPool {
 }
 
 impl ArrayPool {
-    /// Creates a pool. The arrays of the pool have this layout of pixel memory.
+    /// Creates a pool. The arrays of the pool divide pixel memory as `layout` states.
     #[must_use]
     pub fn new(layout: Layout) -> Arc<Self> {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
@@ -86,10 +86,11 @@ impl ArrayPool {
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
     pub(crate) lists: Arc<Vec<CommandContent>>,
-    /// True if the first command list overwrites the whole content of the array.
+    /// True if the first command list overwrites the region's content in pixel memory, so that older content has no
+    /// effect.
     pub(crate) cleared: bool,
-    /// True if two optimizations are on. The first leaves out commands that touch no pixel, and the second caches
-    /// regions without primitives.
+    /// True if commands that touch no pixel are left out and regions without primitives are cached. These are two
+    /// optimizations.
     pub(crate) saves: bool,
     /// Frame buffer and region that receive the pixels.
     pub(crate) target: CopyTarget,
@@ -132,7 +133,7 @@ impl PixelJob {
         (self.content == CopyContent::Colour).then_some(region)
     }
 
-    /// Returns the number of columns and rows of the region. Each number can be less than the array's 128.
+    /// Returns the number of columns and rows of the region. Each number is at most 128, the size of the array.
     fn size(&self) -> [u32; 2] {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         [width, height]
@@ -161,8 +162,8 @@ impl PixelJob {
         self.content.of(colours, || self.depths(array))
     }
 
-    /// Executes words, and returns the pixels of the last output to the frame buffer of this job. A fault ends the
-    /// list, as on the hardware. Pixels drawn before the fault stay.
+    /// Executes words, and returns the pixels of the last output to the frame buffer of this job. An illegal
+    /// instruction ends the list, as on the hardware. Pixels drawn before the illegal instruction stay.
     fn execute(&self, array: &mut Lanes, words: &[Word]) -> Option<OutputRegion> {
         self.copied(array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs))
     }
@@ -171,7 +172,8 @@ impl PixelJob {
         outputs.into_iter().rfind(|output| output.target == self.target)
     }
 
-    /// Returns the depths of the region's pixels in 24 bits. A depth of 0 is the near plane.
+    /// Returns the depths of the region's pixels as 24-bit numbers, from 0 at the near plane to 2^24 - 1 at the far
+    /// plane.
     ///
     /// A layout with a narrower Z does not store the low bits of the depth. These bits are set to 1 at the far plane
     /// and to 0 at other pixels.
@@ -190,7 +192,7 @@ impl PixelSource for PixelJob {
     }
 }
 
-/// The farthest depth in 24 bits.
+/// The depth of the far plane in 24 bits.
 const DEPTH_FARTHEST: Word = (1 << Z_BITS) - 1;
 
 /// Pixels of a copied region while the computation of pixels is off. All these pixels are zero.
@@ -226,8 +228,8 @@ mod tests {
         }
     }
 
-    /// Returns the pixels of a region after a clear command with the given colour. `picture` is the picture number of
-    /// the region.
+    /// Returns the pixels of a region after a clear command with the background colour `colour`. `picture` is the
+    /// picture number of the region.
     fn cleared(pool: &Arc<ArrayPool>, colour: Word, picture: u64) -> Arc<[Word]> {
         let target = CopyTarget {
             frame_buffer: NodeId(9),

@@ -29,7 +29,7 @@ use pxpl5_wire::{CommandContent, CommandSink, REGION_SIZE, TriangleBatch, Word};
 use std::sync::Arc;
 use template::Templates;
 
-/// Pixel array that keeps one word for each field of each pixel.
+/// Pixel array that keeps a 32-bit word for each field (such as depth or colour) of each pixel.
 ///
 /// The array recognizes whole commands of its layout, and touches only the pixels that a command can change. The array
 /// executes all other instructions on all pixels, one field after the other.
@@ -57,8 +57,8 @@ impl Lanes {
         Self::with_vectors(layout, Vectors::best())
     }
 
-    /// Creates an array of zeros that uses the given vector unit, or the portable unit if the processor lacks the given
-    /// unit.
+    /// Creates an array of zeros that computes with the vector instructions `vectors`. If the computer lacks these
+    /// instructions, the array uses portable code.
     #[must_use]
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {

@@ -6,7 +6,7 @@ use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
-/// A division of pixel memory into fields, before any check.
+/// A division of pixel memory into fields (sequences of bits) that was not checked yet.
 ///
 /// Addresses of a context's fields are relative to the context's first bit, which is bit `i * context_bits` for context
 /// `i`. The address of the scratch is absolute, and all contexts share this field. Sharing is safe, because no command
@@ -21,21 +21,21 @@ pub struct ContextPlan {
     pub context_bits: u8,
     /// Field of the colour in each context: 24 bits, 0xRRGGBB.
     pub colour: Operand,
-    /// Field of the depth, 8 to 24 bits. A smaller depth is nearer.
+    /// Field of the depth in each context, 8 to 24 bits. A smaller depth is nearer.
     pub z: Operand,
-    /// Field of the normal: x, y and z in this order, 12 bits each, two's complement. `None` if the layout does not
-    /// support Phong shading.
+    /// Field of the normal in each context: x, y and z in this order, 12 bits each, two's complement. `None` if the
+    /// layout does not support Phong shading.
     pub normal: Option<Operand>,
     /// Field for temporary values of sphere and shading commands.
     pub scratch: Option<Operand>,
 }
 
-/// A checked division of pixel memory.
+/// A division of pixel memory into fields (sequences of bits) that do not overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout(ContextPlan);
 
-/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 of Z and 36 of normal, and 124
-/// bits of scratch.
+/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 bits of Z and 36 bits of
+/// normal. The remaining 124 bits are scratch memory.
 const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     name: "rendering control, Phong",
     contexts: 1,
@@ -97,7 +97,7 @@ impl Layout {
         Self(SLATS_QUARTERS)
     }
 
-    /// Creates a layout from a plan.
+    /// Checks the fields of `plan` and creates the layout.
     ///
     /// # Errors
     /// Returns a [`SettingError`] if a field has a wrong width, or if fields overlap or extend beyond pixel memory. The
@@ -168,7 +168,7 @@ impl Layout {
 /// A named range of bits in pixel memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldRange {
-    /// Index of the context and name of the field, or *scratch*.
+    /// Name of the range in error messages: `scratch`, or the context and the field, for example `context 0 z`.
     pub name: String,
     /// First bit in pixel memory, 0 to 207.
     pub first: u32,
@@ -222,7 +222,8 @@ fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     out
 }
 
-/// Returns one entry for each bit range of a plan: the text of the range's error, or `None` if the range has no error.
+/// Returns one entry for each bit range in `ranges`: a text that describes the range's error, or `None` if the range
+/// has no error.
 fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
@@ -233,8 +234,8 @@ fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     out
 }
 
-/// Returns the error text of a bit range that overlaps an earlier range or extends beyond pixel memory. Returns `None`
-/// for other ranges.
+/// Returns the error text of a bit range that overlaps one of the ranges `before` or extends beyond pixel memory.
+/// Returns `None` if neither is true.
 fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
     if range.end() > MEMORY_BITS {
         return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));

@@ -11,7 +11,7 @@
 //!
 //! # Behaviour, in the order of processing
 //!
-//! 1. Messages bring commands. The array is SIMD, so simulated time depends only on the kinds of the commands
+//! 1. Messages bring commands. The array is SIMD, so the time of a command depends only on the command's kind
 //!    ([`RendererTiming`], [`Renderer`]).
 //! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]). [`isa`] defines the
 //!    instructions, their words, clocks and effects. A [`Layout`] places the fields in pixel memory.
@@ -21,8 +21,8 @@
 //!    root gives depth, normal and light. [`Shade`] computes colours from normals once, at the end of the frame.
 //! 4. Pixels are computed separately from time. The reference model [`BitSerial`] moves bit planes like the hardware,
 //!    and defines every bit. [`BitSerial::skipping`] leaves out work that changes nothing. [`Lanes`] computes with
-//!    whole values, and only at the pixels that a command can change. The suite in [`conformance`] tests that all three
-//!    arrays agree in the 208 bits of all pixels, Enable, clocks and faults.
+//!    whole numbers instead of single bits, and only at the pixels that a command can change. The suite in
+//!    [`conformance`] tests that all three arrays agree in the 208 bits of all pixels, Enable, clocks and faults.
 //!
 //! # Numbers
 //!
@@ -32,7 +32,8 @@
 //!
 //! # Faults
 //!
-//! An illegal word or operand has no effect, ends its list, and is counted ([`ArrayFault`], [`PixelArray::faults`]).
+//! An instruction with an illegal word or operand has no effect. The fault ends the list of commands and is counted
+//! ([`ArrayFault`], [`PixelArray::faults`]).
 //!
 //! # Not modelled
 //!
@@ -41,7 +42,7 @@
 //! - The split of the array into 64 chips. The filling of the evaluator's pipeline, except for a constant number of
 //!   clocks for each instruction.
 //! - The state of a block of the backing store during its transfer. The array moves the whole block at the start of the
-//!   transfer. Only the busy time of the backing store continues after that.
+//!   transfer. The backing store nevertheless stays busy for the time of the transfer.
 //! - Antialiasing, texture, transparency.
 //!
 //! Sources: F89 (array, evaluator, memory, backing store), TR94 (recipe, rates, regions, Slats' four contexts), LK

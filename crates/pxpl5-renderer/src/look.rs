@@ -20,14 +20,15 @@ pub struct RendererSnapshot {
     pub copying: Option<CopyOrder>,
     /// True while the controller executes commands other than copies.
     pub executing: bool,
-    /// Region for which the commands that started last draw. The value becomes `None` when the region's copy command
+    /// Region that the most recently started commands draw. The value becomes `None` when the region's copy command
     /// starts. The value is also `None` without [`Renderer::watch_fifo`](crate::Renderer::watch_fifo), or if the sender
     /// of the commands does not state the region.
     pub drawing: Option<RegionPlace>,
-    /// Number of regions that are in the backing store or wait for their transfer to the backing store.
+    /// Number of finished regions that are in the backing store, or that wait in pixel memory for the transfer to the
+    /// backing store.
     pub stored_regions: usize,
-    /// Time spent executing commands since the start of the run, without copies. A received command counts immediately,
-    /// even before its execution.
+    /// Time spent executing commands since the start of the simulation, without copies. A received command counts
+    /// immediately, even before its execution.
     pub busy: Span,
 }
 
@@ -39,20 +40,20 @@ impl RendererSnapshot {
     }
 }
 
-/// Received command lists that still affect pixel memory, or will affect pixel memory later.
+/// Received command lists that affect pixel memory now or will affect pixel memory later.
 #[derive(Debug, Default)]
 pub(crate) struct SentLists(VecDeque<SentList>);
 
 #[derive(Debug)]
 struct SentList {
     context: usize,
-    /// Number of words that were sent before this list, since the start of the run.
+    /// Number of words that the renderer received before this list, since the start of the simulation.
     first_word: u64,
-    /// Index of the first word of the clear command at the beginning of the list, counted since the start of the run.
-    /// `None` if the list does not begin with a clear command.
+    /// Index of the first word of the clear command at the beginning of the list, counted since the start of the
+    /// simulation. `None` if the list does not begin with a clear command.
     clear: Option<u64>,
-    /// Index of the first word of the copy command that ends the region, counted since the start of the run. `None`
-    /// until this command is received.
+    /// Index of the first word of the copy command that ends the region, counted since the start of the simulation.
+    /// `None` until this command is received.
     copy: Option<u64>,
     content: CommandContent,
 }
@@ -75,7 +76,7 @@ impl SentLists {
         open.for_each(|list| list.copy = Some(first_word + before));
     }
 
-    /// Returns the region for which the last started list draws. `started` is the number of words in commands that
+    /// Returns the region that the last started command list draws. `started` is the number of words in commands that
     /// have started. Returns `None` if the copy command of the region has started.
     pub(crate) fn drawing(&self, started: u64) -> Option<RegionPlace> {
         let last = self.0.iter().rfind(|list| list.first_word < started)?;
@@ -89,8 +90,8 @@ impl SentLists {
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }
 
-    /// Returns the index of the first word of the latest list in a context whose clear command has started. Earlier
-    /// lists of the context no longer affect pixels. Returns 0 if no clear command has started.
+    /// Among the lists of a context whose clear command has started, returns the index of the first word of the latest
+    /// list. Earlier lists of the context no longer affect pixels. Returns 0 if no clear command has started.
     fn cleared_at(&self, context: usize, started: u64) -> u64 {
         let of_context = self.0.iter().filter(|list| list.context == context);
         of_context

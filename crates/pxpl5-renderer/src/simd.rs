@@ -1,8 +1,9 @@
-//! Choice of the vector unit at run time.
+//! Choice of the vector instructions (such as AVX2) at run time.
 //!
 //! All `unsafe` code of this crate is in this file, in `simd/x86.rs` and in `simd/wasm.rs`. The code first checks that
 //! the processor has a vector unit, then calls functions that are compiled for this unit. WebAssembly has one vector
-//! unit for a whole module, chosen at compile time. The bench groups `lanes/Portable` and `lanes/Avx2` of `cargo bench
+//! unit for a whole module, chosen at compile time. The benchmark groups `lanes/Portable` and `lanes/Avx2` of `cargo
+//! bench
 //! -p pxpl5-renderer` measure the gain.
 #![allow(unsafe_code)] // The compiler cannot check the features of the processor.
 
@@ -20,14 +21,14 @@ const ROW: usize = REGION_SIZE as usize;
 /// Number of adjacent pixels in each group of a vector that covers several rows. The next group lies one row below.
 pub(crate) const FOUR: usize = 4;
 
-/// The best vector unit that pixel arrays may choose, as its index in [`Vectors`].
+/// The fastest vector unit that new pixel arrays may choose, as the unit's index in [`Vectors`].
 static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
 
-/// A vector unit for which kernels are compiled. All units give the same bits.
+/// A set of vector instructions for which the loops of this crate are compiled. All sets give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Vectors {
-    /// Instructions that every processor of the target has.
+    /// No vector instructions beyond those that every processor of the compiler's target has.
     Portable,
     /// WebAssembly with simd128: two vectors of four 32-bit numbers.
     Simd128,
@@ -38,23 +39,23 @@ pub enum Vectors {
 }
 
 impl Vectors {
-    /// All units, from the slowest to the fastest. The discriminant of a unit is its index.
+    /// All vector units, from the slowest to the fastest. The discriminant of a unit is the unit's index in this array.
     const ALL: [Self; 4] = [Self::Portable, Self::Simd128, Self::Avx2, Self::Avx512];
 
-    /// Returns all units that this processor has, from the slowest to the fastest.
+    /// Returns all vector units that the running computer has, from the slowest to the fastest.
     #[must_use]
     pub fn available() -> Vec<Self> {
         Self::ALL.into_iter().filter(|vectors| vectors.present()).collect()
     }
 
-    /// Returns the fastest unit that this processor has and that [`Vectors::at_most`] allows.
+    /// Returns the fastest vector unit that the running computer has and that [`Vectors::at_most`] allows.
     #[must_use]
     pub fn best() -> Self {
         let most = MOST.load(Ordering::Relaxed) as usize;
         Self::ALL[..=most].iter().rev().copied().find(|vectors| vectors.present()).unwrap_or(Self::Portable)
     }
 
-    /// Limits the units that new pixel arrays of this process choose without an explicit request.
+    /// Makes this vector unit the fastest unit that new pixel arrays of this process choose by default.
     ///
     /// The tests in `tests/hashes.rs` use the limit to run whole experiments on each unit. Existing arrays keep their
     /// units.
@@ -84,17 +85,17 @@ impl Vectors {
     }
 }
 
-/// A vector unit that this processor has, according to a check.
+/// A vector unit that was checked to be present in the running computer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PresentVectors(Vectors);
 
 impl PresentVectors {
-    /// Returns `wanted` if the processor has this unit, otherwise the portable unit.
+    /// Returns `wanted` if the running computer has this unit, otherwise [`Vectors::Portable`].
     pub(crate) fn or_portable(wanted: Vectors) -> Self {
         Self(if wanted.present() { wanted } else { Vectors::Portable })
     }
 
-    /// Runs the version of the loop `kernel` that is compiled for this unit.
+    /// Runs the loop `kernel` in the version that is compiled for this vector unit.
     #[inline]
     pub(crate) fn run<K: VectorKernel>(self, kernel: K) -> K::Output {
         match self.0 {
@@ -111,8 +112,8 @@ impl PresentVectors {
     }
 }
 
-/// A loop to vectorize. The method `run` must be `#[inline(always)]`. Otherwise, the compiler does not use the unit's
-/// instructions in `run`.
+/// A loop that is compiled once for each vector unit. The method `run` must be `#[inline(always)]`. Otherwise, the
+/// compiler does not use the unit's instructions in `run`.
 pub(crate) trait VectorKernel {
     type Output;
     fn run<V: SimdVector>(self) -> Self::Output;
@@ -130,7 +131,7 @@ fn avx512<K: VectorKernel>(kernel: K) -> K::Output {
     kernel.run::<x86::Avx512>()
 }
 
-/// A vector of 32-bit integers. Kernels use vectors explicitly, because compilers do not vectorize short loops.
+/// A vector of 32-bit integers. The loops use vectors explicitly, because compilers do not vectorize short loops.
 pub(crate) trait SimdVector: Copy {
     /// Number of integers in a vector. The number is a divisor of 128.
     const LANES: usize;
@@ -140,16 +141,16 @@ pub(crate) trait SimdVector: Copy {
     fn splat(value: i32) -> Self;
     /// Returns the numbers first, first + step, first + 2 step and so on, modulo 2^32.
     fn ramp(first: i32, step: i32) -> Self;
-    /// Returns the numbers of [`Self::ramp`] in groups of [four](FOUR) lanes. Each group begins `down` higher than the
-    /// previous group.
+    /// Returns groups of [four](FOUR) numbers. A group consists of n, n + step, n + 2 step and n + 3 step. The first
+    /// group has n = `first`, and n grows by `down` from group to group.
     fn ramp_of_fours(first: i32, step: i32, down: i32) -> Self;
-    /// Loads the first integers of `from`, one for each lane. `from` must be long enough.
+    /// Loads the first integers of `from`, one for each lane. `from` must have at least [`Self::LANES`] integers.
     fn load(from: &[u32]) -> Self;
     /// Loads groups of [four](FOUR) pixels, one group from the start of each row. `from` begins at the first row.
     fn load_fours(from: &[u32]) -> Self;
-    /// Loads words of two lanes each, the low half first.
+    /// Loads 64-bit words. The low half of each word fills one lane, and the high half fills the next lane.
     fn load_words(from: &[u64]) -> Self;
-    /// Stores as many words as [`SimdVector::load_words`] reads.
+    /// Stores the vector as 64-bit words, in the format of [`SimdVector::load_words`].
     fn store_words(self, to: &mut [u64]);
     /// Sets lane i to all ones if bit i of `bits` is set, else to zero.
     fn spread(bits: u64) -> Self;
@@ -165,16 +166,17 @@ pub(crate) trait SimdVector: Copy {
     fn shift_right(self, by: u32) -> Self;
     /// Shifts each lane left and fills the lower bits with zeros. A shift by 32 or more gives 0.
     fn shift_left(self, by: u32) -> Self;
-    /// Returns true for the lanes where self >= 0 and `new` < `old`. All numbers are signed.
+    /// Returns a mask that is true in the lanes where `self` >= 0 and `new` < `old`. All numbers are signed.
     fn passes(self, new: Self, old: Self) -> Self::Mask;
     /// Returns true if any lane of either mask is true.
     fn any_of(a: Self::Mask, b: Self::Mask) -> bool;
-    /// Overwrites the words of `to` in the lanes where the mask is true. `old` must be the current content of `to`.
+    /// Overwrites the words of `to` in the lanes where the mask is true. `old` must be equal to the words of `to`
+    /// before the call.
     fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
-    /// Overwrites the pixels that [`SimdVector::load_fours`] reads, where the mask is true. `old` must be the current
-    /// content of these pixels.
+    /// Overwrites the pixels that [`SimdVector::load_fours`] reads, in the lanes where the mask is true. `old` must be
+    /// equal to these pixels before the call.
     fn store_fours(self, mask: Self::Mask, old: Self, to: &mut [u32]);
-    /// Stores one byte for each lane: 255 where the mask is true, else 0.
+    /// Stores one byte for each lane: 255 if the mask is true in this lane, else 0.
     fn store_mask(mask: Self::Mask, to: &mut [u8]);
 }
 
@@ -337,7 +339,7 @@ impl SimdVector for PortableVector {
 mod tests {
     use super::*;
 
-    /// A kernel that shifts all lanes of a vector in both directions.
+    /// A loop that shifts all lanes of a vector left and right.
     struct Shifts {
         values: [u32; 16],
         by: u32,
@@ -378,7 +380,7 @@ mod tests {
     /// Results of the operations of a vector unit, each with the name of the operation.
     type Done = Vec<(&'static str, Vec<u32>)>;
 
-    /// A kernel that applies every operation to integers in all lanes, and to rows of pixels.
+    /// A loop that applies every operation to integers in all lanes, and to rows of pixels.
     struct Everything {
         a: [u32; 16],
         b: [u32; 16],

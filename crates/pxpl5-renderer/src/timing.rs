@@ -18,9 +18,10 @@ pxpl5_sim::parameters::parameter_table! {
         /// Execution time of a sphere with interpolated colour. In the layout of Slats, the program of the command
         /// takes 748 clocks.
         sphere_clocks: 810, "clocks", Derived, 318..=810 in 0..=MAX, "its program, with an exact root; a paraboloid takes 318";
-        /// Execution time of a sphere with normals.
+        /// Execution time of a sphere with interpolated normals, in each region to which it is sent.
         phong_sphere_clocks: 504, "clocks", Derived, 268..=504 in 0..=MAX, "its program, with an exact root; a paraboloid takes 268";
-        /// Execution time of the command that selects a region context and the region's origin.
+        /// Execution time of the command that selects a context (part of pixel memory for one region) and the region's
+        /// position on the screen.
         select_clocks: 6, "clocks", Derived, 1..=64 in 0..=MAX, "its program: one instruction";
         /// Execution time of the command that stores the background colour and the farthest depth in all pixels.
         clear_clocks: 62, "clocks", Derived, 16..=256 in 0..=MAX, "its program: one clock for each bit of colour and depth, and the fetches";
@@ -30,7 +31,7 @@ pxpl5_sim::parameters::parameter_table! {
         backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us, about 64 chips x 4 bits a clock";
         /// Size of the backing store of each pixel, in bits.
         backing_bits: 4_096, "bits", Published, 4_096..=4_096 in 0..=MAX, "F89: video memory beside each pixel's 208 bits";
-        /// Number of bits of each pixel's backing store that a finished region occupies until it is copied.
+        /// Number of bits of each pixel's backing store that a finished region occupies until the region is copied.
         kept_bits: 32, "bits", Derived, 32..=256 in 1..=MAX, "24 bits of colour, moved in blocks of 32 bits (F89); 256 if all 208 bits of a pixel were kept";
         /// Capacity of the input FIFO in words.
         fifo_words: 448, "words", Assumed, 256..=2048 in 128..=1_048_576, "no source gives the value. The range comes from FIFO chips of 9 bits that were sold from 1988 to 1990. A port of 32 bits needs four chips, and these chips had 256, 512, 1,024 or 2,048 words (recollected). An earlier model with one kept region fitted 448 words to the 56.5 ms of a trivial scene (TR94). The value no longer affects this figure";

@@ -3,14 +3,15 @@
 use crate::{Span, Time};
 use serde::{Deserialize, Serialize};
 
-/// A number of cycles of one clock. Only the crate that defines the clock should use this type.
+/// A number of cycles of one clock. The type does not state which clock, so only code near the definition of the clock
+/// should use this type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cycles(pub u64);
 
 /// A clock whose period is the rational number `numerator_ps / denominator` picoseconds.
 ///
-/// Edge n is at floor(n x period). The time of each edge is computed from time zero, with 128-bit numbers if 64 bits
-/// are too few.
+/// The clock edge with number n is at floor(n x period). The time of each edge is computed from time zero, with 128-bit
+/// numbers if 64 bits are too few.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Clock {
     numerator_ps: u64,
@@ -34,7 +35,7 @@ impl Clock {
         Self::new(1_000_000_000_000, hz)
     }
 
-    /// Returns the time of edge `n`, or [`Time::END`] if the edge would come after the end of time.
+    /// Returns the time of clock edge `n`, or [`Time::END`] if the edge would come after [`Time::END`].
     #[must_use]
     #[inline]
     pub const fn edge(&self, n: u64) -> Time {
@@ -44,8 +45,8 @@ impl Clock {
         }
     }
 
-    /// Returns the time of edge `n` with 128-bit arithmetic. Callers use it only for long times, because it needs
-    /// several times as much host time as 64-bit arithmetic.
+    /// Returns the time of edge `n` with 128-bit arithmetic. This arithmetic is several times slower than 64-bit
+    /// arithmetic, so the function is called only if 64 bits are too few.
     const fn edge_of_long(&self, n: u64) -> Time {
         let exact = n as u128 * self.numerator_ps as u128 / self.denominator as u128;
         if exact < u64::MAX as u128 { Time(exact as u64) } else { Time::END }

@@ -5,8 +5,8 @@ use crate::{EventQueue, Phase, Span, Time};
 
 /// The events that a device schedules for itself, and the outputs of the device.
 ///
-/// `E` is the device's own event type, `O` its output type. After each event, the owner of the devices removes both
-/// lists.
+/// `E` is the device's own event type, `O` its output type. After each event, the code that owns the devices removes
+/// the scheduled events and the outputs.
 #[derive(Debug)]
 pub struct Context<E, O> {
     now: Time,
@@ -55,8 +55,8 @@ impl<E, O> Context<E, O> {
         self.own.drain(..)
     }
 
-    /// Removes the events that were scheduled since the last call and passes each event to `take`, in order. Most calls
-    /// find at most one event.
+    /// Removes the events that were scheduled since the last call and passes the events to `take`, in the order of
+    /// scheduling. Most calls find at most one event.
     #[inline]
     pub fn each_event(&mut self, mut take: impl FnMut(Time, Phase, E)) {
         // The usual case of one event needs no iterator.
@@ -80,12 +80,12 @@ impl<E, O> Context<E, O> {
     }
 }
 
-/// A test bench for one device. The test schedules events for the device and reads its outputs with their times.
+/// A test bench for one device. A test schedules events for the device and reads the device's outputs with their times.
 #[derive(Debug)]
 pub struct TestBench<E, O> {
     queue: EventQueue<E>,
     context: Context<E, O>,
-    /// All outputs of the device, in order.
+    /// All outputs of the device with their times, in the order in which the device made the outputs.
     pub outputs: Vec<(Time, O)>,
 }
 
@@ -96,7 +96,7 @@ impl<E, O> Default for TestBench<E, O> {
 }
 
 impl<E, O> TestBench<E, O> {
-    /// Makes an empty bench at time zero.
+    /// Makes a test bench without events at time zero.
     #[must_use]
     pub fn new() -> Self {
         Self::default()

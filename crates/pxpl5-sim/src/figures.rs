@@ -1,7 +1,8 @@
-//! Published figures next to the values of a model: rows with provenance, definitions, and their tables.
+//! Published figures (numbers in papers) next to the values that a model gives, with their provenance, as rows of
+//! tables.
 //!
 //! Every comparison of a paper with a model uses the same [`FigureRow`]. Each document chooses the columns of its table
-//! from [`mod@column`] or writes its own.
+//! from [`mod@column`] or defines its own columns.
 
 pub mod column;
 mod row;

@@ -58,7 +58,7 @@ impl<T: Keyed> QuadHeap<T> {
         Some(first)
     }
 
-    /// Returns the index and the item of the child with the least key, among the children of a node.
+    /// Among the children of node `place`, returns the index and the item of the child with the least key.
     fn least_child(&self, place: usize) -> Option<(usize, T)> {
         let begin = place * CHILDREN + 1;
         let end = self.items.len().min(begin + CHILDREN);

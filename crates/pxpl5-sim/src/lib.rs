@@ -1,6 +1,6 @@
-//! Discrete-event kernel: exact time, clocks, and an ordered event queue.
+//! Core of a discrete-event simulation: exact time, clocks, and an ordered event queue.
 //!
-//! The kernel contains nothing specific to Pixel-Planes. A *device* is plain state with a method that handles one event
+//! The core contains nothing specific to Pixel-Planes. A *device* is plain state with a method that handles one event
 //! at a time:
 //!
 //! ```text
@@ -13,11 +13,12 @@
 //!
 //! # Ordering contract
 //!
-//! 1. Events are handled in the order of ([`Time`], [`Phase`]). At one instant all inputs *arrive*, then devices *work*
-//!    on them, then observers *observe*.
+//! 1. Events are handled in the order of ([`Time`], [`Phase`]). At each instant, first all inputs *arrive*. Then the
+//!    devices *work* on the inputs. Finally, observers *observe* the state.
 //! 2. Results must not depend on the order of events with the same instant and phase. A device that must choose between
-//!    simultaneous requests stores them in `Arrive`. In `Work`, the device chooses by its own rule (for example first
-//!    come, then lowest port).
+//!    simultaneous requests stores them in `Arrive`. In `Work`, the device chooses one of the stored requests by its
+//!    own rule. For example, a device can choose the earliest request, and the lowest port among requests of the same
+//!    instant.
 //! 3. Events with the same instant and phase are handled in the order of scheduling. [`EventQueue::shuffle_ties`]
 //!    replaces this order by a pseudo-random order. Tests use the pseudo-random order to check point 2.
 //! 4. No event can be scheduled in the past. An attempt is a programming error and causes a panic.
@@ -27,7 +28,8 @@
 //! [`Time`] and [`Span`] are picoseconds in `u64` (213 days). [`Clock`] computes its n-th edge from zero in 128 bits,
 //! so rounding errors do not accumulate. No computation of time uses floating point.
 //!
-//! **Not here:** threads and host time. A simulation runs in one thread, and other crates compute pixels.
+//! **Not here:** threads and the computing time of the simulation. A simulation runs in one thread, and other crates
+//! compute pixels.
 
 mod clock;
 mod context;

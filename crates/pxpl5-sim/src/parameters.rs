@@ -16,9 +16,9 @@
 //! word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94";
 //! ```
 //!
-//! The parts are value, unit, provenance, the *range* that the sources allow, the *limits* within which the model
-//! works, and source. If a line has no limits, the range also serves as the limits. Values are whole numbers (`u64`,
-//! exact) unless the line has the type `f64`:
+//! The parts of a line are the value, the unit, the provenance, the *range*, the *limits* and the source. The range is
+//! the set of values that the sources allow. Within the limits, the model works. If a line has no limits, the range
+//! also serves as the limits. Values are whole numbers (`u64`, exact) unless the line has the type `f64`:
 //!
 //! ```text
 //! /// Error of each axis, rms.
@@ -33,10 +33,10 @@
 //!
 //! # Errors
 //!
-//! All crates have the same two errors for inputs. [`SettingError`] is for a setting, a name or an argument, and
-//! [`FileError`] is for a file or a text. Both state the place, the expected and the found content. Their `kind` tells
-//! programs the reason. A setting that names an unusable file is a [`SettingError`] of the kind
-//! [`File`](SettingErrorKind::File).
+//! All crates of the project use the same two types of errors for inputs. [`SettingError`] is for a setting, a name or
+//! an argument, and [`FileError`] is for a file or a text. An error states the place, the expected content and the
+//! found content. Programs can read the reason from the field `kind`. A setting that names an unusable file is a
+//! [`SettingError`] of the kind [`File`](SettingErrorKind::File).
 //!
 //! **Not here:** rules that relate several parameters, such as "at most the length of a line". The crate that owns the
 //! table checks these rules.

@@ -1,4 +1,4 @@
-//! The event queue of the simulation. The documentation of the crate states the order of events.
+//! The event queue of the simulation. The first page of the crate's documentation states the order of events.
 
 use crate::heap::{Keyed, QuadHeap};
 use crate::{Time, mix};
@@ -15,12 +15,12 @@ pub enum Phase {
     Observe,
 }
 
-/// The time, order and storage slot of a waiting event. The small size of 24 bytes keeps moves within the heap cheap.
+/// The time, order and storage index of a waiting event. The size of only 24 bytes makes moves within the heap fast.
 #[derive(Clone, Copy, Debug)]
 struct Due {
     time: Time,
-    /// The upper two bits have the phase of the event. The lower bits have the number of the scheduling call, or a hash
-    /// of this number.
+    /// The upper two bits have the phase of the event. The lower bits have the number of the call that scheduled the
+    /// event or, if events are shuffled, a hash of this number.
     order: u64,
     slot: u32,
 }
@@ -33,7 +33,7 @@ impl Keyed for Due {
 
 const PHASE_SHIFT: u32 = 62;
 
-/// Greatest length of the sorted list of the earliest events. Insertion into a longer list would be slower than
+/// Greatest length of the sorted list of the earliest events. For a longer list, insertion would be slower than
 /// insertion into the heap.
 const NEAR: usize = 16;
 
@@ -48,11 +48,11 @@ const fn work_key(now: Time) -> u128 {
 #[derive(Debug)]
 pub struct EventQueue<E> {
     heap: QuadHeap<Due>,
-    /// The earliest events, at most [`NEAR`] events, with the next event at the end. If at most [`NEAR`] events wait,
-    /// the heap is empty.
+    /// The earliest waiting events, at most [`NEAR`], with the next event at the end of the list. If at most [`NEAR`]
+    /// events wait, the heap is empty.
     near: Vec<Due>,
-    /// Events in phase `Work` that were scheduled for the current instant during this instant. These events need no
-    /// sorting. The list is unused if events are shuffled.
+    /// Events in phase `Work` of the current instant that were also scheduled at the current instant. These events need
+    /// no sorting. The list is unused if events are shuffled.
     soon: VecDeque<E>,
     events: Vec<Option<E>>,
     free: Vec<u32>,
@@ -133,8 +133,8 @@ impl<E> EventQueue<E> {
         self.near.pop().or_else(|| self.heap.pop())
     }
 
-    /// Returns true if the next event is in `soon`. Two kinds of events come before `soon`: events in phase `Arrive` of
-    /// this instant, and events in phase `Work` that were scheduled before this instant.
+    /// Returns true if the next event is in `soon`. Events of `soon` come after two kinds of events of the current
+    /// instant: events in phase `Arrive`, and events in phase `Work` that were scheduled at an earlier instant.
     fn is_current_work_next(&self, first: Option<Due>) -> bool {
         !self.soon.is_empty() && first.is_none_or(|first| first.key() >= work_key(self.now))
     }
@@ -164,7 +164,8 @@ impl<E> EventQueue<E> {
         Some((due.time, phase, event))
     }
 
-    /// Removes and returns the next event if its time is before `end`. The current time becomes the time of this event.
+    /// Removes and returns the next event if the event's time is before `end`. The current time becomes the time of
+    /// this event.
     pub fn next_event_before(&mut self, end: Time) -> Option<(Time, E)> {
         let first = self.first();
         if self.is_current_work_next(first) {
@@ -183,7 +184,7 @@ impl<E> EventQueue<E> {
         self.soon.pop_front()
     }
 
-    /// Removes an event from its storage slot. The current time becomes the time of this event.
+    /// Removes an event from the storage of waiting events. The current time becomes the time of this event.
     fn take(&mut self, due: Due) -> Option<E> {
         self.now = due.time;
         self.popped += 1;

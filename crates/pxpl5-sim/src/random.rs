@@ -1,4 +1,4 @@
-//! Random numbers that are the same on every host.
+//! Pseudo-random numbers that are the same on every computer.
 
 use crate::trace::{INCREMENT, mix};
 
@@ -18,7 +18,7 @@ impl SplitMix64 {
         Self { state: seed }
     }
 
-    /// Returns the next 64 bits of the sequence.
+    /// Returns the next number of the sequence, which has 64 random bits.
     pub const fn bits(&mut self) -> u64 {
         let bits = mix(self.state);
         self.state = self.state.wrapping_add(INCREMENT);

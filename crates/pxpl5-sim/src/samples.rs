@@ -1,9 +1,11 @@
-//! Collections of numbers for statistics. A limit bounds the memory of long runs.
+//! Collections of numbers for statistics. A collection keeps at most a fixed number of samples, so long simulations
+//! need no more memory.
 
 use crate::statistics::Statistics;
 use std::ops::Deref;
 
-/// Largest number of samples of each kind in a run that keeps only statistics. The samples of one kind take 512 KiB.
+/// Largest number of samples of each measured quantity that a simulation keeps if it only needs statistics. The samples
+/// of one quantity take 512 KiB.
 ///
 /// Under Slats, one sample belongs to a field. Under any other pipeline, one sample belongs to a picture.
 pub const KEPT_SAMPLES: usize = 65_536;
@@ -12,7 +14,7 @@ pub const KEPT_SAMPLES: usize = 65_536;
 ///
 /// Up to the limit, all numbers are kept, and the statistics equal those of [`Statistics::of`] bit for bit. Beyond the
 /// limit, only the first numbers are kept. The statistics are then computed from sums with twice the precision of
-/// `f64`. The results differ from the exact statistics at most in the last digits.
+/// `f64`. These statistics differ from the exact statistics at most in the last digits.
 ///
 /// As a slice, the collection contains the kept numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,8 +104,8 @@ impl IntoIterator for Samples {
     }
 }
 
-/// Sum of the differences of all numbers from the first number, and sum of their squares. Using differences keeps
-/// precision when all numbers are similar.
+/// The sum of the differences between each number and the first number, and the sum of the squares of these
+/// differences. The use of differences keeps the precision if all numbers are similar.
 #[derive(Clone, Debug, PartialEq)]
 struct Moments {
     n: u64,

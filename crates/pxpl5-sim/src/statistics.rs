@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Statistics of a list of numbers: count, mean, sample standard deviation, minimum and maximum.
 ///
-/// For an empty list, all values but the count are NaN. For a single number, the deviation is NaN. JSON shows NaN as
+/// For an empty list, all values except the count are NaN. For a single number, the deviation is NaN. JSON shows NaN as
 /// null.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Statistics {
@@ -35,8 +35,8 @@ pub fn number_or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, 
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
-/// Slightly more than one picosecond, in milliseconds. Times are whole picoseconds, so after rounding, equal times
-/// differ by less than this value.
+/// Slightly more than one picosecond, in milliseconds. Times are whole picoseconds. Two numbers that are rounded from
+/// equal times therefore differ by less than this value.
 const PICOSECOND_MS: f64 = 1.001e-9;
 
 /// Serializes the rounded form that [`Statistics::told`] returns.
@@ -54,9 +54,10 @@ impl Serialize for Statistics {
 }
 
 impl Statistics {
-    /// Returns the statistics for reports and tables, with effects of rounding removed.
+    /// Returns the statistics in the form for reports and tables, without effects of rounding.
     ///
-    /// If all numbers lie within a picosecond, the deviation is 0. The mean lies between the minimum and the maximum.
+    /// If the numbers differ by at most a picosecond, the deviation becomes 0. The mean lies between the minimum and
+    /// the maximum.
     #[must_use]
     pub fn told(self) -> Self {
         if self.n == 0 {
@@ -68,7 +69,7 @@ impl Statistics {
         Self { sd, mean: self.mean.max(self.min).min(self.max), ..self }
     }
 
-    /// Computes the statistics of numbers in any order. No number must be NaN.
+    /// Computes the statistics of numbers in any order. The numbers must not be NaN.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.collect();
@@ -88,7 +89,7 @@ impl Statistics {
         }
     }
 
-    /// Adds a definition of the numbers.
+    /// Adds a sentence that defines the numbers of these statistics.
     #[must_use]
     pub fn defined(self, definition: &str) -> DefinedStatistics {
         DefinedStatistics { statistics: self, definition: definition.to_owned() }

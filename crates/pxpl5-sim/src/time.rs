@@ -1,7 +1,7 @@
 //! Instants and durations of simulated time.
 //!
-//! Time ends after 2^64 ps (213 days). Arithmetic never wraps around: any later instant becomes [`Time::END`]. No run
-//! reaches this instant, so events at [`Time::END`] never happen.
+//! Time ends after 2^64 ps (213 days). Arithmetic never wraps around: any later instant becomes [`Time::END`]. No
+//! simulation reaches this instant, so events at [`Time::END`] never happen.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -19,7 +19,7 @@ impl Time {
     /// The start of simulated time.
     pub const ZERO: Self = Self(0);
 
-    /// The end of simulated time. No run reaches this instant.
+    /// The end of simulated time (213 days), which no simulation reaches.
     pub const END: Self = Self(u64::MAX);
 
     /// Returns the duration from `earlier` to this instant, or zero if `earlier` is later.

@@ -1,4 +1,4 @@
-//! A hash of all events of a run. The order of events within an instant does not change the hash.
+//! A hash of all events of a simulation. The order of events within an instant does not change the hash.
 
 use crate::Time;
 use serde::{Deserialize, Serialize};
@@ -6,11 +6,12 @@ use std::fmt;
 use std::num::ParseIntError;
 use std::str::FromStr;
 
-/// The increment of SplitMix64: 2^64 / golden ratio, made odd.
+/// The constant that the generator SplitMix64 adds in each step: the odd number nearest to 2^64 divided by the golden
+/// ratio.
 pub(crate) const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// Mixes 64 bits: each input bit affects about half of the output bits. The function is the finaliser of SplitMix64, a
-/// bijection.
+/// Mixes 64 bits: each input bit affects about half of the output bits. The function is the last step of the generator
+/// SplitMix64. Different inputs give different outputs.
 #[must_use]
 pub const fn mix(value: u64) -> u64 {
     let a = value.wrapping_add(INCREMENT);
@@ -37,7 +38,7 @@ impl TraceHash {
 impl FromStr for TraceHash {
     type Err = ParseIntError;
 
-    /// Parses the 16 hexadecimal digits that `Display` writes.
+    /// Parses a hash from the 16 hexadecimal digits that `Display` writes.
     fn from_str(text: &str) -> Result<Self, ParseIntError> {
         u64::from_str_radix(text, 16).map(Self)
     }

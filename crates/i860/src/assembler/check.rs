@@ -13,7 +13,7 @@
 //!   a pair.
 //! * A pipelined multiply does not have its first source as destination.
 //! * No result is read from a pipe after a scalar operation has destroyed the contents of the pipe. Programs that empty
-//!   a pipe read such results and ignore them.
+//!   a pipe read destroyed results and ignore these results.
 //!
 //! The rules for pairs are checked in address order. The check does not follow jumps into the middle of
 //! dual-instruction code.
@@ -26,7 +26,7 @@ use std::collections::BTreeSet;
 
 type Located = (u32, usize, Instruction);
 
-/// A rule that some working programs break. The assembler only warns if a program breaks such a rule.
+/// A rule that some working programs break. The assembler only prints a warning if a program breaks this rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rule {
     /// Rule: a `d.` instruction has an address that is a multiple of 8.
@@ -38,7 +38,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// All rules with their names. A user turns the warnings of a rule off by this name.
+    /// All rules with the names that a user writes to turn off the warnings of a rule.
     pub const NAMES: [(&'static str, Self); 3] =
         [("alignment", Self::Alignment), ("multiply-source", Self::MultiplySource), ("lost-result", Self::LostResult)];
 
@@ -71,14 +71,14 @@ pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usiz
     each.chain(lost).collect()
 }
 
-/// Number of operations that entered a pipe after the last scalar operation. `None` means that the contents of the pipe
-/// are unknown.
+/// Number of operations that entered a pipe after the last scalar operation, which destroyed the older contents. `None`
+/// if the contents of the pipe are unknown.
 #[derive(Clone, Copy, Default)]
 struct PipeFill(Option<usize>);
 
 impl PipeFill {
-    /// Returns true if the next result that leaves the pipe was destroyed by a scalar operation. `stages` is the length
-    /// of the pipe.
+    /// Returns true if a scalar operation has destroyed the result that leaves the pipe next. `stages` is the number of
+    /// stages of the pipe.
     fn is_result_lost(self, stages: usize) -> bool {
         self.0.is_some_and(|operations| operations < stages)
     }
@@ -88,7 +88,8 @@ impl PipeFill {
     }
 }
 
-/// Effects of an instruction on the pipes: first elements for the adder's pipe, second elements for the multiplier's.
+/// Effects of an instruction on the two pipes. In each array, the first element is for the adder's pipe, and the second
+/// element is for the multiplier's pipe.
 #[derive(Clone, Copy, Default)]
 struct PipeUse {
     scalar: [bool; 2],
@@ -206,8 +207,8 @@ fn writes(i: &Instruction) -> u64 {
     }
 }
 
-/// Returns the mask of the floating-point registers of a destination. f0 and f1 are left out, because they cannot be
-/// written.
+/// Returns a bit mask of the floating-point registers that a destination of `bytes` bytes from register `dest` on
+/// occupies. f0 and f1 are left out, because these registers are always 0.
 fn writable_float_mask(dest: u8, bytes: u8) -> u64 {
     float_mask(dest, bytes) & !(3 << 32)
 }
@@ -217,7 +218,7 @@ fn integer_mask(n: u8) -> u64 {
     1 << n & !1
 }
 
-/// Checks every pair of the program, in the order in which dual-instruction mode reaches the pairs.
+/// Checks the rules for all pairs of a program, in address order. Returns the errors with their source lines.
 fn pairs(program: &[Located]) -> Vec<(usize, String)> {
     let mut faults = Vec::new();
     let mut mode = Mode::Single;
@@ -255,8 +256,8 @@ fn fault(second: bool, reason: &str) -> Option<(bool, String)> {
     Some((second, reason.to_owned()))
 }
 
-/// Returns the description of the rule that a pair breaks, or `None`. The boolean is true if the second half of the
-/// pair causes the error.
+/// Returns the description of the rule that a pair breaks, or `None` if the pair breaks no rule. The boolean is true if
+/// the second instruction of the pair causes the error.
 fn pair(low: &Instruction, high: &Instruction) -> Option<(bool, String)> {
     let compares = matches!(low.op, Op::Pfgt | Op::Pfle | Op::Pfeq);
     match () {

@@ -11,9 +11,9 @@ use std::borrow::Cow;
 struct Open {
     /// Line number of the `.if`.
     line: usize,
-    /// True if the lines around this `.if` are assembled.
+    /// True if this `.if` itself is in assembled code, and not in an excluded branch of an enclosing `.if`.
     outer: bool,
-    /// True while lines of the current branch are assembled.
+    /// True if the lines of the branch that is being read are assembled.
     selected: bool,
     /// True once a branch of this `.if` was selected. Later branches of the `.if` are then excluded.
     done: bool,
@@ -29,8 +29,7 @@ impl Open {
     }
 }
 
-/// Replaces two kinds of lines by empty lines: lines that a condition excludes, and lines with conditions. Line numbers
-/// stay the same.
+/// Replaces excluded lines and the conditional directives themselves by empty lines. Line numbers stay the same.
 ///
 /// # Errors
 /// Returns the line number and the reason.
@@ -78,8 +77,8 @@ pub(crate) fn select(source: &str) -> Result<Cow<'_, str>, (usize, String)> {
     }
 }
 
-/// Stores the constant that a line defines. A line with an unknown name defines no constant for conditions. Such a line
-/// may be linear code, or may use a label whose address is not known yet.
+/// Stores the constant that a line defines. If the value contains an unknown name, no constant is stored. Such a line
+/// can be linear code, or can use a label whose address is not known yet.
 fn define(code: &str, constants: &mut Symbols) {
     let equ = code.strip_prefix(".equ").or_else(|| code.strip_prefix(".set"));
     let parts = equ.map_or_else(|| code.split_once('='), |rest| rest.split_once(','));

@@ -7,7 +7,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{line}: {reason}", if file.is_empty() { "line ".to_owned() } else { format!("{file}:") })]
 pub struct AssemblyError {
-    /// File name as given to [`assemble`](crate::assemble). Empty for code of [`linear`](crate::linear).
+    /// File name that was passed to [`assemble`](crate::assemble). Empty for code of [`linear`](crate::linear).
     pub file: String,
     /// Line number of the error, counted from 1. For text from a macro, this is the line of the macro call.
     pub line: usize,
@@ -16,16 +16,16 @@ pub struct AssemblyError {
 }
 
 impl AssemblyError {
-    /// Creates the error of a line of a text without a file.
+    /// Creates an error for line `line` of a source text that has no file name.
     pub(crate) const fn in_line(line: usize, reason: String) -> Self {
         Self { file: String::new(), line, reason }
     }
 }
 
-/// A warning that the program breaks a rule. The program can nevertheless be right.
+/// A warning that the program breaks a rule that some working programs also break.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AssemblyWarning {
-    /// File name as given to [`assemble`](crate::assemble).
+    /// File name that was passed to [`assemble`](crate::assemble).
     pub file: String,
     /// Line number of the warning, counted from 1. For text from a macro, this is the line of the macro call.
     pub line: usize,

@@ -14,7 +14,7 @@ struct Parser<'a> {
     depth: u32,
 }
 
-/// Computes the value of an expression of numbers, symbols and operators, with 64 bits.
+/// Computes the value of an expression of numbers, symbols and operators in 64-bit integer arithmetic.
 pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     let mut parser = Parser { text: text.trim(), symbols, depth: 0 };
     if parser.text.is_empty() {
@@ -27,8 +27,8 @@ pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     }
 }
 
-/// Binary operators by precedence, the operators that bind most weakly first. [`PRODUCTS`] has the operators that bind
-/// most strongly.
+/// Binary operators in the order of precedence, the lowest precedence first. [`PRODUCTS`] has the operators of the
+/// highest precedence.
 const LEVELS: [&[&str]; 6] = [&["|"], &["^"], &["&"], &["==", "!="], &["<<", ">>"], &["+", "-"]];
 const PRODUCTS: &[&str] = &["*", "/", "%"];
 

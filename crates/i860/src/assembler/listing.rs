@@ -4,8 +4,8 @@ use super::{Data, DataKind, Program};
 use crate::disassembler::disassemble;
 use std::fmt::Write as _;
 
-/// Width of the column with the instruction text. The source begins after this column. Assumed: wider than nearly all
-/// instructions.
+/// Width in characters of the column with the instruction text. The source line follows in the next column. The width
+/// is chosen so that nearly all instructions fit.
 const TEXT_COLUMNS: usize = 30;
 
 impl Program {
@@ -59,7 +59,7 @@ struct Rows<'a> {
     /// Labels that are not listed yet, sorted by address.
     labels: &'a [(String, u32)],
     source: Vec<&'a str>,
-    /// Number of the source line to which the previous row of the listing belongs.
+    /// Number of the source line of the last row that was written.
     line: usize,
 }
 
@@ -100,7 +100,7 @@ impl Rows<'_> {
     }
 }
 
-/// Returns the text of the assembler directive that produces the number.
+/// Returns the text of the data directive that puts `number` into `bytes` bytes of memory, for example `.long 0x7`.
 fn text(kind: DataKind, number: u64, bytes: u32) -> String {
     match kind {
         DataKind::Doubles => format!(".double {:?}", f64::from_bits(number)),

@@ -76,7 +76,8 @@ fn signed16(text: &str, symbols: &Symbols) -> Result<i32, String> {
     in_range(value, -0x8000, 0x7FFF)
 }
 
-/// An instruction under construction. The fields of the instruction are filled from the texts of the operands.
+/// An instruction that the assembler is building. The fields of the instruction are filled from the texts of the
+/// operands.
 pub(super) struct Filler<'a> {
     pub(super) i: Instruction,
     pub(super) pc: u32,

@@ -12,23 +12,22 @@ pub(super) struct Line {
     pub(super) text: String,
 }
 
-/// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. The value is
-/// assumed, and permits a million repetitions of one line.
+/// Greatest number of lines that macros and repetitions can produce, including lines of skipped bodies. The limit is
+/// chosen so that a line can be repeated a million times.
 const MOST_STEPS: usize = 1 << 21;
-/// Greatest size of the expanded text, in bytes. The value is assumed, and permits four bytes for each byte of
-/// the longest program.
+/// Greatest size of the expanded text, in bytes. The limit is chosen as four times the size of the longest program.
 const MOST_TEXT: usize = 64 << 20;
 /// Greatest nesting depth of macros and repetitions.
 const MOST_DEPTH: u32 = 32;
 
-/// The remaining budget of lines and bytes for macro expansion. For the error message, the budget also records the
-/// source line with the greatest use.
+/// The remaining budget of lines and bytes for macro expansion. The error message names the source line that has used
+/// the greatest part, so the budget also records this line.
 struct Budget {
     steps: usize,
     text: usize,
     /// Number of the line that is being expanded, and the remaining budget at the start of this expansion.
     current: (usize, usize),
-    /// Line number of the earlier line with the greatest use of the budget, and the amount that it used.
+    /// Line number of the source line that has used the greatest part of the budget so far, and the used amount.
     largest_user: (usize, usize),
 }
 
@@ -63,7 +62,7 @@ impl Budget {
     }
 }
 
-/// An error of the preprocessor: number of the source line, and description.
+/// An error of the preprocessor: the number of the wrong source line, and a description.
 type AssemblyFault = (usize, String);
 
 fn spent() -> String {
@@ -135,7 +134,8 @@ impl Expander<'_> {
         Ok(())
     }
 
-    /// Returns the number of lines up to the line that closes a block, for example `.endm`. Nested blocks are included.
+    /// Returns the index, in `lines`, of the line with the word `close` (for example `.endm`) that ends a macro or
+    /// repetition. The first line of `lines` has the word `open`. Nested macros and repetitions belong to the body.
     fn body_len(&mut self, lines: &[Line], open: &str, close: &str) -> Result<usize, AssemblyError> {
         let mut depth = 0;
         for (n, line) in lines.iter().enumerate() {

@@ -43,7 +43,7 @@ impl Width {
     }
 }
 
-/// The properties of an operation that has a name in linear code.
+/// The name of an operation in linear code, with the properties of the operation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Name {
     pub(super) unit: Unit,
@@ -53,7 +53,8 @@ pub(super) struct Name {
     pub(super) sources: usize,
     /// True if the operation has a memory address.
     pub(super) addresses: bool,
-    /// Number of clocks from the issue to the first possible use of the result, without freezes.
+    /// Number of clocks from the issue of the operation to the first issue of an instruction that can use the result
+    /// without a freeze.
     pub(super) latency: u32,
 }
 
@@ -73,7 +74,7 @@ const ADDER: u32 = 4;
 const MULTIPLIER: u32 = 4;
 const MULTIPLIER_DOUBLE: u32 = 5;
 
-/// Returns the operation that has a name of linear code, such as `mul.sd`.
+/// Finds an operation by its name in linear code, such as `mul.sd`.
 pub(super) fn named(text: &str) -> Option<Name> {
     use Unit::{Adder, Graphics, Integer, Multiplier, Prefetch, Seed};
     use Width::{Double, Quad, Single};

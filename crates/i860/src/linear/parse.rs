@@ -6,11 +6,11 @@ use super::settings::Settings;
 use crate::AssemblyError;
 use std::collections::HashMap;
 
-/// An operand in linear code: a value of an earlier line, or a text.
+/// An operand in linear code: the value of an earlier line, or the text of a register or constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The value of an operation: index of the operation, and index of one register of the value. `None` means all
-    /// registers of the value.
+    /// The value of an earlier operation: the index of this operation, and the index of one register of the value.
+    /// `None` selects all registers of the value.
     Value(usize, Option<u8>),
     /// A register or a constant, as the text in the source.
     Text(String),
@@ -21,11 +21,11 @@ pub(super) enum Source {
 pub(super) struct Operation {
     pub(super) name: Name,
     pub(super) sources: Vec<Source>,
-    /// Offset and base register of the operation's memory address, if any.
+    /// Offset and base register of the operation's memory address. `None` if the operation does not access memory.
     pub(super) address: Option<(String, Source)>,
     /// Indices of the stores that must precede this operation.
     pub(super) after: Vec<usize>,
-    /// Register in which the code after the stretch expects the result, if any. No other line of the linear code
+    /// Register in which the code after the linear code expects the result, or `None`. No other line of the linear code
     /// reads this register.
     pub(super) register: Option<u8>,
 }
@@ -220,7 +220,8 @@ fn integer_register(text: &str) -> Option<u8> {
     text.strip_prefix('r').and_then(|n| n.parse().ok()).filter(|n| *n < 32)
 }
 
-/// Splits off the mark `@name` before a store. Later loads use the name to wait for the store.
+/// Splits a line into the mark `@name`, which a store can have, and the rest. A load that must wait for the store names
+/// this mark.
 fn split_mark(text: &str) -> (&str, Option<&str>) {
     match text.strip_prefix('@').and_then(|text| text.split_once(char::is_whitespace)) {
         Some((mark, rest)) => (rest.trim(), Some(mark)),

@@ -14,7 +14,7 @@ const PREFETCH: u32 = 18;
 /// Greatest number of stores that can wait for the bus. A store also occupies the bus for this number of clocks.
 const STORES: u32 = 2;
 const STORE: u32 = 3;
-/// Number of clocks without an issued operation after which the scheduler fails.
+/// Number of successive clocks without an issued operation after which the scheduler fails with an error.
 const PATIENCE: u32 = 80;
 
 /// The instruction pairs of a schedule. Each pair holds the text of its floating-point half and of its core half.
@@ -63,8 +63,8 @@ impl File {
         (0..32).filter(|n| self.is_free(*n, now)).count()
     }
 
-    /// Finds `count` consecutive free registers and returns the first of them. For one or two registers, the function
-    /// prefers a gap beside used registers. The result never contains register `but`.
+    /// Finds `count` consecutive free registers and returns the number of the first register. For one or two registers,
+    /// the function prefers a gap beside used registers. The function never selects register `but`.
     fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
         // The first register of a value is a multiple of its number of registers.
         let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
@@ -106,8 +106,9 @@ struct Placer<'a> {
     now: u32,
     /// Index of the first operation that was not issued yet.
     first: usize,
-    /// Number of following multiplications that must stay single operations. A reciprocal approximation (`frcp`,
-    /// `frsqr`) has destroyed the values in the multiplier's pipe, so a dual operation would read a wrong product.
+    /// Number of multiplications, from the next multiplication on, that must not become dual operations. A reciprocal
+    /// approximation (`frcp`, `frsqr`) has destroyed the values in the multiplier's pipe, so a dual operation would
+    /// read a wrong product.
     after_seed: usize,
     /// Values in the adder's pipe, the oldest value first. `None` is a result that no operation reads.
     adder: Vec<Option<usize>>,
@@ -242,8 +243,7 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns true if a push into the pipe is possible. A push is possible if the value that leaves the pipe finds
-    /// free registers other than `but`.
+    /// Returns true if enough registers other than `but` are free for the value that a push would move out of the pipe.
     fn can_push(&self, pipe: &[Option<usize>], stages: usize, but: Option<u8>) -> bool {
         match pipe[STAGES - stages] {
             Some(value) => self.floats.find(self.width(value).registers(), self.now, but).is_some(),
@@ -283,8 +283,8 @@ impl<'a> Placer<'a> {
         self.register(&sources[usize::from(self.is_last_result(&sources[0]))])
     }
 
-    /// Returns true if enough registers are free for the result and for the values in the pipes. Only the oldest
-    /// operation can use the last free registers.
+    /// Returns true if enough registers are free for the result of operation `n` and for the values in the pipes. Only
+    /// the first unissued operation (`is_oldest`) can use the last free registers.
     fn has_room(&self, n: usize, is_oldest: bool) -> bool {
         let Some(width) = self.operations[n].name.result else { return true };
         let count = width.registers();
@@ -304,7 +304,8 @@ impl<'a> Placer<'a> {
         fits && (free >= coming + count + spare || piped && is_oldest)
     }
 
-    /// Returns the number of registers that an operation must leave free for earlier operations.
+    /// Returns the number of registers that operation `n` must leave free for operations that precede `n` in the
+    /// source.
     fn spare(&self, n: usize) -> usize {
         let behind = n - self.first;
         if behind == 0 { 0 } else { self.settings.reserve + behind * self.settings.slope / 64 }
@@ -323,8 +324,8 @@ impl<'a> Placer<'a> {
         }
     }
 
-    /// Returns the unit (adder or multiplier) whose pipe holds the most urgent value, if this pipe can be pushed. The
-    /// number is the urgency of this value in clocks.
+    /// Returns the unit (adder or multiplier) whose pipe holds the most urgent value, with the urgency of this value in
+    /// clocks. Returns `None` if no pipe with values can be pushed.
     fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
         let double = self.multiplies_double;
         let stages = if double { DOUBLE_STAGES } else { STAGES };
@@ -398,8 +399,8 @@ impl<'a> Placer<'a> {
         format!("{mnemonic} {}, {dest}", texts.join(", "))
     }
 
-    /// Turns a single-precision addition into a dual operation if no result is lost. The dual operation also pushes the
-    /// multiplier's pipe.
+    /// Replaces the mnemonic of a single-precision addition by the mnemonic of a dual operation, if no result is lost.
+    /// The dual operation also pushes the multiplier's pipe.
     fn with_multiplier(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfadd.ss" => "ra1p2.ss",
@@ -415,8 +416,8 @@ impl<'a> Placer<'a> {
         dual
     }
 
-    /// Turns a multiplication into a dual operation if no result is lost. The dual operation also pushes the adder's
-    /// pipe.
+    /// Replaces the mnemonic of a multiplication by the mnemonic of a dual operation, if no result is lost. The dual
+    /// operation also pushes the adder's pipe.
     fn with_adder(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfmul.ss" => "mm12mpm.ss",
@@ -587,7 +588,7 @@ impl<'a> Placer<'a> {
 }
 
 /// Returns the longest path from each operation to the end of the linear code, in clocks. If `shake` is not 0, the
-/// function adds pseudo-random noise, which leads to other schedules.
+/// function adds pseudo-random noise, which changes the schedule.
 fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut heights = vec![0; operations.len()];
     let mut state = u64::from(shake);

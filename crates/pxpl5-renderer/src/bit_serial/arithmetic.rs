@@ -6,8 +6,8 @@ use crate::array::FaultKind;
 use crate::controller::{Controller, FieldBits};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Test};
 
-/// An operand whose bits are read from the least significant bit upwards. After its last bit, the operand continues
-/// with zeros, or with copies of its sign.
+/// An operand whose bits are read from the least significant bit upwards. After its last bit, an unsigned operand
+/// continues with zeros, and a signed operand continues with copies of its sign.
 ///
 /// The sign is saved at the start, because the result can overwrite the operand.
 pub(super) struct SerialOperand {

@@ -1,5 +1,5 @@
-//! Collection of consecutive instructions of a list into a run, and execution of the run. A tile executes the whole run
-//! before the next tile begins.
+//! Collection of consecutive instructions into a sequence, called a run. Each tile of 32 x 16 pixels executes the whole
+//! run before the next tile begins.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};
@@ -11,8 +11,8 @@ use crate::isa::{ArrayInstruction, Expression, LINEAR_BITS, opcode};
 use pxpl5_wire::Word;
 
 impl BitSerial {
-    /// Executes the run of instructions that begins at word `position`, and returns its length in words. Returns 0 if
-    /// no run begins at this word.
+    /// Executes the run (sequence of instructions) that begins at word `position`. Returns the length of the run in
+    /// words, or 0 if no run begins at this word.
     pub(super) fn execute_run(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> usize {
         let mut run = std::mem::take(&mut self.run);
         run.clear();
@@ -28,8 +28,8 @@ impl BitSerial {
         used
     }
 
-    /// Adds the next instruction to the run and returns true. Returns false if the instruction is illegal, or if an
-    /// instruction of this kind cannot belong to a run.
+    /// Adds the instruction at word `position` to the run (a sequence of instructions) and returns true. Returns false
+    /// if the instruction is illegal, or if an instruction of this kind cannot belong to a run.
     fn extend(&mut self, run: &mut InstructionRun, words: &[Word], position: usize) -> bool {
         let position = position + run.words;
         let Some(head) = words.get(position) else { return false };

@@ -1,4 +1,5 @@
-//! Effects of an expression's bits on the pixels of a tile. Each bit takes effect when it arrives.
+//! Effects of an expression's bits on the pixels of a tile (32 x 16 pixels). Each bit takes effect when the bit
+//! arrives.
 
 use super::arithmetic::SerialOperand;
 use super::evaluator::{Evaluator, VectorPlace, full_add};
@@ -26,8 +27,8 @@ pub(super) struct Delivery {
     pub(super) effect: ExpressionEffect,
 }
 
-/// The operation of the pixels with the bits of an expression. A destination field is given by its first bit in pixel
-/// memory.
+/// The operation of the pixels with the bits of an expression. The number of a destination field is the field's first
+/// bit in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,
@@ -82,7 +83,7 @@ impl Delivery {
     }
 }
 
-/// Overwrites the bits of the enabled pixels of a vector in one bit plane.
+/// Stores the bits `new` of a vector's pixels in a bit plane. Disabled pixels keep their old bits.
 #[inline(always)]
 fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
     let old = V::load_words(&plane[at..]);
@@ -101,7 +102,7 @@ impl BitSink for ClearEnable {
     }
 }
 
-/// A sink that stores the bits of an expression in a field. The low `shift` bits of the expression are left out.
+/// A sink that stores the bits of an expression in a field of pixel memory, from bit `shift` of the expression on.
 struct StoreBits {
     first: usize,
     shift: usize,
@@ -114,7 +115,7 @@ impl BitSink for StoreBits {
     }
 }
 
-/// A sink that adds the bits of an expression to a field. The low `shift` bits of the expression are left out.
+/// A sink that adds the bits of an expression to a field of pixel memory, from bit `shift` of the expression on.
 struct AddBits {
     first: usize,
     shift: usize,
@@ -149,7 +150,8 @@ impl BitSink for CompareBits {
     }
 }
 
-/// A sink that stores the expression minus a source field. The low `shift` bits of the difference are left out.
+/// A sink that subtracts a source field from an expression. The sink stores the bits of the difference from bit `shift`
+/// on.
 struct StoreDifference {
     first: usize,
     shift: usize,

@@ -1,5 +1,5 @@
-//! Instructions with an expression. The bits of the expression arrive from the evaluator one by one, and change Enable
-//! or pixel memory.
+//! Execution of instructions that evaluate an expression. The bits of the expression arrive in the pixels one by one,
+//! and change Enable or pixel memory.
 
 use super::BitSerial;
 use super::delivery::{Delivery, ExpressionEffect};
@@ -11,7 +11,7 @@ use crate::isa::{Expression, ExpressionUse, Operand};
 use crate::simd::{SimdVector, VectorKernel};
 use std::ops::Range;
 
-/// A kernel that delivers the bits of an expression to all tiles of the array.
+/// A vectorized loop that delivers the bits of an expression to all tiles of the array.
 struct DeliverToTiles<'a, E: WholeTrees> {
     coefficients: &'a E::Coefficients,
     delivery: &'a Delivery,
@@ -90,8 +90,8 @@ impl BitSerial {
         Ok(Delivery { taken, effect })
     }
 
-    /// Returns the clocks in which a field uses bits of an expression, and the field's first bit in pixel memory. The
-    /// field does not use the expression's first `shift` bits.
+    /// Returns the clocks in which bits of an expression enter the field `field`, and the field's first bit in pixel
+    /// memory. The lowest `shift` bits of the expression do not enter the field.
     fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
         let field = self.controller.bits(field)?;
         let shift = usize::from(shift);

@@ -51,8 +51,8 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
 /// leaf of a tree, which is a column or a row of pixels.
 type Streams = [u64; 8];
 
-/// Adjacent trees of serial adders. For each leaf, a tree multiplies a coefficient by the leaf's index and adds the
-/// product to a bit stream. Each leaf is one bit of a vector.
+/// Adjacent trees of serial adders. A tree multiplies a coefficient by the index of each leaf and adds the product to a
+/// bit stream of this leaf. Each leaf is one bit of a vector.
 pub(super) struct Trees<V, const LEVELS: usize> {
     /// Low and high 32 bits of the coefficients. Each lane holds the coefficient that enters the lane's tree.
     coefficients: [V; 2],
@@ -81,8 +81,9 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Returns bit `t` of the sum at each leaf: the bit stream plus the products of the tree. Callers must pass `t` =
-    /// 0, 1, 2 and so on.
+    /// Multiplies the coefficient by the number of each leaf, adds `stream`, and returns bit `t` of the sums. The
+    /// number of a leaf is the index of its column or row, or the square of this index. Callers must pass `t` = 0, 1, 2
+    /// and so on.
     #[inline(always)]
     pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
         for l in (1..LEVELS).rev() {
@@ -96,15 +97,15 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
     }
 }
 
-/// Splits two coefficients into their low and high 32 bits. Each half is repeated in the four lanes of the tree that
-/// multiplies this coefficient.
+/// Splits two coefficients into their low and high 32 bits. Each half is copied to the four lanes of the adder tree
+/// that multiplies this coefficient.
 #[inline(always)]
 fn in_lanes<V: SimdVector>([first, second]: [i64; 2]) -> [V; 2] {
     [low_halves_in_lanes([first, second]), low_halves_in_lanes([first >> 32, second >> 32])]
 }
 
-/// Returns the low 32 bits of two coefficients. Each value is repeated in the four lanes of the tree that multiplies
-/// this coefficient.
+/// Returns the low 32 bits of two coefficients. Each value is copied to the four lanes of the adder tree that
+/// multiplies this coefficient.
 #[inline(always)]
 fn low_halves_in_lanes<V: SimdVector>(numbers: [i64; 2]) -> V {
     let [first, second] = numbers.map(|number| (number as u32 as u64) << 32 | number as u32 as u64);
@@ -117,7 +118,7 @@ fn bit_of<V: SimdVector>([low, high]: [V; 2], t: usize) -> V {
     if t < 32 { low.bit(t as u32) } else { high.bit(t as u32 - 32) }
 }
 
-/// Returns the lanes of a vector as 64-bit words, followed by zeros.
+/// Returns the lanes of a vector as eight 64-bit words. Words beyond the end of the vector are zero.
 #[inline(always)]
 fn streams<V: SimdVector>(stream: V) -> Streams {
     let mut words = [0; 8];
@@ -125,8 +126,8 @@ fn streams<V: SimdVector>(stream: V) -> Streams {
     words
 }
 
-/// Position of a vector of pixels in a tile, and positions of the vector's column bits and row bits in the outputs of
-/// the adder trees ([`Streams`]).
+/// Three positions of a vector of pixels: in a tile, and of its column bits and row bits in the outputs of the adder
+/// trees ([`Streams`]).
 #[derive(Clone, Copy)]
 pub(super) struct VectorPlace {
     /// Index of the vector's first word in a tile's plane.
@@ -144,7 +145,8 @@ struct StreamStart {
 }
 
 impl VectorPlace {
-    /// Returns the position of a vector that begins at a row of a tile, for adder trees that span the whole array.
+    /// Returns the position of the vector of pixels that begins at row `row` of tile `tile`. The adder trees span the
+    /// whole array.
     #[inline(always)]
     pub(super) const fn in_array(tile: usize, row: usize) -> Self {
         let [left, top] = tile::origin(tile);
@@ -153,8 +155,8 @@ impl VectorPlace {
         Self { at: row / 2, columns, rows: StreamStart { word: 2 + y / 64, bit: y % 64 } }
     }
 
-    /// Returns the position of a vector that begins at a row of a tile, for adder trees that span one tile. The column
-    /// bits are in the low half of word `word` of the tree outputs, and the row bits are in the high half.
+    /// Returns the position of the vector of pixels that begins at row `row` of a tile. The adder trees span one tile.
+    /// The column bits are in the low half of word `word` of the tree outputs, and the row bits are in the high half.
     #[inline(always)]
     pub(super) const fn in_tile(word: usize, row: usize) -> Self {
         Self { at: row / 2, columns: StreamStart { word, bit: 0 }, rows: StreamStart { word, bit: WIDTH + row } }

@@ -42,7 +42,7 @@ pub(super) fn store(old: &mut TilePlane, new: &TilePlane, enable: &TilePlane) {
     }
 }
 
-/// Sets `a` to the sum bit of a + b + carry, and `carry` to the next carry.
+/// Sets `a` to the sum bit of a + b + carry, and `carry` to the carry that the addition produces.
 #[inline(always)]
 pub(super) fn add(a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     for ((a, b), c) in a.iter_mut().zip(b).zip(carry) {
@@ -53,7 +53,7 @@ pub(super) fn add(a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     }
 }
 
-/// Sets `a` to the difference bit of a - b - borrow, and `borrow` to the next borrow.
+/// Sets `a` to the difference bit of a - b - borrow, and `borrow` to the borrow that the subtraction produces.
 #[inline(always)]
 pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     for ((a, b), c) in a.iter_mut().zip(b).zip(borrow) {
@@ -64,14 +64,13 @@ pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane)
     }
 }
 
-/// Simulates one clock of a serial adder in all pixels. If `subtracts` is true, simulates one clock of a serial
-/// subtracter instead.
+/// Simulates one clock of a serial adder or, if `subtracts` is true, of a serial subtracter in all pixels of a tile.
 #[inline(always)]
 pub(super) fn step(subtracts: bool, a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     if subtracts { subtract(a, b, carry) } else { add(a, b, carry) }
 }
 
-/// Sets `borrow` to the next borrow of a - b - borrow, without computing the difference.
+/// Sets `borrow` to the borrow that the subtraction a - b - borrow produces, without computing the difference.
 #[inline(always)]
 pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     for ((a, b), c) in a.iter().zip(b).zip(borrow) {
@@ -79,7 +78,7 @@ pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     }
 }
 
-/// Returns a plane with `f(a, b)` in each word.
+/// Returns a bit plane whose words are `f` of the corresponding words of `a` and `b`.
 #[inline(always)]
 pub(super) fn combine(a: &TilePlane, b: &TilePlane, f: impl Fn(u64, u64) -> u64) -> TilePlane {
     let mut out = EMPTY;

@@ -22,8 +22,8 @@ use crate::isa::LINEAR_BITS;
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 
-/// Largest number of expressions in a run of instructions. The widest vector can hold the adder trees of this number of
-/// expressions.
+/// Largest number of expressions in a run (a sequence of instructions that a tile executes together). The widest vector
+/// can hold the adder trees of eight expressions.
 pub(super) const EXPRESSIONS: usize = 8;
 
 /// Number of bits of a pixel column's index within a tile. The index is 0 to 31.
@@ -31,7 +31,7 @@ const LEVELS: usize = 5;
 /// For each bit `l` of the index, the pixel columns (and rows) of a tile whose index has this bit set.
 const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff00, 0xffff_0000];
 
-/// Consecutive instructions that each tile executes before the next tile begins.
+/// A run: consecutive instructions that one tile executes completely before another tile begins.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InstructionRun {
     pub(super) steps: Vec<RunStep>,
@@ -51,14 +51,14 @@ pub(super) struct RunStep {
 /// Source of the bits that an instruction delivers to the pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
-    /// The expression with this index among the expressions of the instruction run.
+    /// An expression, given by its index among the expressions of the instruction run.
     Expression(usize),
     Constant(ConstantBits),
 }
 
 impl RunStep {
-    /// Returns the index of the expression whose sign disables pixels. Returns `None` if the instruction is of another
-    /// kind.
+    /// Returns the index of the expression whose sign disables pixels in this instruction. Returns `None` if the
+    /// instruction is not *disable negative*.
     #[inline(always)]
     const fn disables_by_sign_of(&self) -> Option<usize> {
         match (self.input, self.delivery.effect) {
@@ -68,7 +68,7 @@ impl RunStep {
     }
 }
 
-/// A kernel that executes a run of instructions in all tiles.
+/// A vectorized loop that executes a sequence of instructions in all tiles.
 pub(super) struct RunTiles<'a> {
     pub(super) run: &'a InstructionRun,
     pub(super) tiles: &'a mut [Tile],
@@ -101,7 +101,7 @@ impl InstructionRun {
     }
 
     /// Returns, for each expression of the instruction run, the tiles in which all pixels have the same sign of the
-    /// expression. The result is empty for expressions that do not disable pixels by their sign.
+    /// expression. The sets are empty for an expression whose sign disables no pixels.
     #[inline(always)]
     fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];
@@ -113,7 +113,8 @@ impl InstructionRun {
         signs
     }
 
-    /// Returns the tiles in which the first instructions of the run disable all pixels, as one bit for each tile.
+    /// Returns the tiles in which the instructions at the start of the run disable all pixels, as one bit for each
+    /// tile.
     #[inline(always)]
     fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
         let mut disabled = 0;
@@ -161,8 +162,8 @@ impl InstructionRun {
 }
 
 impl Delivery {
-    /// Delivers the bits of an instruction to those vectors of a tile that contain enabled pixels. `word` selects the
-    /// expression's word in the outputs of the adder trees.
+    /// Delivers the bits of an expression or constant to those vectors of a tile that contain enabled pixels. `word`
+    /// selects the expression's word in the outputs of the adder trees.
     #[inline(always)]
     fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {
@@ -216,7 +217,7 @@ const fn lanes<V: SimdVector>() -> u32 {
     u32::MAX >> (32 - V::LANES)
 }
 
-/// Returns true if an expression exceeds 32 bits at any pixel of the array.
+/// Returns true if the value of an expression needs more than 32 bits at some pixel of the array.
 #[inline(always)]
 fn wraps(e: &Linear) -> bool {
     let last = (ACROSS * WIDTH - 1) as i64;

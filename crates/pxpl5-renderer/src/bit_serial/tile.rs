@@ -1,7 +1,7 @@
 //! Tiles of 32 x 16 pixels, into which the array is divided.
 //!
-//! One bit of each pixel of a tile takes 512 adjacent bits of the host's memory. This number is the width of the widest
-//! vector unit.
+//! One bit of each pixel of a tile takes 512 adjacent bits of the simulator's memory, because the widest vector
+//! registers (AVX-512) have 512 bits.
 
 use crate::array::{EMPTY_PLANE, PIXELS, Plane};
 use crate::isa::MEMORY_BITS;
@@ -49,19 +49,19 @@ impl Tile {
     }
 }
 
-/// Returns true if any bit of `words` is set.
+/// Returns true if at least one bit of `words` is set.
 #[inline(always)]
 pub(super) fn any(words: &[u64]) -> bool {
     words.iter().fold(0, |any, word| any | word) != 0
 }
 
-/// Returns the array's column at the left border of a tile, and the array's row at the top border.
+/// Returns the column and the row, in the array, of the upper left pixel of a tile.
 #[inline(always)]
 pub(super) const fn origin(tile: usize) -> [usize; 2] {
     [tile % ACROSS * WIDTH, tile / ACROSS * HEIGHT]
 }
 
-/// Joins the planes of all tiles, in order, into a plane of the array.
+/// Joins the bit planes of all tiles, in the order of the tiles' numbers, into a bit plane of the array.
 pub(super) fn join<'a>(tiles: impl IntoIterator<Item = &'a TilePlane>) -> Plane {
     let mut plane = EMPTY_PLANE;
     for (number, tile) in tiles.into_iter().enumerate() {
@@ -73,7 +73,7 @@ pub(super) fn join<'a>(tiles: impl IntoIterator<Item = &'a TilePlane>) -> Plane 
     plane
 }
 
-/// Returns the part of an array's plane that belongs to tile `number`.
+/// Returns those bits of an array's bit plane that belong to tile `number`.
 pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     let mut tile = EMPTY;
     for y in 0..HEIGHT {
@@ -83,8 +83,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the position of row `y` of tile `number` in a plane of the array. The position is the index of a word, and
-/// the row's first bit in this word.
+/// Returns the place of row `y` of tile `number` in a bit plane of the array. The first number is the index of a word,
+/// and the second number is the row's first bit in this word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

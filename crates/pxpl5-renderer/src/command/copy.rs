@@ -13,8 +13,8 @@ pub struct SelectRegion {
     pub context: u8,
     /// Screen x of the region's left column, in pixels.
     pub left: u16,
-    /// Screen y of the region's top row, counted in drawn lines. For a field, only every second line of the frame
-    /// counts.
+    /// Screen y of the region's top row, counted in drawn lines. If a picture is one field of an interlaced display,
+    /// only every second line of the screen is drawn and counted.
     pub top: u16,
 }
 
@@ -58,7 +58,8 @@ impl Clear {
 /// Copies the colours of a region to a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CopyRegion {
-    /// Destination of the pixels: frame buffer, buffer, region and its grid, lines, and picture.
+    /// Destination of the pixels: frame buffer, number of its pixel buffer (0 or 1), grid of regions, region, lines,
+    /// and number of the picture.
     pub target: CopyTarget,
 }
 

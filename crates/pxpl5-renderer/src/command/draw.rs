@@ -76,8 +76,8 @@ pub(super) const fn evaluate(expression: Expression, usage: ExpressionUse) -> Ar
     ArrayInstruction::Evaluate { expression, usage }
 }
 
-/// Appends the instructions for three edges and Z. The instructions disable pixels outside the edges and pixels that
-/// are not nearer, and then store Z.
+/// Appends the instructions for three edges and Z. The instructions disable the pixels outside the triangle and the
+/// pixels at which the triangle is not nearer than the stored Z. Then the instructions store the new Z.
 fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<ArrayInstruction>) {
     out.extend(edges.map(|edge| evaluate(Expression::Linear(edge), ExpressionUse::DisableNegative)));
     let field = layout.plan().z;
@@ -94,7 +94,7 @@ pub(crate) const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usiz
 pub(crate) const EDGES_AT: [usize; 3] = [2, 6, 10];
 pub(crate) const DEPTH_AT: usize = 14;
 pub(crate) const COMPONENTS_AT: [usize; 3] = [19, 23, 27];
-/// Position of the colour in an encoded Phong triangle command, in words from the start of the command.
+/// Index of the word with the colour in an encoded Phong triangle command.
 pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 
 /// A fast encoder of triangle commands. The encoder does not build the program of each command, because a scene can
@@ -145,14 +145,14 @@ impl PhongTriangleEncoder {
     }
 }
 
-/// Returns the words of a program that has exactly `N` words.
+/// Encodes a program of exactly `N` words, and returns the words.
 fn blank<const N: usize>(program: &[ArrayInstruction]) -> [Word; N] {
     let mut words = Vec::with_capacity(N);
     program.iter().for_each(|instruction| instruction.encode(&mut words));
     words.try_into().expect("every program of the kind has the kind's words")
 }
 
-/// Appends a copy of a blank triangle command, writes the given operands into the copy, and returns the appended words.
+/// Appends a copy of the triangle command `blank`, writes the operands into the copy, and returns the appended words.
 #[inline(always)]
 fn operands<'a, const N: usize>(
     blank: &[Word; N],

@@ -28,8 +28,8 @@ pub const SPECULAR_SQUARINGS: u32 = 5;
 /// material for each pixel are not modelled. A second light and a material would also fit in this time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shade {
-    /// Unit vector towards the light. The number 1024 stands for 1.0. Each component has 12 bits, two's complement. The
-    /// vector's length must be at most 2.0.
+    /// Unit vector towards the light. The number 1024 stands for 1.0. Each component has 12 bits, two's complement.
+    /// Rounding can change the length, but the length must be at most 2.0.
     pub light: [i16; 3],
     /// Unit vector half way between the directions to the light and to the eye, in the same format as `light`.
     pub half: [i16; 3],

@@ -19,9 +19,9 @@ use pxpl5_wire::{Linear, Quadratic};
 /// ```
 ///
 /// At the sphere's middle, `silhouette = 2^root_shift (bulge / 2^depth_shift)^2`. *Bulge* is the distance of the middle
-/// in front of the plane `depth`, in units of the depth expression. Choose `depth_shift` so that `bulge >> depth_shift`
-/// is in 2048 .. 4096. The root then has at least 11 significant bits. The silhouette must stay within 48 bits on the
-/// whole region. A layout with roots of 10 bits uses the upper bits of the same operands.
+/// in front of the plane `depth`, in units of the depth expression. The sender must choose `depth_shift` such that the
+/// value `bulge >> depth_shift` is in 2048 .. 4096. The root then has at least 11 significant bits. The silhouette must
+/// stay within 48 bits on the whole region. A layout with roots of 10 bits uses the upper bits of the same operands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereBody {
     /// Silhouette expression of 48 bits. A pixel is inside the sphere if the expression is `>= 0` at this pixel.
@@ -49,8 +49,8 @@ pub struct SphereBody {
 pub struct SphereCommand {
     /// Silhouette and depth of the sphere.
     pub body: SphereBody,
-    /// Linear part of red, green and blue, with [`COLOUR_FRACTION_BITS`] fraction bits. A multiple of the square root
-    /// is added to this part.
+    /// Linear expressions for red, green and blue, with [`COLOUR_FRACTION_BITS`] fraction bits. A multiple of the
+    /// square root is added to each expression.
     pub colour: [Linear; 3],
     /// Factor of the root for each component, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)).
     ///
@@ -81,12 +81,13 @@ const ROOT_BITS: u8 = 12;
 const COLOUR_ROOT_BITS: u8 = 8;
 const FACTOR_BITS: u8 = 10;
 
-/// Fields of the scratch memory that the program of a sphere command uses.
+/// Fields of pixel memory that hold temporary values in the program of a sphere command.
 #[derive(Clone, Copy)]
 pub(crate) struct SphereScratch {
     radicand: Operand,
     pub(crate) root: Operand,
-    /// New depth. The depth occupies the bits of the radicand, which is no longer needed after the root.
+    /// New depth. The depth occupies the bits of the radicand, because the radicand is no longer needed after the
+    /// square root.
     pub(crate) z: Operand,
     /// Product of the root and a colour's factor, 8 + 10 bits. The product also occupies the bits of the radicand.
     product: Operand,
@@ -113,7 +114,7 @@ impl SphereScratch {
         })
     }
 
-    /// Returns the number of bits by which the layout's field for square roots is narrower than 12 bits.
+    /// Returns the number of bits by which a square root in this layout is shorter than 12 bits: 0 or 2.
     pub(crate) const fn short(&self) -> u8 {
         ROOT_BITS - self.root.width
     }
@@ -123,8 +124,8 @@ impl SphereScratch {
     }
 }
 
-/// Appends the instructions for silhouette, square root and depth. The instructions disable pixels outside the sphere
-/// and pixels that are not nearer, and then store Z.
+/// Appends the instructions for silhouette, square root and depth. The instructions disable the pixels outside the
+/// sphere and the pixels at which the sphere is not nearer than the stored Z. Then the instructions store the new Z.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
     // Test the sign of the silhouette, then evaluate the same expression again as radicand.

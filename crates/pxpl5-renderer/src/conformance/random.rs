@@ -1,4 +1,4 @@
-//! Random command lists for tests. The same seed gives the same lists on every host.
+//! Random command lists for tests. The same seed gives the same lists on every computer.
 
 use crate::command::{
     Clear, Command, LoadBacking, PhongSphereCommand, PhongTriangleCommand, SelectRegion, Shade, SphereBody,
@@ -174,7 +174,8 @@ impl Random {
         }
     }
 
-    /// Returns a random linear expression whose values on a screen have about `bits` bits.
+    /// Returns a random linear expression. The values of the expression at the pixels of a screen have about `bits`
+    /// bits.
     fn plane(&mut self, bits: u32) -> Linear {
         Linear { a: self.signed(bits - 9), b: self.signed(bits - 9), c: self.signed(bits) }
     }
@@ -204,8 +205,8 @@ impl Random {
     }
 }
 
-/// Returns a command that draws the same shape with other colours. The depths are also the same, so the depth test
-/// fails at every pixel that `command` has drawn.
+/// Returns a command that draws the same shape with other colours. The depths are the depths of `command`, so the depth
+/// test fails at every pixel that `command` has drawn.
 fn repainted(command: Command) -> Command {
     match command {
         Command::Triangle(mut t) => {
@@ -222,8 +223,8 @@ fn repainted(command: Command) -> Command {
     }
 }
 
-/// Returns the edge expression from p to q, given in sixteenths of a pixel. The inside is on the left of the edge.
-/// Coefficients are truncated to 32 bits.
+/// Returns the edge expression of the line from `p` to `q`. The coordinates of the two points are in sixteenths of a
+/// pixel. The inside is on the left of the edge. Coefficients are truncated to 32 bits.
 fn edge(p: [i64; 2], q: [i64; 2]) -> Linear {
     let dx = q[0] - p[0];
     let dy = q[1] - p[1];

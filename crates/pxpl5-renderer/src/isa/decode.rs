@@ -10,7 +10,7 @@ use pxpl5_wire::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position} ({word:#010x}): {kind}")]
 pub struct DecodeError {
-    /// Index, in the list of words, of the first word of the instruction.
+    /// Index, in the list of words, of the first word of the instruction that cannot be decoded.
     pub position: usize,
     /// The first word of the instruction that cannot be decoded.
     pub word: Word,
@@ -28,25 +28,26 @@ pub enum DecodeErrorKind {
     #[error("the instruction needs {expected} words, the list has {found} left")]
     Truncated {
         expected: usize,
-        /// Number of words from the instruction's first word to the end of the list.
+        /// Number of words that the list has from the instruction's first word on.
         found: usize,
     },
     /// Bits that must be zero are set.
     #[error("bits are set that must be zero")]
     ReservedBits,
-    /// A field extends beyond the end of pixel memory.
+    /// A field (a sequence of bits of pixel memory) extends beyond the end of pixel memory.
     #[error("{} bits at address {} reach beyond the {} bits of pixel memory", .0.width, .0.address, MEMORY_BITS)]
     FieldOutOfRange(Operand),
-    /// A field has a width that this instruction does not allow.
+    /// A field of pixel memory has a width that this instruction does not allow.
     #[error("the field at address {} has {} bits, expected {expected}", .field.address, .field.width)]
     Width {
         /// The field as encoded in the instruction.
         field: Operand,
-        /// Required width in bits. For expressions and quotients it is the largest allowed width.
+        /// Required width of the field in bits. For expressions and quotients, this number is the largest allowed
+        /// width.
         expected: u32,
     },
-    /// The signedness of an operand is not allowed. Some instructions need unsigned operands. Others need two operands
-    /// of the same signedness.
+    /// The signedness of an operand is not allowed. Some instructions need unsigned operands. Comparisons, minima and
+    /// maxima need two operands of the same signedness.
     #[error("signedness of the operands does not fit")]
     Signedness,
     /// The number of a block of the backing store is 128 or more.
@@ -55,7 +56,8 @@ pub enum DecodeErrorKind {
     /// The lines, the region grid or the region in an output instruction are invalid.
     #[error("the copy's target is no region of a frame")]
     BadTarget,
-    /// The words are valid instructions, but differ from the program of the command that their first label states.
+    /// The words are valid instructions and begin with the label of a kind of command, but differ from the program of
+    /// this command.
     #[error("labelled as command {0}, but not its program in this layout")]
     NotTheCommand(u8),
 }
@@ -87,7 +89,7 @@ impl ArrayInstruction {
     }
 }
 
-/// The parts of an instruction's first word, and the following words.
+/// The parts of an instruction's first word, and the words that follow the first word.
 struct EncodedInstruction<'a> {
     opcode: u8,
     modifier: u8,
@@ -107,12 +109,12 @@ impl EncodedInstruction<'_> {
         checked_field(self.operand)
     }
 
-    /// Returns the field in the operand of the first word. This field must be one bit wide.
+    /// Returns the field that the low 16 bits of the first word encode. This field must be one bit wide.
     fn bit(&self) -> Result<Operand, DecodeErrorKind> {
         width(self.field()?, 1)
     }
 
-    /// Returns the field in the upper half of the second word. The lower half must be zero.
+    /// Returns the field that the upper half of the second word encodes. The lower half must be zero.
     fn source(&self) -> Result<Operand, DecodeErrorKind> {
         let [word] = self.tail()?;
         must_be_zero(word & 0xffff)?;

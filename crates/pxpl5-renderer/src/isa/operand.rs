@@ -26,13 +26,13 @@ impl Operand {
         Self { address, width, relative: true, signed: false }
     }
 
-    /// Returns an unsigned field at an absolute address.
+    /// Returns an unsigned field of pixel memory at an absolute address, 0 to 207.
     #[must_use]
     pub const fn absolute(address: u8, width: u8) -> Self {
         Self { address, width, relative: false, signed: false }
     }
 
-    /// Returns the same field as a field in two's complement.
+    /// Returns this field, interpreted as a two's complement number.
     #[must_use]
     pub const fn signed(self) -> Self {
         Self { signed: true, ..self }

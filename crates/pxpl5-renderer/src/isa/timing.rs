@@ -18,14 +18,14 @@ use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, LINEAR_BI
 /// Clock rate of the array in Hz. Published: 40 MHz (F89, TR94).
 pub const CLOCK_HZ: u64 = 40_000_000;
 
-/// Number of clocks to fetch an instruction and to fill the evaluator's pipeline.
+/// Number of clocks to fetch an instruction and to fill the pipeline of the expression evaluator.
 ///
 /// Derived: 4 is the only whole number that fits the bit budgets of the published recipe for both kinds of triangle.
 /// The budgets are 256 to 267 clocks (Gouraud) and 262 to 292 clocks (Phong).
 ///
 /// The formats on the wire need 222 clocks in 9 instructions: 2 (enable), 3 x 32 (edges), 32 (compare Z), 32 (store Z)
-/// and 3 x 20 (colour). With normals, they need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks in 10
-/// instructions. For n clocks of set-up, this gives 222 + 9 n >= 256 and 252 + 10 n <= 292.
+/// and 3 x 20 (colour). With normals, the formats need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks
+/// in 10 instructions. For n clocks of set-up, this gives 222 + 9 n >= 256 and 252 + 10 n <= 292.
 ///
 /// The published rate of 150,000 triangles per second means 267 clocks for each triangle (TR94, which does not state
 /// the kind of shading). This number lies between the results 258 (Gouraud) and 292 (Phong). The range is 2 (Phong
@@ -51,8 +51,8 @@ pub const fn square_root_clocks(n: u32) -> u32 {
 
 /// Returns the number of clocks of a product of an `a`-bit factor and a `b`-bit factor, with a result of `w` bits.
 ///
-/// For each bit of the second factor, the first factor and a carry are added. Then the result's bits above the product
-/// are filled.
+/// For each bit of the second factor, the first factor and a carry are added. Then each bit of the result above the
+/// product takes one clock.
 #[must_use]
 pub fn multiply_clocks(w: u32, a: u32, b: u32) -> u32 {
     let additions: u32 = (0..b.min(w)).map(|j| (a + 1).min(w - j)).sum();

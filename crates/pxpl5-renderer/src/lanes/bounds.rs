@@ -6,11 +6,11 @@
 
 use pxpl5_wire::{LANES, Linear, LinearLanes};
 
-/// Number of columns of the array, and of its rows.
+/// Number of columns of the array. The array has the same number of rows.
 const WIDTH: i32 = 128;
 const LAST: i64 = 127;
-/// Margin in pixels around the computed bounds. The margin is greater than the rounding error of a quotient, but small
-/// enough to add few pixels.
+/// Margin in pixels around the computed bounds. The margin is greater than the rounding error of the bounds, but adds
+/// few pixels.
 const MARGIN: f64 = 1e-3;
 
 /// A rectangle of pixels: columns `left .. right` of rows `top .. bottom`.
@@ -24,11 +24,12 @@ pub(super) struct Area {
 
 const WHOLE: Area = Area { left: 0, right: 128, top: 0, bottom: 128 };
 
-/// The pixels that a triangle can cover. At every other pixel at least one edge is negative.
+/// The pixels that a triangle can cover. At every pixel outside the bounds, at least one edge expression is negative.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     pub(super) area: Area,
-    /// Limits on the columns of each row, one for each edge. The limits are computed only for wide triangles.
+    /// Limits on the columns of each row, one for each edge. `None` if the triangle is narrow, because the bounding box
+    /// is then sufficient.
     limits: Option<[RowLimit; 3]>,
 }
 
@@ -50,7 +51,7 @@ pub(super) struct Spans {
 }
 
 impl Bounds {
-    /// Returns the columns that the triangle can cover in [`LANES`] consecutive rows. The first row is `top`.
+    /// Returns the columns that the triangle can cover in each of [`LANES`] consecutive rows, from row `top` on.
     #[inline(always)]
     pub(super) fn spans(&self, top: usize) -> Spans {
         let mut spans = Spans { left: [self.area.left as i32; LANES], right: [self.area.right as i32; LANES] };
@@ -135,15 +136,16 @@ pub(super) struct Boxes {
     /// First column (0 to 128) and last column (-1 to 127) of each triangle inside the array.
     pub(super) x: [PerTriangle<i32>; 2],
     pub(super) y: [PerTriangle<i32>; 2],
-    /// True if the edges enclose a finite triangle. In this case, the normals of the edges turn in the same direction
-    /// at all corners.
+    /// True if the edges enclose a finite triangle, which means that the normals of the edges turn in the same
+    /// direction at all corners.
     pub(super) closed: PerTriangle<bool>,
-    /// True if no edge value in the array exceeds 32 bits. In this case, no value wraps around, and every edge is a
-    /// straight line.
+    /// True if the values of all edge expressions in the array fit in 32 bits. In this case, no value wraps around, and
+    /// every edge is a straight line.
     straight: PerTriangle<bool>,
 }
 
-/// Distance from the array's upper left pixel, in pixels. Within this distance, edge values must fit 32 bits.
+/// A distance from the array's upper left pixel, in pixels. The fast computation of bounds requires that edge values
+/// within this distance fit in 32 bits.
 ///
 /// Each coefficient then has at most 22 bits, and the constant has 31 bits. The products of these numbers are therefore
 /// exact in the 53 bits of an `f64`.
@@ -193,8 +195,8 @@ impl Boxes {
         Self { x: pixels(&low[0], &high[0]), y: pixels(&low[1], &high[1]), closed, straight }
     }
 
-    /// Returns the bounds of triangle `i`. Returns `None` if no pixel can be inside. `edges` must be the edges of this
-    /// triangle.
+    /// Returns the bounds of triangle `i`, or `None` if the triangle can cover no pixel of the array. `edges` must be
+    /// the edges of this triangle.
     #[inline(always)]
     pub(super) fn bounds(&self, i: usize, edges: &[Linear; 3]) -> Option<Bounds> {
         let area = if self.closed[i] {
@@ -242,12 +244,13 @@ fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>;
     out
 }
 
-/// Converts a small number to an integer. NaN gives an arbitrary result.
+/// Converts a number of small magnitude to an integer. NaN gives an arbitrary result.
 ///
 /// A cast with `as` would not compile to a single vector instruction.
 #[inline(always)]
 fn small(value: f64) -> i32 {
-    /// The number 1.5 * 2^52. After the addition of this number, the low bits of the sum hold the integer.
+    /// The number 1.5 * 2^52. After the addition of this number to a small number, the low bits of the sum hold the
+    /// small number as an integer.
     const UNIT: f64 = 6_755_399_441_055_744.0;
     (value + UNIT).to_bits() as i32
 }

@@ -1,4 +1,5 @@
-//! Pixel memory of the fast array. Every field of the layout is a column of 32-bit words, one word for each pixel.
+//! Pixel memory of the fast array. Every field of the layout is stored as a column, an array with one 32-bit word for
+//! each pixel.
 
 use crate::array::{PIXELS, Plane};
 use crate::command::{ShadeFields, SphereScratch};
@@ -11,7 +12,8 @@ use crate::layout::Layout;
 #[repr(align(64))]
 pub(super) struct Values(pub(super) [u32; PIXELS]);
 
-/// A column: an array with one word for each pixel. The words hold the bits `first .. first + width` of pixel memory.
+/// A column: an array with one word for each pixel. The word of a pixel holds the bits `first .. first + width` of the
+/// pixel's memory.
 #[derive(Clone, Debug)]
 struct FieldColumn {
     first: usize,
@@ -48,8 +50,8 @@ impl PixelColumns {
         Self { columns, column_of }
     }
 
-    /// Returns the index of the column (array of words) that holds exactly the given bits, or `None` if no column holds
-    /// exactly these bits.
+    /// Returns the index of the column (array of words) that holds the `width` bits of pixel memory from bit `first`
+    /// on. Returns `None` if no column holds exactly these bits.
     pub(super) fn find(&self, first: usize, width: usize) -> Option<usize> {
         let index = usize::from(*self.column_of.get(first)?);
         let column = &self.columns[index];

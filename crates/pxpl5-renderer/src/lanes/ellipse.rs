@@ -1,20 +1,22 @@
 //! Bounds of the pixels that a sphere can cover.
 //!
-//! As for triangles, floating-point numbers with a margin only select the pixels to test.
+//! Floating-point numbers with a margin only select the pixels to test. Integer arithmetic decides whether a pixel is
+//! inside.
 
 use pxpl5_wire::Quadratic;
 use std::ops::Range;
 
 const SIZE: usize = 128;
 const MARGIN: f64 = 1e-3;
-/// Upper limit of the rounding errors of a discriminant, as a fraction of its terms.
+/// Upper limit of the rounding error of a discriminant `b^2 - 4 a c`, as a fraction of its two terms.
 const ROUNDING: f64 = 1e-9;
 
 /// The pixels at which a quadratic expression can be positive. The origin of the expression is the array's upper left
 /// pixel.
 pub(super) struct Ellipse {
     rows: Range<usize>,
-    /// The quadratic expression that limits the columns of each row. `None` if no row is limited.
+    /// The quadratic expression that limits the columns of each row. `None` if every row can be covered from the first
+    /// to the last column.
     quadratic: Option<Quadratic>,
 }
 
@@ -43,8 +45,8 @@ impl Ellipse {
     }
 }
 
-/// Returns the coefficient of x and the constant of a quadratic expression in one row. The coefficient of x squared is
-/// the same in all rows.
+/// Returns the coefficient of x and the constant of the quadratic polynomial in x to which `q` reduces in row `row`.
+/// The coefficient of x squared is the same in all rows.
 #[inline(always)]
 pub(super) const fn along_row(q: &Quadratic, row: usize) -> (i64, i64) {
     let y = row as i64;

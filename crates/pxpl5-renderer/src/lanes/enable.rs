@@ -31,16 +31,16 @@ impl Enable {
         &mut self.pixels
     }
 
-    /// Disables all pixels, and returns the Enable values of all pixels for modification. The caller must change only
-    /// pixels in the given rows.
+    /// Disables all pixels, and returns the Enable values of all pixels. The caller may change only pixels in the rows
+    /// `rows`.
     pub(super) fn emptied(&mut self, rows: Range<usize>) -> &mut [u8; PIXELS] {
         self.pixels[WIDTH * self.used.start..WIDTH * self.used.end].fill(0);
         self.used = rows;
         &mut self.pixels
     }
 
-    /// Returns the Enable values of all pixels for modification. The caller must change only pixels in the rows of the
-    /// last call of [`Self::emptied`].
+    /// Returns the Enable values of all pixels for modification. The caller may change only pixels in the rows that
+    /// were passed to the last call of [`Self::emptied`].
     #[inline(always)]
     pub(super) fn rows_in_use(&mut self) -> &mut [u8; PIXELS] {
         &mut self.pixels

@@ -12,7 +12,8 @@ use crate::command::{
 };
 use pxpl5_wire::Word;
 
-/// Columns (arrays of words) and bit shifts with which a sphere is drawn in this layout.
+/// Columns (arrays with one word for each pixel) and bit shifts with which a sphere is drawn in the layout of the
+/// array.
 struct SpherePlace {
     root: usize,
     temporary: usize,
@@ -22,7 +23,7 @@ struct SpherePlace {
 
 impl Lanes {
     /// Executes the sphere or shading command at the start of `words`, and returns its length in words. Returns `None`
-    /// if the words are not such a command of this layout.
+    /// if the words do not begin with a sphere or shading command of this layout.
     pub(super) fn large_command(
         &mut self,
         kind: CommandKind,

@@ -7,8 +7,8 @@ use super::shape::Shape;
 use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Word};
 
-/// The values of a linear expression at the pixels of a vector, and the increase from this vector to the next vector in
-/// the row.
+/// The values of a linear expression at a vector of adjacent pixels, and the increase from this vector to the vector on
+/// its right.
 #[derive(Clone, Copy)]
 pub(super) struct Walk<V> {
     pub(super) value: V,
@@ -21,16 +21,17 @@ impl<V: SimdVector> Walk<V> {
         Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
     }
 
-    /// Returns the values at the pixels of a vector with groups of [four](crate::simd::FOUR) pixels. The first pixel
-    /// has the value `first`. The values grow by `a` for each column and by `b` for each row.
+    /// Returns the values for a vector of several rows with [four](crate::simd::FOUR) adjacent pixels each. The first
+    /// pixel has the value `first`. The values grow by `a` for each column and by `b` for each row.
     ///
-    /// The increase to the next vector is 0, because such vectors do not advance along a row.
+    /// The increase to the next vector is 0, because such a vector is at least as wide as the triangle.
     #[inline(always)]
     pub(super) fn fours(first: i32, a: i32, b: i32) -> Self {
         Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
     }
 
-    /// Returns the values for a vector some rows below this vector. All values of the lower vector are greater by `b`.
+    /// Returns the values for a vector that lies some rows below this vector. All values increase by `b`, which is the
+    /// increase over these rows.
     #[inline(always)]
     pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }
@@ -44,9 +45,10 @@ impl<V: SimdVector> Walk<V> {
 
 /// A way to store surface values (colour or normal) in the pixels that pass the depth test.
 pub(super) trait PaintTriangle {
-    /// Sets the colour of the next triangle. The colour has no effect if colours are interpolated.
+    /// Sets the colour of the triangle that is drawn next. The colour has no effect if colours are interpolated.
     fn begin(&mut self, colour: Word);
-    /// Stores values in the pixels of a vector for which `mask` is true. `at` is the index of the vector's first pixel.
+    /// Stores the values of `walks` in those pixels of a vector for which `mask` is true. `at` is the index of the
+    /// vector's first pixel.
     fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
@@ -68,8 +70,8 @@ pub(super) struct DepthTest<V: SimdVector> {
 }
 
 impl<P: PaintTriangle> TrianglePainter<'_, P> {
-    /// Tests the pixels of a vector. A pixel passes if no edge is negative and its new depth is nearer than the stored
-    /// depth.
+    /// Tests the pixels of a vector. A pixel passes if no edge expression is negative and the triangle's depth is
+    /// nearer than the stored depth.
     #[inline(always)]
     pub(super) fn test<V: SimdVector, S: Shape>(
         &self,

@@ -1,6 +1,6 @@
 //! Integer square roots and quotients. The results are computed in floating point, then corrected to the exact integer.
 //!
-//! IEEE 754 requires correctly rounded square roots and quotients, so the results are the same on every host. All
+//! IEEE 754 requires correctly rounded square roots and quotients, so the results are the same on every computer. All
 //! operands fit the 24 bits of a single-precision number, so all operands are exact.
 
 /// Returns the integer nearest to a number from 0 to 2^22. A cast with `as` would be slower, because it checks each

@@ -11,17 +11,18 @@ use crate::simd::{SimdVector, VectorKernel};
 
 const WIDTH: usize = 128;
 
-/// Number of result columns: colour, a, b, c, root, diffuse, specular.
+/// Number of fields that shading writes: the colour, and the scratch fields a, b, c, root, diffuse and specular.
 const RESULTS: usize = 7;
 
-/// A kernel that shades all pixels whose depth differs from the depth of the far plane.
+/// A vectorized loop that shades all pixels whose depth differs from the depth of the far plane.
 pub(super) struct ShadeAll<'a> {
     pub(super) shade: Shade,
     pub(super) far: u32,
     pub(super) z: &'a Values,
     pub(super) normal: [&'a Values; 3],
     pub(super) results: [&'a mut Values; RESULTS],
-    /// Enable register, into which the covered pixels are written. `None` if no later instruction reads Enable.
+    /// Enable register, in which the function sets the pixels that a primitive has covered. `None` if no later
+    /// instruction reads Enable.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
@@ -74,7 +75,7 @@ impl ShadeAll<'_> {
         }
     }
 
-    /// Returns one component of the normals of a row's pixels.
+    /// Returns component `component` (x, y or z) of the normals of one row, whose first pixel has the index `at`.
     #[inline(always)]
     fn row_of(&self, component: usize, at: usize) -> [i32; WIDTH] {
         let mut out = [0; WIDTH];

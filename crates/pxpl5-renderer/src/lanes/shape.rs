@@ -6,7 +6,8 @@ use crate::simd::SimdVector;
 /// An arrangement of a vector's pixels in the array, relative to the first pixel.
 pub(super) trait Shape {
     fn load<V: SimdVector>(column: &Values, at: usize) -> V;
-    /// Overwrites the pixels for which the mask is true. `old` must be the current content of the pixels.
+    /// Stores the values `new` in the pixels for which `mask` is true. `old` must hold the values of the pixels before
+    /// the call.
     fn store<V: SimdVector>(new: V, mask: V::Mask, old: V, column: &mut Values, at: usize);
 }
 
@@ -25,7 +26,8 @@ impl Shape for SingleRow {
     }
 }
 
-/// Arrangement of a vector's pixels in groups of four. Each group lies one row below the previous group.
+/// Arrangement of a vector's pixels in groups of four adjacent pixels. Each group lies one row below the previous
+/// group.
 pub(super) struct QuadRows;
 
 impl Shape for QuadRows {

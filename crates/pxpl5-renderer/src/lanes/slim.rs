@@ -1,7 +1,7 @@
 //! Fast drawing of triangles of at most four columns. In a dense scene, most triangles have at most four columns.
 //!
 //! A vector covers four columns of several rows, so one vector is sufficient for nearly every slim triangle. The values
-//! at the first pixels are computed for all triangles of a batch at once.
+//! of the edges at each triangle's first pixel are computed for all triangles of a batch together.
 
 use super::bounds::{Boxes, Edges, PerTriangle};
 use super::painter::{PaintTriangle, TrianglePainter, Walk};
@@ -18,8 +18,8 @@ pub(super) struct SlimTriangles {
     /// array.
     x: PerTriangle<i32>,
     y: PerTriangle<i32>,
-    /// Number of vectors for each triangle, one below the other. The number is 0 for a triangle without pixels, and -1
-    /// for a triangle that is not slim.
+    /// Number of vectors, one below the other, that cover each triangle. The number is 0 for a triangle without pixels,
+    /// and -1 for a triangle that is not slim.
     vectors: PerTriangle<i32>,
     /// Values of each triangle's edges at the first pixel of its first vector.
     edges: [PerTriangle<i32>; 3],
@@ -72,13 +72,13 @@ impl SlimTriangles {
         all
     }
 
-    /// Returns true if triangle `i` of the batch is slim.
+    /// Returns true if triangle `i` of the batch is at most four columns wide.
     #[inline(always)]
     pub(super) const fn has(&self, i: usize) -> bool {
         self.vectors[i] >= 0
     }
 
-    /// Draws triangle `i`, which must be slim.
+    /// Draws triangle `i` of the batch, which must be at most four columns wide.
     #[inline(always)]
     pub(super) fn draw<V: SimdVector, P: PaintTriangle>(
         &self,
@@ -116,8 +116,8 @@ impl SlimTriangles {
     }
 }
 
-/// Returns the value of each triangle's expression at the pixel (x, y) of this triangle. The result is a new array, so
-/// the compiler can assume that no other data changes.
+/// Returns, for each triangle of a batch, the value of the triangle's expression at the pixel (x, y). Each triangle has
+/// its own x and y. The result is a new array, so the compiler can assume that no other data changes.
 #[inline(always)]
 fn values(e: &LinearLanes, [x, y]: [&PerTriangle<i32>; 2]) -> PerTriangle<i32> {
     let mut all = [0; LANES];

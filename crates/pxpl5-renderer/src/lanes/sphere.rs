@@ -14,7 +14,8 @@ const WIDTH: usize = 128;
 
 /// A sphere to draw. The sphere's expressions have the array's upper left pixel as origin.
 pub(super) struct DrawSphere<'a, P> {
-    /// Silhouette and depth of the sphere. The shifts match the layout's width of roots.
+    /// Silhouette and depth of the sphere. The two shifts are adjusted to the number of bits of a square root in the
+    /// layout.
     pub(super) body: SphereBody,
     pub(super) root_bits: u8,
     pub(super) z_shift: u8,
@@ -28,9 +29,9 @@ pub(super) struct DrawSphere<'a, P> {
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
-/// The values that a sphere stores in the pixels that pass the depth test.
+/// A way to store surface values (colour or normal) in the pixels of a sphere that pass the depth test.
 pub(super) trait PaintSphere {
-    /// Stores values in the pixels of row `y`, from column `left` on, for which `pass` is all ones.
+    /// Stores colours or normals in the pixels of row `y`, from column `left` on, for which `pass` is all ones.
     ///
     /// At the start, `temporary` holds the new depths. At the end, `temporary` holds the values that the command's
     /// program leaves in this field.
@@ -80,8 +81,8 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         }
     }
 
-    /// Computes a mask of the pixels inside the silhouette. Also computes, for each pixel, the square root of the used
-    /// bits of the silhouette expression.
+    /// Computes a mask of the pixels inside the silhouette, and the square root at each pixel. The radicand of the root
+    /// is the silhouette expression without its lowest `root_shift` bits.
     #[inline(always)]
     fn roots(&self, y: usize, left: usize, inside: &mut [u32], roots: &mut [u32]) {
         let (x, one) = along_row(&self.body.silhouette, y);

@@ -27,14 +27,14 @@ impl<const N: usize> Template<N> {
         Some(Self { words: words.try_into().ok()?, fixed, cost: CommandCost::for_command(kind, layout)? })
     }
 
-    /// Returns the command at the start of `words`, and the words after the command. Returns `None` if the words do not
-    /// match.
+    /// Splits `words` into the command at the start and the words after the command. Returns `None` if the first words
+    /// do not match the template.
     #[inline(always)]
     pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
         words.split_first_chunk::<N>().filter(|(command, _)| self.fits(command))
     }
 
-    /// Returns true if the words match the template.
+    /// Returns true if `command` equals the template in all words except the operands.
     #[inline(always)]
     pub(super) fn fits(&self, command: &[Word; N]) -> bool {
         let mut different = 0;
@@ -89,8 +89,8 @@ impl Templates {
     }
 }
 
-/// Returns true if the next instruction is *enable all*, with any label. In this case, no instruction reads the current
-/// values of the Enable register.
+/// Returns true if the next instruction is *enable all*, with any label. If the result is true, no instruction reads
+/// the current values of the Enable register.
 pub(super) fn next_enables_all(next: Option<&Word>) -> bool {
     const LABEL: Word = 0xff << 16;
     next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 const WIDTH: usize = 128;
 
-/// A linear expression that can be evaluated for a vector of pixels at any place in the array.
+/// A linear expression in a form that can be evaluated fast for a vector that begins at any pixel of the array.
 #[derive(Clone, Copy)]
 struct Slope<V> {
     /// Values of the expression at the first pixels of the array's top row, one for each lane.
@@ -25,8 +25,8 @@ struct Slope<V> {
 }
 
 impl<V: SimdVector> Slope<V> {
-    /// Prepares an expression for evaluation at any place in the array. `left` and `top` are the picture coordinates of
-    /// the array's upper left pixel.
+    /// Prepares an expression for fast evaluation at any pixel of the array. `left` and `top` are the picture
+    /// coordinates of the array's upper left pixel.
     #[inline(always)]
     fn over(e: &Linear, [left, top]: [i32; 2]) -> Self {
         let Walk { value: begin, step } = Walk::start(e, left, top);
@@ -40,30 +40,30 @@ impl<V: SimdVector> Slope<V> {
     }
 }
 
-/// The expressions of a triangle that is wider than one vector. The rows of the triangle can begin at different
-/// columns.
+/// The expressions of a triangle that is wider than one vector. In each row, drawing can begin at another column.
 struct WideTriangle<V> {
     edges: [Slope<V>; 3],
     depth: Slope<V>,
     components: [Slope<V>; 3],
 }
 
-/// A kernel that draws the consecutive triangles of one kind at the start of `words`, and returns their number.
+/// A vectorized loop that draws the consecutive triangles of one kind at the start of `words`, and returns their
+/// number.
 pub(super) struct DrawTriangles<'a, const N: usize, P> {
     pub(super) words: &'a [Word],
     pub(super) template: &'a Template<N>,
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// A kernel that draws a batch of triangles without command words. The kernel leaves Enable unchanged, because the next
-/// command overwrites Enable before any command reads it.
+/// A vectorized loop that draws a batch of triangles without command words. The loop leaves Enable unchanged, because
+/// the next command overwrites Enable before any command reads Enable.
 pub(super) struct DrawBatch<'a, P> {
     pub(super) batch: &'a TriangleBatch<'a>,
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Access to the depth, components and colour of a triangle. These values are read only if needed. The origin of the
-/// expressions is the picture's upper left pixel.
+/// Access to the depth expression, the expressions of colour or normal, and the colour of a triangle. These data are
+/// read only if needed. The origin of the expressions is the picture's upper left pixel.
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
@@ -83,14 +83,14 @@ impl<const N: usize> Surface for &[Word; N] {
         [coefficients(self, p), coefficients(self, q), coefficients(self, r)]
     }
 
-    /// Returns the command's last word. In commands for Phong triangles, this word is the colour.
+    /// Returns the last word of the command, which is the colour in commands for Phong triangles.
     #[inline(always)]
     fn colour(&self) -> Word {
         self[N - 1]
     }
 }
 
-/// Depth, components and colour of triangle `i` of a batch.
+/// The depth expression, the expressions of colour or normal, and the colour of triangle `i` of a batch.
 struct BatchSurface<'a> {
     batch: &'a TriangleBatch<'a>,
     i: usize,
@@ -119,7 +119,7 @@ struct CurrentTriangle<S> {
     /// Edge expressions of the triangle, relative to the array's upper left pixel.
     edges: [Linear; 3],
     surface: S,
-    /// True if a later command reads the values of the Enable register after this triangle.
+    /// True if a later command reads the values that this triangle leaves in the Enable register.
     keep: bool,
 }
 
@@ -230,8 +230,8 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
 
     /// Draws a triangle whose rows each fit in one vector. The vectors begin at column `x`.
     ///
-    /// The function draws two rows at a time, because a mispredicted branch takes more time than a row outside the
-    /// triangle.
+    /// The function draws two rows at a time, even if one row lies outside the triangle. A branch to skip this row
+    /// would often be mispredicted, and would then take more time than the row.
     #[inline(always)]
     fn narrow<V: SimdVector, S: Surface>(&mut self, triangle: &CurrentTriangle<S>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);
@@ -313,8 +313,8 @@ fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     }
 }
 
-/// Returns a first column from which one vector covers the columns `left` to `right`. If possible, the column is a
-/// multiple of the vector's lanes. Returns `None` if one vector is too short.
+/// Returns the first column of a vector that covers the columns `left` to `right`. If possible, the first column is a
+/// multiple of `lanes`, the number of pixels of a vector. Returns `None` if one vector is too short.
 #[inline(always)]
 fn one_vector(left: usize, right: usize, lanes: usize) -> Option<usize> {
     let aligned = left / lanes * lanes;
@@ -328,8 +328,8 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
-/// Returns the values of three expressions for a vector that begins at pixel (x, y) of the array. The three calls are
-/// written out, because the compiler would not use the vector unit in a closure.
+/// Returns the values of three expressions for a vector that begins at pixel (x, y) of the array. The code has three
+/// separate calls, because the compiler would not use vector instructions in a closure.
 #[inline(always)]
 fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
     let x = x as i32;

@@ -1,5 +1,5 @@
-//! Operations on values. A value is a field that is extended to 64 bits: sign-extended if the field is signed,
-//! otherwise zero-extended.
+//! Operations on values. A value is the content of a field in one pixel, extended to 64 bits: sign-extended if the
+//! field is signed, otherwise zero-extended.
 
 use crate::isa::{ArithmeticOp, Test};
 
@@ -8,7 +8,8 @@ pub(super) const fn low(value: u64, width: usize) -> u64 {
     value & (u64::MAX >> (64 - width))
 }
 
-/// Computes a op b, without limiting the result to the destination's width. The function [`divide`] computes divisions.
+/// Computes `a op b` in 64 bits. The caller cuts the result to the destination's width. The function [`divide`]
+/// computes divisions.
 pub(super) fn arithmetic(op: ArithmeticOp, a: u64, b: u64, signed: bool) -> u64 {
     match op {
         ArithmeticOp::Add => a.wrapping_add(b),
@@ -31,7 +32,7 @@ pub(super) const fn less(a: u64, b: u64, signed: bool) -> bool {
     if signed { (a as i64) < b as i64 } else { a < b }
 }
 
-/// Returns true if the comparison `test` of a with b is true.
+/// Returns the result of the comparison `test` of a with b.
 pub(super) const fn holds(test: Test, a: u64, b: u64, signed: bool) -> bool {
     match test {
         Test::Less => less(a, b, signed),

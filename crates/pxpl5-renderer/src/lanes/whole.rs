@@ -122,8 +122,9 @@ impl Lanes {
         Some((template.cost, drawn))
     }
 
-    /// Draws a batch of triangles like the corresponding commands. However, Enable and the stored coefficients can
-    /// differ from the result of these commands. Returns `None` if the layout does not support the command.
+    /// Draws a batch of triangles with the same pixels as the triangles' commands would draw. Enable and the stored
+    /// coefficients can differ from the result of these commands. Returns `None` if the layout does not support the
+    /// command.
     pub(super) fn batch(&mut self, batch: &TriangleBatch<'_>) -> Option<()> {
         let columns = self.context_columns()?;
         let origin = self.controller.origin();
@@ -153,7 +154,7 @@ fn last(commands: usize, words: usize) -> Option<usize> {
     Some(commands.checked_sub(1)? * words + COMPONENTS_AT[2])
 }
 
-/// A kernel that stores the same value in all pixels.
+/// A vectorized loop that stores the same value in all pixels.
 struct Fill<'a> {
     column: &'a mut Values,
     value: u32,

@@ -2,19 +2,20 @@
 
 use super::{Basis, FigureRow, TableColumn, significant};
 
-/// Number of the figure.
+/// Number under which the documents of the project list the figure.
 pub const NUMBER: TableColumn<FigureRow> = ("#", |row| row.id.to_owned());
 
-/// Statement of the paper, with the part of the paper that prints it.
+/// Statement of the paper about the figure, with the section or page that prints the statement.
 pub const STATEMENT: TableColumn<FigureRow> = ("figure", |row| format!("{} ({})", row.statement, row.source));
 
-/// Published number with its unit, and with its range if the paper prints one.
+/// Published number with its unit, and with the printed range if the paper prints a range.
 pub const PUBLISHED: TableColumn<FigureRow> = ("published", |row| {
     let spread = row.spread.map_or_else(String::new, |spread| format!(" +- {}", four(spread)));
     format!("{}{spread} {}", four(row.published), row.unit)
 });
 
-/// Simulated number with its unit, and its range over a condition that the paper does not print.
+/// Simulated number with its unit. If the paper does not print a condition of the experiment, the column also has the
+/// range over this condition.
 pub const SIMULATED: TableColumn<FigureRow> = ("simulated", |row| {
     let unprinted = row.unprinted.map_or_else(String::new, |bounds| format!(" ({})", range(bounds)));
     format!("{} {}{unprinted}", four(row.simulated), row.unit)
@@ -23,7 +24,7 @@ pub const SIMULATED: TableColumn<FigureRow> = ("simulated", |row| {
 /// Relative error in percent, or "-" if the published number is 0 or missing.
 pub const ERROR: TableColumn<FigureRow> = ("error", error);
 
-/// Range of the figure while unpublished parameters vary.
+/// Smallest and largest value of the figure in the model while unpublished parameters vary within their ranges.
 pub const INTERVAL: TableColumn<FigureRow> =
     ("interval", |row| row.interval.map_or_else(|| "not varied".to_owned(), range));
 
@@ -33,10 +34,10 @@ pub const PROVENANCE: TableColumn<FigureRow> = ("provenance", |row| match row.ba
     _ => row.basis.name().to_owned(),
 });
 
-/// Description of the experiment.
+/// Description of the simulated experiment.
 pub const EXPERIMENT: TableColumn<FigureRow> = ("experiment", |row| row.experiment.to_owned());
 
-/// Additional numbers of the experiment.
+/// Additional results of the simulated experiment.
 pub const DETAILS: TableColumn<FigureRow> = ("other results", |row| {
     let details = row.details.iter().map(|detail| format!("{} {} {}", detail.name, four(detail.value), detail.unit));
     details.collect::<Vec<_>>().join(", ")

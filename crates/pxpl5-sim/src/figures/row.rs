@@ -1,4 +1,5 @@
-//! A row that compares a published figure with a model, and a definition, which is not compared.
+//! Two types of rows. A [`FigureRow`] compares a published figure with a model. A [`Definition`] is an input of the
+//! model, so it has no comparison.
 
 use crate::parameters::Provenance;
 use serde::Serialize;
@@ -8,22 +9,22 @@ use std::borrow::Cow;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "provenance", content = "fitted", rename_all = "lowercase")]
 pub enum Basis {
-    /// An independent check: nothing was chosen to reproduce the figure.
+    /// An independent check: no parameter and no rule of the model was chosen to reproduce the figure.
     Free,
-    /// The named parameter was fitted to this figure, or derived from it.
+    /// The named parameter was fitted to this figure, or derived from this figure.
     Fitted(&'static str),
     /// The named rule of the model was chosen because of this figure.
     Rule(&'static str),
-    /// Depends on facts that the papers do not print. The published number is compared with the interval over all
-    /// interpretations.
+    /// The figure depends on facts that the papers do not print. The published number is compared with the range of
+    /// results over all interpretations of these facts.
     Interpretation,
-    /// Cannot be reproduced, because the papers do not print its conditions. Only the shape of its curve or table is
-    /// checked.
+    /// The number cannot be reproduced, because the papers do not print its conditions. Only the shape of the curve or
+    /// table is checked.
     Shape,
 }
 
 impl Basis {
-    /// Returns the name used in documents, without the parameter or rule.
+    /// Returns the name of this provenance in documents, without the parameter or rule.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -47,18 +48,18 @@ pub struct Detail {
     pub unit: &'static str,
 }
 
-/// A published figure and the model's value.
+/// A row that compares a published figure (a number of a paper) with the value of a model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FigureRow {
-    /// Number of the figure in the specification.
+    /// Number under which the documents of the project list the figure, such as `7` or `E1`.
     pub id: &'static str,
     /// Statement of the paper in a few words.
     pub statement: Cow<'static, str>,
-    /// Part of a paper that prints the figure.
+    /// Paper that prints the figure, with the section or page.
     pub source: Cow<'static, str>,
-    /// Simulated experiment: its name, or its machine, pipeline and scene.
+    /// Description of the simulated experiment: a name, or the machine, the pipeline and the scene.
     pub experiment: &'static str,
-    /// Scene that was drawn for the figure. `None` if the experiment has its own scene, or none.
+    /// Scene that was drawn for the figure. `None` if the experiment defines its own scene or draws no scene.
     pub scene: Option<String>,
     /// Number as printed, or derived from printed numbers, in `unit`. NaN (null in JSON) if the paper has a drawing
     /// without numbers.
@@ -67,9 +68,9 @@ pub struct FigureRow {
     pub origin: Provenance,
     /// Half the width of the range that the paper prints, in `unit`. `None` if the paper prints no range.
     pub spread: Option<f64>,
-    /// Least and greatest simulated value that count as agreement.
+    /// Smallest and largest simulated value that count as agreement with the paper.
     pub accepted: [f64; 2],
-    /// Value of the model in `unit`.
+    /// Value that the model gives for the figure, in `unit`.
     pub simulated: f64,
     /// Unit of all values of the row.
     pub unit: &'static str,
@@ -83,19 +84,19 @@ pub struct FigureRow {
     /// Provenance of the row, and the parameter or rule that was chosen for the figure.
     #[serde(flatten)]
     pub basis: Basis,
-    /// Value of the model at the analytic level with the presets' parameters. Its distance from `simulated` is the
-    /// error of the analytic level. `None` if no parameter was varied.
+    /// Value of the figure at the analytic level, with the parameters of the presets. The difference from `simulated`
+    /// is the error of the analytic level. `None` if no parameter was varied.
     pub analytic: Option<f64>,
     /// Minimum and maximum of the figure while unpublished parameters vary within their ranges, at the analytic level.
     /// `None` if no parameter was varied.
     pub interval: Option<[f64; 2]>,
-    /// Known cause of a difference between model and paper. Empty if the cause is unknown.
+    /// Known cause of a difference between the values of model and paper. Empty if no cause is known.
     pub cause: &'static str,
     /// Additional numbers of the same experiment.
     pub details: Vec<Detail>,
 }
 
-/// Returns the values that differ from `middle` by at most `half`.
+/// Returns the range of the values that differ from `middle` by at most `half`, as its lowest and highest value.
 #[must_use]
 pub const fn around(middle: f64, half: f64) -> [f64; 2] {
     [middle - half, middle + half]
@@ -111,8 +112,8 @@ impl FigureRow {
         if self.cause.is_empty() { "The cause is not known." } else { self.cause }
     }
 
-    /// Creates a row from the published and the simulated number. The row is met if the simulated number is among the
-    /// accepted ones. Nothing else is known about the figure.
+    /// Creates a row from the published and the simulated number. The row counts as met if the simulated number is
+    /// within `accepted`. All optional facts about the figure are missing.
     #[must_use]
     pub fn new(
         id: &'static str,
@@ -144,14 +145,14 @@ impl FigureRow {
         }
     }
 
-    /// Returns the row with the least and greatest simulated value that count as agreement.
+    /// Replaces the smallest and largest simulated value that count as agreement with the paper.
     #[must_use]
     pub fn with_accepted(self, accepted: [f64; 2]) -> Self {
         Self { accepted, ..self }.with_unprinted(None)
     }
 
-    /// Returns the row with the range of the figure over a condition that the paper does not print. The row is met if
-    /// any value of this range is accepted.
+    /// Sets the range of the figure over a condition of the experiment that the paper does not print. The row counts as
+    /// met if any value of this range is accepted.
     #[must_use]
     pub fn with_unprinted(self, unprinted: Option<[f64; 2]>) -> Self {
         let [low, high] = unprinted.unwrap_or([self.simulated; 2]);
@@ -159,8 +160,8 @@ impl FigureRow {
         Self { unprinted, is_met, ..self }
     }
 
-    /// Returns true if no values of the unpublished parameters reproduce the published value. A rule of the model is
-    /// then wrong.
+    /// Returns true if the model cannot reproduce the published value with any values of the unpublished parameters. In
+    /// this case, a rule of the model is wrong.
     ///
     /// The values that the model can reach are the interval of the analytic level, extended on both sides. The
     /// extension is the distance between `analytic` and `simulated`. The two levels may differ as much at the ends of
@@ -179,14 +180,14 @@ impl FigureRow {
 
 /// A number of a paper that is an input of the model, or that follows from printed numbers by arithmetic alone.
 ///
-/// No run can give another value, so a definition has no verdict.
+/// A simulation cannot give another value, so a definition is neither met nor missed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Definition {
-    /// Name of the number in the specification.
+    /// Name under which the documents of the project list the number.
     pub id: &'static str,
     /// Description of the number and of its inputs.
     pub statement: Cow<'static, str>,
-    /// Part of the paper that prints the number, or "derived".
+    /// Section or page of the paper that prints the number, or "derived".
     pub source: &'static str,
     /// Value of the number in `unit`.
     pub value: f64,

@@ -1,9 +1,9 @@
-//! Tables in Markdown, and numbers in their cells.
+//! Formatting of tables in Markdown and of the numbers in these tables.
 
 /// A column of a table: its heading, and the function that returns the text of a row's cell.
 pub type TableColumn<R> = (&'static str, fn(&R) -> String);
 
-/// Returns rows as a Markdown table with a heading.
+/// Formats `rows` as a Markdown table with the headings and cells of `columns`.
 pub fn table<'a, R: 'a>(columns: &[TableColumn<R>], rows: impl IntoIterator<Item = &'a R>) -> String {
     let heading = columns.iter().map(|(name, _)| if name.is_empty() { " |".to_owned() } else { format!(" {name} |") });
     let mut text = format!("|{}\n|{}\n", heading.collect::<String>(), "---|".repeat(columns.len()));
@@ -15,7 +15,7 @@ pub fn table<'a, R: 'a>(columns: &[TableColumn<R>], rows: impl IntoIterator<Item
 }
 
 /// Formats a number with at least `digits` significant digits and without trailing zeros. A number that is not finite
-/// is "none". A number below a millionth is a rounding error and counts as 0.
+/// gives "none". A magnitude below a millionth counts as a rounding error and gives 0.
 #[must_use]
 pub fn significant(value: f64, digits: i32) -> String {
     if !value.is_finite() {

@@ -3,10 +3,10 @@
 use crate::parameters::{FileError, FileErrorKind, Value, nearest};
 use std::fmt::{self, Display};
 
-/// Largest number of names that an error lists after the most similar name.
+/// Largest number of valid names that the message of an error lists after the most similar name.
 const MAX_LISTED: usize = 12;
 
-/// Largest number of names that an error lists without the most similar name.
+/// Largest number of valid names that the message of an error lists if it does not state the most similar name.
 const FEW_NAMES: usize = 4;
 
 /// Error of a setting or an argument that cannot be used. The message states the place, the name, the expected and the
@@ -16,15 +16,17 @@ const FEW_NAMES: usize = 4;
 pub struct SettingError {
     /// Reason why the setting cannot be used.
     pub kind: SettingErrorKind,
-    /// Place of the setting, such as a file with a line, or a command line option. Empty if the caller knows the place.
+    /// Place where the setting was written, such as a file with a line, or a command line option. Empty if the place is
+    /// clear from the call.
     pub place: Box<str>,
-    /// Name or path of the setting, such as `ring.word_ns`. For an unknown name, the kind of thing that was named.
+    /// Name or path of the setting, such as `ring.word_ns`. For an unknown name, the field has the kind of thing that
+    /// the name should denote, such as `pipeline`.
     pub name: Box<str>,
     /// The expected value, in words.
     pub expected: Box<str>,
-    /// The value that was found.
+    /// The value or name that the setting has.
     pub found: Box<str>,
-    /// The valid name that is most similar to an unknown name. Empty for other errors.
+    /// For an unknown name, the valid name that is most similar. Empty for errors of another kind.
     pub nearest: Box<str>,
 }
 
@@ -36,15 +38,16 @@ pub enum SettingErrorKind {
     Value,
     /// A number lies outside its limits, or is not whole.
     Limits,
-    /// Nothing has the given name.
+    /// A name denotes nothing, for example a pipeline that does not exist.
     UnknownName,
-    /// The setting is a fixed property of a chip. Programs can read it but not set it.
+    /// The setting is a fixed property of a chip. Programs can read the property but cannot change the property.
     ReadOnly,
     /// The setting is missing.
     Missing,
-    /// The settings exclude each other, a setting does not apply, or its text has another fault.
+    /// Two settings exclude each other, a setting does not apply to the experiment, or the text of a setting has
+    /// another fault.
     Combination,
-    /// A scene has contents that its reader cannot use.
+    /// A scene has contents that the program cannot use.
     Scene,
     /// A file that the setting names cannot be used.
     File(FileErrorKind),
@@ -56,34 +59,35 @@ impl SettingError {
         Self { kind, place: "".into(), name: name.into(), expected, found, nearest: "".into() }
     }
 
-    /// Creates the error for a value: `name: expected ..., found ...`.
+    /// Creates the error for a wrong value of the setting `name`. The message is `name: expected ..., found ...`.
     #[must_use]
     pub fn value(name: &str, expected: impl Display, found: impl Display) -> Self {
         Self::new(SettingErrorKind::Value, name, expected, found)
     }
 
-    /// Creates the error of a text that has the wrong form as a whole: `expected ..., found "..."`.
+    /// Creates the error of a text that has the wrong form as a whole. The message is `expected ..., found "..."`.
     #[must_use]
     pub fn text(expected: impl Display, text: &str) -> Self {
         Self::value("", expected, format_args!("{text:?}"))
     }
 
-    /// Creates the error of a number outside its limits: `name must be LOW to HIGH, found ...`.
+    /// Creates the error of a number outside its limits. The message is `name must be LOW to HIGH, found ...`.
     #[must_use]
     pub fn limits<N: Display>(name: &str, (low, high): (N, N), found: impl Display) -> Self {
         Self::new(SettingErrorKind::Limits, name, format_args!("{low} to {high}"), found)
     }
 
-    /// Creates the error of a number that has a fraction or a sign, for a setting that is whole.
+    /// Creates the error of a number with a fraction or a sign, for a setting that must be a whole number.
     #[must_use]
     pub fn not_whole(name: &str, found: impl Display) -> Self {
         Self::new(SettingErrorKind::Limits, name, "a whole number", found)
     }
 
-    /// Creates the error of a name that nothing has. `what` is the kind of thing that was named, such as `pipeline`.
+    /// Creates the error of a name that denotes nothing. `what` is the kind of thing that the name should denote, such
+    /// as `pipeline`.
     ///
-    /// The message states the most similar name first, then all valid names. If there are many, the message leaves them
-    /// out.
+    /// The message states the most similar name first, then all valid names. If there are many valid names, the message
+    /// leaves the list out.
     #[must_use]
     pub fn unknown<S: AsRef<str>>(what: &str, found: &str, valid: impl IntoIterator<Item = S>) -> Self {
         let valid: Vec<S> = valid.into_iter().collect();
@@ -97,7 +101,8 @@ impl SettingError {
         Self { nearest: near.into(), ..Self::new(SettingErrorKind::UnknownName, what, expected, found) }
     }
 
-    /// Creates the error of a path that no setting has. The message states only the most similar path.
+    /// Creates the error of a path, such as `ring.word_ns`, that no setting has. The message states only the most
+    /// similar valid path.
     #[must_use]
     pub fn unknown_path<S: AsRef<str>>(what: &str, found: &str, valid: impl IntoIterator<Item = S>) -> Self {
         Self { expected: "".into(), ..Self::unknown(what, found, valid) }
@@ -109,13 +114,13 @@ impl SettingError {
         Self::new(SettingErrorKind::ReadOnly, path, origin, value)
     }
 
-    /// Creates the error of a missing setting. `how` is an example of a value, in words.
+    /// Creates the error of a missing setting. `how` describes the setting with an example of a value.
     #[must_use]
     pub fn missing(name: &str, how: impl Display) -> Self {
         Self::new(SettingErrorKind::Missing, name, how, "")
     }
 
-    /// Creates the error of settings that exclude each other, or of a setting that does not apply. The reason is a
+    /// Creates the error of settings that exclude each other, or of a setting that does not apply. `reason` is a
     /// sentence with the expected and the found values.
     #[must_use]
     pub fn combination(reason: impl Display) -> Self {
@@ -128,7 +133,7 @@ impl SettingError {
         Self::new(SettingErrorKind::Scene, part, expected, found)
     }
 
-    /// Returns an error of a value unless `holds` is true.
+    /// Returns `Ok` if `holds` is true, otherwise the error of a wrong value of the setting `name`.
     ///
     /// # Errors
     ///
@@ -143,7 +148,8 @@ impl SettingError {
         Self { place: joined(place, ": ", &self.place), ..self }
     }
 
-    /// Adds the name of the table to the name of the setting: `word_ns` in `ring` becomes `ring.word_ns`.
+    /// Adds the name of a table of parameters to the name of the setting: `word_ns` in the table `ring` becomes
+    /// `ring.word_ns`.
     #[must_use]
     pub fn in_table(self, table: impl Display) -> Self {
         Self { name: joined(table, ".", &self.name), ..self }

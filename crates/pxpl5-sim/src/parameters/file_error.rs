@@ -11,13 +11,13 @@ use std::path::Path;
 pub struct FileError {
     /// Reason why the file cannot be used.
     pub kind: FileErrorKind,
-    /// Path or name of the file, as the caller gave it. Empty if only the text was given.
+    /// Path or name of the file. Empty if the text does not come from a file.
     pub file: Box<str>,
     /// Position of the error in the file, such as `line 3, byte 4`. Empty if the whole file is wrong.
     pub place: Box<str>,
     /// The expected content, in words. Empty if `found` is a whole sentence.
     pub expected: Box<str>,
-    /// The content found.
+    /// The content of the file at the position of the error, or a sentence that describes the error.
     pub found: Box<str>,
 }
 
@@ -29,27 +29,27 @@ pub enum FileErrorKind {
     Unreadable,
     /// The path leads to a directory, a device or a pipe instead of a file.
     NotAFile,
-    /// No reader knows the format, or this program was built without the reader.
+    /// The program cannot read files of this format, or was built without the reader for this format.
     UnknownFormat,
     /// The file is too large, or its contents need too much memory.
     TooLarge,
-    /// The file has no content, or nothing that its reader looks for.
+    /// The file has no content, or no content that this program can use.
     Empty,
     /// A byte is not UTF-8.
     NotText,
     /// The content breaks the rules of its format.
     Syntax,
-    /// The file ends before all content that its header announces.
+    /// The file ends too early: its header announces more content.
     Truncated,
-    /// An index refers to an item that the file lacks.
+    /// An index in the file refers to an item that the file does not contain.
     Index,
-    /// A number is out of range.
+    /// A number in the file is outside its allowed range.
     Number,
-    /// The file was written by another version, or for something else.
+    /// The file was written by another version of the program, or for another purpose.
     Foreign,
     /// The contents contradict each other, or were changed after they were written.
     Damaged,
-    /// The place of the file is taken by something else.
+    /// A file or directory that already exists prevents the writing of the file.
     Occupied,
     /// Another process is writing the file.
     Locked,
@@ -69,13 +69,14 @@ impl FileError {
         Self::new(FileErrorKind::Unreadable, expected, error).in_file(file)
     }
 
-    /// Creates the error whose message is a sentence without an expected content.
+    /// Creates an error whose message is the sentence `reason`, without an expected content.
     #[must_use]
     pub fn because(kind: FileErrorKind, reason: impl Display) -> Self {
         Self::new(kind, "", reason)
     }
 
-    /// Returns a function that creates the error of a failed operation, such as `cannot be written`.
+    /// Returns a function that converts an [`io::Error`] to the error of a file. `doing` describes the failed
+    /// operation.
     pub fn io(file: &Path, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         move |error| Self::because(FileErrorKind::Unreadable, format_args!("{doing}: {error}")).in_file(file.display())
     }

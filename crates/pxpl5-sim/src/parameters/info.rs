@@ -11,13 +11,13 @@ pub enum Provenance {
     Published,
     /// The value follows by arithmetic from published figures.
     Derived,
-    /// The value comes from memory or from an estimate. The range of the value is as wide as the published figures
-    /// allow.
+    /// The value was remembered or estimated by the authors of this program. The range of the value is as wide as the
+    /// published figures allow.
     Assumed,
 }
 
 impl Provenance {
-    /// Every kind of provenance with its name, the best kind first.
+    /// All kinds of provenance with their names, the most reliable kind first.
     pub const ALL: [(&str, Self); 3] =
         [("published", Self::Published), ("derived", Self::Derived), ("assumed", Self::Assumed)];
 }
@@ -33,11 +33,11 @@ pub struct ParameterInfo {
     pub unit: &'static str,
     /// Provenance of the parameter's value: printed, calculated or assumed.
     pub provenance: Provenance,
-    /// Initial value of the parameter. The papers print or allow this value.
+    /// Initial value of the parameter, which the papers print or allow.
     pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),
-    /// Smallest and largest value with which the model works.
+    /// Smallest and largest value that the model can process.
     pub limits: (Value, Value),
     /// Source of the value: the short name of a paper, a formula, or a reason.
     pub source: &'static str,
@@ -54,8 +54,8 @@ impl ParameterInfo {
     }
 }
 
-/// Creates the error of a table that has no parameter called `name`. Tables that are written without the macro can also
-/// use this function.
+/// Creates the error of a table that has no parameter called `name`. The function is public for tables that are written
+/// without the macro `parameter_table!`.
 #[must_use]
 pub fn unknown_parameter(name: &str, infos: &[ParameterInfo]) -> SettingError {
     SettingError::unknown_path("parameter", name, infos.iter().map(|info| info.name))

@@ -1,4 +1,4 @@
-//! Values with names: reading and writing a name.
+//! Conversion between values and their names, for types with a fixed list of named values.
 
 use crate::parameters::SettingError;
 use std::fmt;
@@ -7,7 +7,8 @@ use std::fmt;
 ///
 /// # Errors
 ///
-/// Returns [`SettingError`] if no value has the name. The message uses `what` as the kind of value.
+/// Returns [`SettingError`] if no value has the name. In the message, `what` is the kind of the value, such as
+/// `pipeline`.
 pub fn find_named<T>(
     what: &str,
     text: &str,

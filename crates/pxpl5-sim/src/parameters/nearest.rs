@@ -1,8 +1,8 @@
 //! Search for the name that is most similar to an unknown name, for error messages.
 
 /// Returns the candidate that begins with `name`, for example a parameter of the table `name`. Otherwise returns the
-/// candidate that shares the most words with `name`, and of these the one with the fewest single-letter changes.
-/// Returns `None` if there are no candidates.
+/// candidate that shares the most words with `name`. Among candidates that share equally many words, the candidate with
+/// the fewest single-letter changes is returned. Returns `None` if there are no candidates.
 ///
 /// Capital and small letters are the same. Words end at punctuation, and similar words count as the same word.
 #[must_use]
@@ -18,7 +18,7 @@ fn words(name: &str) -> impl Iterator<Item = &str> {
     name.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty())
 }
 
-/// Returns true if at most half of the letters differ.
+/// Returns true if at most half of the letters of two words differ.
 fn are_similar(word: &str, other: &str) -> bool {
     let longer = word.chars().count().max(other.chars().count());
     2 * strsim::levenshtein(word, other) <= longer

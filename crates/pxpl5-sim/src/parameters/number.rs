@@ -4,7 +4,7 @@ use crate::parameters::{SettingError, Value};
 
 /// A number type that a field of a table can have: `u64` or `f64`.
 pub trait Number: Copy + Into<Value> {
-    /// Converts a value to this type. Returns `None` if the type is a whole number and the value is not whole.
+    /// Converts a value to this number type. Returns `None` if the type is `u64` and the value is not a whole number.
     fn from_value(value: Value) -> Option<Self>;
 
     /// Sets the field called `name` to a value.
@@ -30,8 +30,8 @@ impl Number for f64 {
     }
 }
 
-/// Checks a number against its limits. Use this function for a number that belongs to no table, or for limits that
-/// depend on other numbers.
+/// Checks a number against its limits. This function is for numbers that belong to no table of parameters, or whose
+/// limits depend on other numbers.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! Access to the parameters of a table by name, for any table type.
+//! A trait for access to the parameters of a table by name.
 
 use crate::parameters::{ParameterInfo, SettingError, Value};
 
@@ -27,11 +27,11 @@ impl Entry {
     }
 }
 
-/// A table made by [`parameter_table!`](crate::parameters::parameter_table). A machine can hold tables of different
-/// types as `&dyn ParameterTable`.
+/// A table of parameters that was declared with [`parameter_table!`](crate::parameters::parameter_table). A machine can
+/// hold tables of different types as `&dyn ParameterTable`.
 pub trait ParameterTable {
-    /// Returns unit, provenance, range and source of each parameter, in the order of the fields. The constant `INFOS`
-    /// of the table's type has the same contents.
+    /// Returns unit, provenance, range and source of each parameter, in the order of the fields. The table's constant
+    /// `INFOS` has the same content.
     fn infos(&self) -> &'static [ParameterInfo];
 
     /// Returns the value of a parameter.

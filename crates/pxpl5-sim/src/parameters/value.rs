@@ -5,14 +5,15 @@ use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// The value of a parameter. Files and reports contain only the number, without the name of the variant.
+/// The value of a parameter, either a whole or a real number. Files and reports contain only the number, without the
+/// name of the variant.
 ///
 /// A whole value never equals a real value, and neither is greater than the other. Two real values are compared in
 /// IEEE's total order. NaN therefore lies outside every range, and two tables can be compared for equality.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// An exact whole number: a count, or a time in whole units.
+    /// An exact whole number, such as a count of bytes or a time in whole nanoseconds.
     Whole(u64),
     /// A measured real number, such as an rms error.
     Real(f64),
@@ -95,8 +96,8 @@ impl From<f64> for Value {
     }
 }
 
-/// The greatest whole number for a limit: 10^12. With this limit, a model can add and multiply a few times in
-/// nanoseconds or clocks within 64 bits.
+/// The greatest whole number that a limit of a parameter can be: 10^12. With this limit, sums and small multiples of
+/// nanoseconds or clocks fit in 64 bits.
 pub const MAX: u64 = 1_000_000_000_000;
 
 #[cfg(test)]
