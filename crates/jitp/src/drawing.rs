@@ -147,9 +147,10 @@ impl DrawnList {
         }
     }
 
-    /// Returns data to interpolate the triangle with index `k` of a structure: its positions in both views, the
-    /// position of the drawn instant between the views (0 to 1), and the mode of interpolation. Returns `None` if the
-    /// triangle is not interpolated.
+    /// Returns data to interpolate the triangle with index `k` of a structure. The data are the triangle's positions in
+    /// both views, the position of the drawn instant between the views (0 to 1), and the mode of interpolation.
+    ///
+    /// Returns `None` if the triangle is not interpolated.
     fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Interpolation)> {
         let Between { ends, part, interpolation, .. } = self.between.as_ref()?;
         Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *part, *interpolation))

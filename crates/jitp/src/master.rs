@@ -182,8 +182,8 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 }
 
-/// Two expected durations for an order of blocks: the time from the order until its blocks are visible, and the time
-/// from then on until newly drawn blocks replace these blocks.
+/// Two expected durations for an order of blocks. `drawing` lasts from the order until its blocks are visible. `standing`
+/// lasts until newly drawn blocks replace these blocks.
 struct Expected {
     drawing: Span,
     standing: Span,

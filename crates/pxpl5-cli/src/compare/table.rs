@@ -73,8 +73,8 @@ fn percent(share: f64) -> f64 {
     (share * 1e8).round() / 1e6
 }
 
-/// Returns the name of a row. If a bootstrap gave the confidence interval of the row, the text also has two lengths in
-/// fields: the length of the row's series of errors, and the length of the bootstrap's blocks.
+/// Returns the name of a row. If a bootstrap gave the row's confidence interval, two lengths in fields follow. The
+/// first is the length of the row's series of errors. The second is the length of the bootstrap's blocks.
 fn with_blocks(row: &ComparisonRow) -> String {
     let blocks =
         row.error.bootstrap.map(|size| format!(" ({} fields in blocks of {})", size.fields, size.block_fields));

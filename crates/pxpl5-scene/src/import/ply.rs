@@ -229,8 +229,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Returns an error if a list is too long. The check comes before the list is copied, because the copy of a long
-    /// list with corners of one or two bytes would take many times the memory of the file.
+    /// Returns an error if a list is too long. The check comes before the list is copied. The copy of a long list
+    /// with corners of one or two bytes would take many times the memory of the file.
     fn check_list(&self, at: FilePlace, length: usize) -> Result<(), FileError> {
         if length <= self.longest_list {
             return Ok(());

@@ -24,9 +24,9 @@ pub struct FaceWarp {
 
 /// Number of words of an encoded warp.
 ///
-/// The words are: cell at the centre of the assignment (four words), one word with `inner_rings` in the lower half and
-/// `ring_growth` in the upper half, number of memories, and falloff. Two lengths and two positions follow, with two
-/// words for each real number.
+/// Four words hold the cell at the centre of the assignment. One word has `inner_rings` in its lower half and
+/// `ring_growth` in its upper half. The number of memories and the falloff have a word each. Two lengths and two
+/// positions follow, with two words for each real number.
 pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
 
 impl FaceWarp {
