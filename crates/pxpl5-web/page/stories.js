@@ -80,8 +80,8 @@ export const STORIES = {
       {
         title: "2. TRANSFORM",
         say: "Each graphics processor (GP) computes the positions of its triangles on the screen. The GP then sorts the triangles into bins, one for each region of 128 by 128 pixels.",
-        until: "transform", ms: 200, slower: 60, then: 0.25, thenSlower: 4000, show: ["diagram", "regions", "age"],
-        paused: "The GPs work at the same time. The renderers still copy the previous picture.",
+        until: "transform", ms: 200, slower: 60, show: ["diagram", "regions", "age"],
+        paused: "The GPs work at the same time, and the first GPs already send commands. The renderers still copy the previous picture.",
       },
       {
         title: "3. RENDER",
