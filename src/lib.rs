@@ -103,7 +103,7 @@
 //! | [`scene`], [`tracking`] | the scene, and the motion and tracking of the viewer's head | |
 //! | [`looks`] | snapshots of boards during a run | |
 //! | [`firmware`], [`device`] | types for writing a pipeline or a display | |
-//! | [`run`], [`measure`] | further parts of an outcome and of its evaluation | |
+//! | [`run`], [`measure`] | rarely needed names for an outcome and for its evaluation | |
 //! | [`analytic`] | results of experiments from formulas, without simulated events | |
 //! | [`oracle`] | ideal pictures: a renderer without parallelism and without time | |
 #![cfg_attr(

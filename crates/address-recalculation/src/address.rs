@@ -73,7 +73,8 @@ pub struct AddressUnit {
     pub geometry: FaceGeometry,
     /// Number of bits of a quotient.
     pub quotient_bits: u64,
-    /// Number of bits of a fraction. With 0, the pixel shows the nearest texel.
+    /// Number of bits of each fraction in [`Footprint::fractions`], from which the weights of the four texels are
+    /// computed. With 0, the pixel shows the nearest texel without interpolation.
     pub weight_bits: u64,
 }
 

@@ -114,9 +114,11 @@ pub(crate) struct Block {
     mode: Mode,
     /// Pairing mode (single instructions or pairs) after the delay slot.
     pub(crate) after_slot: Mode,
-    /// Pairing mode (single instructions or pairs) after the block's last instruction or pair before the delay slot.
+    /// Pairing mode (single instructions or pairs) after the last instruction or pair of the block, not counting a
+    /// delay slot.
     pub(crate) after: Mode,
-    /// Address after the block's last instruction or pair before the delay slot.
+    /// Address after the last instruction or pair of the block, not counting a delay slot. A delay slot begins at this
+    /// address.
     pub(crate) next: u32,
     /// Number of issues of the block: each single instruction and each pair counts as one. The delay slot does not
     /// count.

@@ -353,8 +353,8 @@ impl Pass {
         self.run_rest(processor, kernel, &places, to, triangles, marks)
     }
 
-    /// Runs the sphere kernel for one view and records the end of each bin. The triangle kernel must have finished, and
-    /// the table of bins must be in memory.
+    /// Runs the sphere kernel for one view, after the triangle kernel. Then stores where each bin begins and ends. The
+    /// table of bins must be in memory.
     fn run_rest(
         &self,
         processor: &mut Processor,

@@ -213,7 +213,7 @@ impl Work for WindowSearchWork<'_> {
     }
 }
 
-/// Result of a search, with its time and the numbers of listed messages.
+/// Result of a search: its time, and the number of messages that the search has listed for each window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SearchOutput {
     /// Simulated time of all steps together.

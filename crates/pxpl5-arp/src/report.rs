@@ -44,7 +44,8 @@ pub struct ArpReport {
     pub rotation_latency_ms: WalkLatency,
     /// Latency of translation through memory 0, in ms. Null without an update.
     ///
-    /// The latency lasts from the start of the frame whose eye position was drawn to the display of the pixel.
+    /// The memory is drawn from the eye position at the start of a frame. The latency lasts from the start of this
+    /// frame to the display of a pixel of the memory.
     pub translation_latency_ms: WalkLatency,
     /// Mean difference between the displayed view and a direct rendering of the same pose, in pixels. Null if no view
     /// was drawn.
@@ -70,7 +71,8 @@ pub struct WalkMemoryReport {
     pub eye_age_mm: f64,
     /// Latency of translation in ms, averaged over frames.
     ///
-    /// The latency lasts from the start of the frame whose eye position was drawn to the display of the pixel.
+    /// The memory is drawn from the eye position at the start of a frame. The latency lasts from the start of this
+    /// frame to the display of a pixel of the memory.
     pub translation_latency_ms: WalkLatency,
     /// Size of both buffers of the memory, in bytes.
     pub bytes: u64,

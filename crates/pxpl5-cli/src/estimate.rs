@@ -53,7 +53,8 @@ const PRIMITIVE: f64 = 200.0;
 /// Memory in bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one
 /// stencil bit.
 const TARGET: f64 = 3.125;
-/// Memory in bytes of a pixel that a surface covers, including spare capacity of its list.
+/// Memory in bytes of a pixel that a surface covers, including the unused capacity of the list that stores covered
+/// pixels.
 const SAMPLE: f64 = 12.0;
 /// Estimated number of pixels that surfaces touch in each column of a slice.
 const ROWS: f64 = 2.0;

@@ -333,7 +333,7 @@ impl Transform {
     }
 
     /// Returns the corners of a triangle on the screen in two views: this view and the view `end`. Both views must have
-    /// the same picture.
+    /// the same viewport.
     ///
     /// Returns `None` if a corner is outside the guard band of either view.
     #[must_use]

@@ -45,7 +45,8 @@ pub struct RunWork {
     pub eyes: u64,
     /// Number of pictures for each eye in a display field, at most 1.
     pub pictures_a_field: f64,
-    /// True if a closed-form formula gives the times of the pictures. All primitives are then transformed in advance.
+    /// True if a closed-form formula gives the times of the pictures. The estimate then also counts the time to
+    /// transform each primitive once for each eye.
     pub uses_closed_form: bool,
     /// Number of blocks of pixels drawn with one head pose, or 0 for a pipeline without blocks.
     pub batch: u64,

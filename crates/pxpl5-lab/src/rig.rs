@@ -123,8 +123,8 @@ impl Rig {
         Ok(measured.with_frames_counted_in_scan(counted.unwrap_or_default()))
     }
 
-    /// Returns the experiment of a measurement. At every reported low point the simulated head turns away from the lamp
-    /// or back. The experiment is long enough for the last frame to be shown.
+    /// Returns the experiment of a measurement. Each report of the pendulum's low point has a head pose: alternately
+    /// toward the lamp and away from the lamp. The experiment is long enough for the last frame to be shown.
     fn experiment(
         &self,
         machine: &MachineConfig,
@@ -291,7 +291,8 @@ fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outc
     }
 }
 
-/// Returns the first complete picture after each reported low point, according to the pipeline's records.
+/// Returns, for each report of the pendulum's low point, the first complete picture with the head pose of this report.
+/// The pictures come from the pipeline's records.
 fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<Vec<PictureTimes>, StudyError> {
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
     let arrived_at: BTreeMap<ViewNumber, Time> =

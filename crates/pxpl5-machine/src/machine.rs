@@ -72,8 +72,9 @@ struct Contexts {
 /// period before the tick, and no other part of the machine has a pending event.
 pub const DEADLOCK_TICKS: u64 = 120;
 
-/// Number of events of the first graphics processor that each tick (start of a display period) causes: the signal of
-/// the tick, and a poll of the processor's programs. These events do not end a series of idle ticks.
+/// Number of events of the first graphics processor that each tick of the first display causes. The events are the
+/// signal of the retrace, and a poll of the processor's programs. A tick after a period with only these events can
+/// still be idle.
 const EVENTS_OF_A_TICK: u64 = 2;
 
 impl Machine {

@@ -44,7 +44,8 @@ pub struct CriticalPath {
     pub chain: Vec<String>,
 }
 
-/// Largest number of pictures that are followed. Even a long run still has all records of its last 24 pictures.
+/// Largest number of pictures whose chains of waits are followed back from the screen to TRANSFORM. Even a long run
+/// still has all records of its last 24 pictures.
 pub const PICTURES_FOLLOWED: usize = 24;
 
 /// Largest number of waits of a chain that are printed.

@@ -422,7 +422,7 @@ impl Experiment {
         self.fields
     }
 
-    /// Returns the first period of the first display that is not simulated. The run ends when this period begins.
+    /// Returns the period of the first display at whose start the run ends. This period is not simulated.
     pub(crate) const fn end(&self) -> PeriodNumber {
         PeriodNumber::FIRST.after(self.fields)
     }

@@ -28,8 +28,8 @@ struct Begin {
     next: usize,
 }
 
-/// An entry, with the two steps (differences of successive instants) before this entry in picoseconds. The older step
-/// comes first.
+/// An instant of the list in picoseconds, its number, and the last two steps that lead to this instant. A step is the
+/// difference of two successive instants. The older step comes first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct At {
     number: u64,

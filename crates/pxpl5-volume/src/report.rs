@@ -259,8 +259,9 @@ impl Volume {
         }
     }
 
-    /// Returns the percentage of shown samples, along the intersections of mesh and slices. A sample is shown if its
-    /// pixel, or one of the eight neighbouring pixels, is drawn.
+    /// Returns the percentage of samples that are shown. The samples lie at most a pixel apart on the curves in which
+    /// the slices intersect the mesh. A sample is shown if its pixel, or one of the eight neighbouring pixels, is
+    /// drawn. The result is NaN if the frame has no colours.
     #[must_use]
     pub fn connected_percent(&self) -> f64 {
         connected(&self.display, &self.commands, &self.frame).map_or(f64::NAN, |found| found.percent())

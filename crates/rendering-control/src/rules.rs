@@ -79,8 +79,8 @@ impl Completed {
     /// Returns true if TRANSFORM of drawing number n (the picture of one eye) may begin.
     ///
     /// All slaves must have finished EDIT of the drawing's frame. (TR94 requires only that this EDIT has begun.) RENDER
-    /// of drawing n - 2 and COPY of drawing n - 3 must be complete. The rule does not apply to the first eye of a
-    /// frame. Each slave begins the first eye when its own edits are done.
+    /// of drawing n - 2 and COPY of drawing n - 3 must be complete. These conditions are only for the later eyes of a
+    /// frame. Each slave begins TRANSFORM of the first eye when its own edits are done.
     #[must_use]
     pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
         self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)

@@ -42,7 +42,8 @@ impl Falloff {
     }
 }
 
-/// The displacement of a memory's vertices near the border to the next less often drawn memory.
+/// The displacement of a memory's vertices near a border. Beyond the border lie the objects of the slower memory: among
+/// the memories that are drawn less often, the one that is drawn most often.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionWarp {
     falloff: Falloff,
@@ -52,7 +53,7 @@ pub struct RegionWarp {
 
 impl RegionWarp {
     /// Creates the warp of a memory. `drawn_from` is the eye position from which this memory was drawn, and
-    /// `slower_from` the eye position from which the next less often drawn memory was drawn.
+    /// `slower_from` the eye position from which the slower memory was drawn.
     ///
     /// # Errors
     ///

@@ -152,7 +152,7 @@ fn slowed(world: &World, settings: &WalkSettings, path: &Walk) -> Result<Vec<Slo
     Ok(all)
 }
 
-/// Threshold of experiments E3 and E4 in degrees: one texel of an ideal face.
+/// Largest accepted image error in experiments E3 and E4, in degrees: one texel of an ideal face of 512 x 512 texels.
 const THETA_DEG: f64 = 90.0 / 512.0;
 
 /// Number of point objects on a disc around the walker with a radius of 100 m. The points are distributed evenly by

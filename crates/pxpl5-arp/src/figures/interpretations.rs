@@ -84,7 +84,8 @@ impl Situation {
 /// Update rates of the memories for one side length of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Trial {
-    /// Side of a cell in metres, for the default threshold.
+    /// Side of a square cell of the floor, in metres. The threshold of the image error ([`PriorityTiming::theta_deg`])
+    /// has its default value.
     pub cell_m: f64,
     /// Updates per second of display memories 0 to 3.
     pub rates_hz: [f64; 4],
@@ -204,8 +205,8 @@ fn best_of<'a>(trials: &'a [Trial], memories: &[usize]) -> Option<&'a Trial> {
 }
 
 impl Interpretations {
-    /// Simulates all sets of rules in all halls and on all paths. Calls `finished` with the number of finished runs and
-    /// the number of all runs.
+    /// Simulates each set of rules in each situation of [`Situation::ALL`]: a hall with one path. After each situation,
+    /// calls `finished` with the number of finished runs and the number of all runs.
     ///
     /// # Errors
     ///

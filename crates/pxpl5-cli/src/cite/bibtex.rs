@@ -53,7 +53,7 @@ fn entry(kind: &str, key: &str, fields: &[(&str, String)]) -> String {
 mod tests {
     use super::*;
 
-    /// The bibliography of the paper begins with these entries.
+    /// Tests that the bibliography `paper/paper.bib` begins with all entries that `pxpl5 cite --format bibtex` prints.
     #[test]
     fn the_bibliography_of_the_paper_begins_with_these_entries() {
         let paper = include_str!("../../../../paper/paper.bib");

@@ -36,8 +36,8 @@ impl RigLines {
     }
 
     /// Returns the latency that the pendulum rig measures (figure 17), with the photodiode on the assumed line. The
-    /// paper does not print the photodiode's position, so the details state the latency under the first and the last
-    /// line.
+    /// paper does not print the photodiode's position. The details therefore also state the latency with the photodiode
+    /// on the first and on the last line of the screen.
     pub(super) fn figure(&self) -> FigureValue {
         let [first, assumed, last] = self.measured.each_ref().map(|(_, measured)| rendering(measured));
         let lines =

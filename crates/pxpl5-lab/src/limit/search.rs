@@ -279,7 +279,8 @@ mod tests {
     }
 
     proptest! {
-        /// Tests that a search ends at the same size for any starting size, if all sizes above the limit miss.
+        /// Tests that a search finds the limit for any hints. In this test, all sizes up to the limit reach the goal,
+        /// and all larger sizes miss the goal.
         #[test]
         fn hints_change_the_number_of_trials_alone(
             limit in 0u32..5_000,

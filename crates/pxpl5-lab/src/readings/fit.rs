@@ -51,7 +51,8 @@ const EXPLAINED_PERCENT: f64 = 8.0;
 /// Largest relative error of a standard deviation that still counts as explained.
 const EXPLAINED_SD: f64 = 0.25;
 
-/// Relative uncertainty of the model itself. The reason is that no paper gives some clocks and costs of the model.
+/// Relative uncertainty of the model itself. The model is uncertain because some of its clocks and costs are not in any
+/// paper.
 const DISCREPANCY: f64 = 0.02;
 
 /// Number of samples from which the papers' printed means were computed. The printed mean of 4.47 with a standard

@@ -241,7 +241,8 @@ impl Fault<'_> {
         Ok(Some(Axis::of_one("seed".to_owned(), AxisValues::Range { from: 1, step: 1, count: count as u64 })))
     }
 
-    /// Checks that every path of the axes is a key of the file, and that no two axes set the same key.
+    /// Checks the settings that the axes vary. Each setting must be a valid key of an experiment file, and no key may
+    /// occur twice.
     fn check(
         &self,
         axes: &[Axis],

@@ -145,8 +145,8 @@ struct StreamStart {
 }
 
 impl VectorPlace {
-    /// Returns the position of the vector of pixels that begins at row `row` of tile `tile`. The adder trees span the
-    /// whole array.
+    /// Returns the positions of a vector of pixels of tile `tile` if the adder trees span the whole array. `row` is the
+    /// first row of the tile that the vector covers.
     #[inline(always)]
     pub(super) const fn in_array(tile: usize, row: usize) -> Self {
         let [left, top] = tile::origin(tile);
@@ -155,8 +155,9 @@ impl VectorPlace {
         Self { at: row / 2, columns, rows: StreamStart { word: 2 + y / 64, bit: y % 64 } }
     }
 
-    /// Returns the position of the vector of pixels that begins at row `row` of a tile. The adder trees span one tile.
-    /// The column bits are in the low half of word `word` of the tree outputs, and the row bits are in the high half.
+    /// Returns the positions of a vector of pixels if the adder trees span one tile. `row` is the first row of the tile
+    /// that the vector covers. The column bits are in the low half of word `word` of the tree outputs, and the row bits
+    /// are in the high half.
     #[inline(always)]
     pub(super) const fn in_tile(word: usize, row: usize) -> Self {
         Self { at: row / 2, columns: StreamStart { word, bit: 0 }, rows: StreamStart { word, bit: WIDTH + row } }

@@ -26,7 +26,8 @@ pub(super) const FULL: TilePlane = [u64::MAX; HEIGHT / 2];
 pub(super) struct Tile {
     pub(super) memory: [TilePlane; MEMORY_BITS as usize],
     pub(super) enable: TilePlane,
-    /// Number of clocks in which bits of this tile have moved.
+    /// Number of clocks in which this tile has processed bits of the current instruction. Clocks for the set-up of the
+    /// instruction do not count.
     pub(super) clock: u64,
 }
 

@@ -111,7 +111,8 @@ impl Lanes {
     }
 
     /// Stores the coefficients of a sphere, so that a later instruction can reuse them. Returns the sphere with the
-    /// array's upper left pixel as origin, and with shifts for this layout.
+    /// array's upper left pixel as origin. If square roots in this layout are shorter than 12 bits, the returned shifts
+    /// of radicand and depth are larger.
     fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);
         SphereBody {

@@ -116,8 +116,8 @@ impl SlimTriangles {
     }
 }
 
-/// Returns, for each triangle of a batch, the value of the triangle's expression at the pixel (x, y). Each triangle has
-/// its own x and y. The result is a new array, so the compiler can assume that no other data changes.
+/// Returns the value of each triangle's expression at the pixel (x, y) of this triangle, for all triangles of a batch.
+/// The loop writes only into a new array, so the compiler knows that the inputs do not change.
 #[inline(always)]
 fn values(e: &LinearLanes, [x, y]: [&PerTriangle<i32>; 2]) -> PerTriangle<i32> {
     let mut all = [0; LANES];

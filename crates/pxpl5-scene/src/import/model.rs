@@ -80,8 +80,9 @@ pub(super) type Corner = (u32, u32);
 /// The meaning of the second number of a [`Corner`]. This number distinguishes vertices at one point.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
-    /// The index of a normal, counted from 1. For a corner without a normal, the number is the smoothing group of the
-    /// face: 0, or a number from 2^31 on.
+    /// The index of a normal, counted from 1: a normal of the file, or the computed normal of a flat face. A corner
+    /// without a normal in a smoothing group has a number of at least 2^31 instead. This number stands for the
+    /// smoothing group.
     Normal,
     /// The colour of a face: red, green and blue, packed with red in the lowest byte.
     Colour,

@@ -81,8 +81,8 @@ struct Rows<'a> {
 const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 
-/// Number of bytes at the start of the file that the reader searches for the error if the header has no end. Assumed:
-/// at least a few lines.
+/// If no line `end_header` ends the header, the reader parses only this number of bytes, to find the error. The number
+/// is assumed. It only needs to cover a few lines.
 const HEADER: usize = 1 << 16;
 
 /// Returns the header with LF at its line ends, the position after the header, and the byte that ends its lines. Bytes

@@ -127,8 +127,8 @@ fn scale_to_one(length: f64) -> Option<f64> {
     (length > 0.0).then(|| libm::ldexp(1.0, -exponent.max(-1022)))
 }
 
-/// Returns the polygon's first corner, and the factor that brings its farthest corner near a distance of 1 from the
-/// first. Returns `None` if all corners coincide.
+/// Returns the polygon's first corner and a scale factor, or `None` if all corners coincide. Multiplied by the factor,
+/// the largest coordinate difference between the first corner and any other corner is near 1.
 fn near_one(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<(DVec3, f64)> {
     let origin = place(fan.first()?[0]);
     let farthest = corners(fan).map(|corner| (place(corner) - origin).abs().max_element()).fold(0.0, f64::max);

@@ -25,15 +25,15 @@ const HEADER_WORDS: usize = 3;
 /// A message in the form that the frame store reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum StoreMessage<'a> {
-    /// A map of the tiles that will arrive for `slices` slices from slice `first` on. Bit i of `bits` stands for tile
-    /// i.
+    /// A map of the tiles that will arrive for each of `slices` slices, from slice `first` on. Bit i of `bits` is set
+    /// if tile i will arrive. `tile` is the side of a tile in pixels.
     Map { first: u32, slices: u32, tile: u32, bits: &'a [Word] },
-    /// The pixels of tile `number` of one slice.
+    /// The pixels of tile `number` of slice `slice`. `tile` is the side of a tile in pixels.
     Tile { slice: u32, number: u32, tile: u32, words: &'a [Word] },
 }
 
-/// Parses a message. Returns `None` if the message is neither a map nor a tile. The store checks that the message's
-/// slices and tiles exist.
+/// Parses a message. Returns `None` if the message is neither a map nor a tile. This function does not check that the
+/// slices and tiles of the message exist. The frame store checks this.
 pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
     let (header, rest) = words.split_at_checked(HEADER_WORDS)?;
     let [kind, numbers, tile] = *header else { return None };

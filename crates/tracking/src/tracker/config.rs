@@ -104,8 +104,8 @@ impl TrackerConfig {
         Self::flock_of_birds_on_patched_host_by(&Tables::PAPERS)
     }
 
-    /// Returns the Flock of Birds on a host with a patched Unix kernel, which crashes with this tracker. The numbers
-    /// come from `tables`.
+    /// Returns the Flock of Birds on a host with a patched Unix kernel, with the numbers of `tables`. Some time after
+    /// the first report, this host crashes. The parameter `flock.crash` of `tables` is this time.
     pub fn flock_of_birds_on_patched_host_by(tables: &Tables) -> Self {
         Self { host: SerialRead::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
     }
