@@ -214,7 +214,7 @@ fn no_number_of_a_report_depends_on_ties_optimizations_or_threads_on_random_mach
         for seed in 1..4 {
             assert_eq!(report(&experiment.clone().shuffle_ties(seed), told), expected, "{told}, ties {seed}");
         }
-        // Without the optimization `IdleBoards`, runs take minutes, so `tests/savings.rs` covers it.
+        // Without the optimization `IdleBoards`, runs take minutes, so `tests/optimizations.rs` covers it.
         for saving in Optimization::ALL.into_iter().filter(|saving| *saving != Optimization::IdleBoards) {
             assert_eq!(report(&experiment.clone().without(saving), told), expected, "{told}, without {saving}");
         }

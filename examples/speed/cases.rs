@@ -32,7 +32,7 @@ impl Row {
 }
 
 /// An optimization of the simulator with its effect.
-pub(crate) struct SavingRow {
+pub(crate) struct OptimizationRow {
     pub(crate) saving: Optimization,
     pub(crate) work: &'static str,
     pub(crate) with_ms: f64,
@@ -317,7 +317,7 @@ const fn fields_without(saving: Optimization) -> u64 {
 }
 
 /// Measures every optimization, enabled and disabled.
-pub(crate) fn savings(rounds: usize) -> Fallible<Vec<SavingRow>> {
+pub(crate) fn optimizations(rounds: usize) -> Fallible<Vec<OptimizationRow>> {
     let works = [
         ("Mig, Rendering Control", stereo(MachineConfig::small_hmd(), mig(417)?)),
         ("Slats, 140 triangles", slats(140)?),
@@ -335,7 +335,7 @@ pub(crate) fn savings(rounds: usize) -> Fallible<Vec<SavingRow>> {
                 vec![Way::new("with", || fields(&with, all)), Way::new("without", || fields(&without, all))],
             )?;
             let [with_ms, without_ms] = [0, 1].map(|way: usize| measured[way].best() * 1e3);
-            rows.push(SavingRow { saving, work, with_ms, without_ms });
+            rows.push(OptimizationRow { saving, work, with_ms, without_ms });
         }
     }
     Ok(rows)

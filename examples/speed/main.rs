@@ -52,12 +52,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rounds = if is_check { 1 } else { ROUNDS };
     let begin = page::load_average();
     let goals = cases::goals(rounds, opengl.as_deref())?;
-    let savings = cases::savings(rounds.min(3))?;
+    let optimizations = cases::optimizations(rounds.min(3))?;
     let threads = workers::table()?;
     let conditions = page::conditions(rounds, &begin);
     let tables = [
         ("goals", format!("{conditions}\n\n{}", page::of_goals(&goals))),
-        ("savings", page::of_savings(&savings)),
+        ("optimizations", page::of_optimizations(&optimizations)),
         ("threads", threads),
         ("cores", cores::table(rounds.min(3))?),
     ];

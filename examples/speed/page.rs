@@ -1,6 +1,6 @@
 //! Formats the tables and inserts them into documents.
 
-use crate::cases::{Row, SavingRow};
+use crate::cases::{OptimizationRow, Row};
 use crate::timing::Fallible;
 use std::fmt::Write;
 use std::path::Path;
@@ -34,10 +34,10 @@ pub(crate) fn of_goals(rows: &[Row]) -> String {
     text
 }
 
-pub(crate) fn of_savings(rows: &[SavingRow]) -> String {
+pub(crate) fn of_optimizations(rows: &[OptimizationRow]) -> String {
     let mut text =
         "| saving | work | with it, ms a field | without, ms a field | times |\n|---|---|---|---|---|\n".to_owned();
-    for SavingRow { saving, work, with_ms, without_ms } in rows {
+    for OptimizationRow { saving, work, with_ms, without_ms } in rows {
         let times = without_ms / with_ms;
         let _ = writeln!(text, "| {saving} | {work} | {} | {} | {times:.2} |", digits(*with_ms), digits(*without_ms));
     }

@@ -81,7 +81,7 @@ impl Counts {
     }
 
     fn idioms(&mut self, text: &str, path: &str, places: &mut Vec<String>) {
-        // Compare whole words, because "contain parts of" has the letters of the idiom "in parts of".
+        // Compare whole words: the letters of an idiom can end a longer word.
         let words: String =
             text.to_lowercase().chars().map(|c| if c.is_alphabetic() || c == '_' { c } else { ' ' }).collect();
         let words = format!(" {} ", words.split_whitespace().collect::<Vec<_>>().join(" "));

@@ -7,11 +7,11 @@ use crate::block::Block;
 use crate::bus::Bus;
 use crate::clock::{Accesses, Clock};
 use crate::code::Code;
+use crate::decoded_programs::DecodedPrograms;
 use crate::execution::Execution;
 use crate::flow::Flow;
 use crate::profile::{AddressProfile, Profile};
 use crate::seed::SeedTable;
-use crate::shelf::DecodedPrograms;
 use crate::state::{Mode, State, TRAP_VECTOR, psr};
 use crate::timing::Config;
 use crate::trap::{RunEnd, Trap, TrapCause};
@@ -136,26 +136,26 @@ impl Cpu {
         self.code_changed = false;
     }
 
-    /// Takes the decoded code of `program` from `shelf`, the shared store of decoded programs. The processor uses the
+    /// Takes the decoded code of `program` from `programs`, the shared store of decoded programs. The processor uses the
     /// code until [`Cpu::close`]. Memory must hold `program` as assembled. With `None`, the processor decodes all code
     /// again. The number of clocks does not depend on this call.
     ///
     /// All processors that share the store must have the same [`Config::freezes`].
-    pub fn open(&mut self, shelf: &mut DecodedPrograms, program: Option<&Arc<Program>>) {
-        self.code = program.map_or_else(Code::new, |program| shelf.take(program));
+    pub fn open(&mut self, programs: &mut DecodedPrograms, program: Option<&Arc<Program>>) {
+        self.code = program.map_or_else(Code::new, |program| programs.take(program));
         self.code_changed = false;
-        self.time.exchange_numbers(&mut shelf.numbers);
-        self.time.fetch.number_states_from(shelf.cache_states);
+        self.time.exchange_numbers(&mut programs.numbers);
+        self.time.fetch.number_states_from(programs.cache_states);
     }
 
-    /// Moves the decoded program and its memoized clocks back to `shelf`. Returns true if other processors can use this
+    /// Moves the decoded program and its memoized clocks back to `programs`. Returns true if other processors can use this
     /// program. If a store has changed the program in memory, the function discards the decoded code and returns false.
-    pub fn close(&mut self, shelf: &mut DecodedPrograms, program: Option<&Arc<Program>>) -> bool {
-        self.time.exchange_numbers(&mut shelf.numbers);
-        shelf.cache_states = self.time.fetch.states();
+    pub fn close(&mut self, programs: &mut DecodedPrograms, program: Option<&Arc<Program>>) -> bool {
+        self.time.exchange_numbers(&mut programs.numbers);
+        programs.cache_states = self.time.fetch.states();
         let code = std::mem::replace(&mut self.code, Code::new());
         let Some(program) = program.filter(|_| code.is_as_assembled()) else { return false };
-        shelf.put(program, code);
+        programs.put(program, code);
         true
     }
 

@@ -270,7 +270,7 @@ proptest! {
         };
         let programs: Vec<Arc<Program>> = words.iter().map(program).collect();
         let mut twins: Vec<Twins> = registers.iter().map(|all| Twins::new(Config { freezes, ..Config::cycle() }, &[], all)).collect();
-        let mut shelf = DecodedPrograms::new();
+        let mut decoded = DecodedPrograms::new();
         for (which, number, instructions) in turns {
             let program = &programs[number];
             let [memoised, counted] = &mut twins[which].0;
@@ -279,12 +279,12 @@ proptest! {
                 cpu.state.pc = CODE;
                 cpu.state.mode = Mode::Single;
             }
-            memoised.0.open(&mut shelf, Some(program));
+            memoised.0.open(&mut decoded, Some(program));
             counted.0.invalidate_code();
             let ends = [&mut *memoised, &mut *counted].map(|(cpu, ram)| format!("{:?}", cpu.run(ram, None, instructions)));
             prop_assert_eq!(&ends[0], &ends[1]);
             let is_as_assembled = memoised.1.bytes()[CODE as usize..].starts_with(&program.bytes);
-            let is_kept = memoised.0.close(&mut shelf, Some(program));
+            let is_kept = memoised.0.close(&mut decoded, Some(program));
             prop_assert!(is_as_assembled || !is_kept, "what has changed is not shared");
             prop_assert_eq!(&memoised.0.state, &counted.0.state);
             prop_assert_eq!(memoised.0.profile(), counted.0.profile());
@@ -306,19 +306,19 @@ fn programs_that_take_turns_are_decoded_once_and_take_the_same_clocks() {
     let take_turns = |exchange: bool| {
         let mut ram = Ram::new(0, MEMORY);
         let mut cpu = Cpu::new(Config::cycle());
-        let mut shelf = DecodedPrograms::new();
+        let mut decoded = DecodedPrograms::new();
         for turn in 0..20 {
             let program = &programs[turn % 2];
             ram.load(CODE, &program.bytes).expect("fits");
             if exchange {
-                cpu.open(&mut shelf, Some(program));
+                cpu.open(&mut decoded, Some(program));
             } else {
                 cpu.invalidate_code();
             }
             cpu.state.pc = CODE;
             cpu.state.r[4] = 0x4000;
             assert_eq!(cpu.run(&mut ram, program.symbol("end"), 10_000), RunEnd::Stopped);
-            assert!(!exchange || cpu.close(&mut shelf, Some(program)), "memory holds it as it was assembled");
+            assert!(!exchange || cpu.close(&mut decoded, Some(program)), "memory holds it as it was assembled");
         }
         (cpu.state.clone(), cpu.profile(), cpu.repeated_instructions())
     };

@@ -29,12 +29,13 @@
 //! Sources: TR94 (round-robin assignment of primitives, bins that hold pointers to shared commands).
 
 mod begin;
+mod bin_handoff;
 mod code;
 mod commands;
 mod cost;
 mod counts;
+mod cube_transform;
 mod encoder;
-mod handing;
 mod interpolating;
 mod layout;
 mod list;
@@ -46,18 +47,18 @@ mod placed;
 mod placing;
 mod sending;
 mod structure;
-mod surrounding;
 mod view;
 mod windows;
 
 pub use begin::{EditWork, PassStartWork};
+pub use bin_handoff::{BinHandoffWork, MessagePieces};
 pub use code::{KernelOutput, TransformWork};
 pub use commands::{
     BIN_ENTRY_BYTES, PROGRAM_BYTES, RegionEnvelope, copy_message, gouraud_sphere, region_messages, shade,
 };
 pub use cost::TransformCost;
 pub use counts::PrimitiveCounts;
-pub use handing::{BinHandoffWork, MessagePieces};
+pub use cube_transform::{CubeTransform, CubeTransformOutput};
 pub use interpolating::{StripInterpolation, TriangleEndsRecorder};
 pub use list::{DisplayList, Share};
 pub use ordering::assemble_order;
@@ -67,7 +68,6 @@ pub use placed::{PlacedStructure, RecentViews};
 pub use placing::place_all;
 pub use sending::send_as_tracked;
 pub use structure::{DisplayStructure, ModelFrame};
-pub use surrounding::{CubeTransform, CubeTransformOutput};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit};
 pub use windows::{MemoryPart, SearchOutput, WindowSearchWork};
 

@@ -13,8 +13,8 @@
 //! per component. The renderer uses no ring, bin, pixel memory or time. This code and the pixel arrays of
 //! `pxpl5-renderer` share only the formats of commands, which `pxpl5-renderer` documents.
 //!
-//! Where two primitives have exactly the same depth, two colours are right. On the machine, the primitive whose
-//! commands arrive first is visible. The order of arrival depends on the number of processors. An [`IdealPicture`]
+//! If two primitives have exactly the same depth at a pixel, the pixel can have either colour. On the machine, the
+//! primitive whose commands arrive first is visible. The order of arrival depends on the number of processors. An [`IdealPicture`]
 //! lists these pixels and all colours that they can have ([`IdealPicture::ties`]). Any other difference is an error of
 //! the machine.
 //!

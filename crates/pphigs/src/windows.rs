@@ -7,12 +7,12 @@
 //! each primitive found in a window takes `bin_entry_ns`.
 
 use crate::begin::PassStartWork;
+use crate::bin_handoff::{
+    BUDGET, BUDGET_OF_ENTRY, MESSAGE_BYTES, MOST_ENTRIES, MessagePieces, PIECE_BYTES, listed, token_source,
+};
 use crate::code::{Next, budget, sphere_kernel};
 use crate::cost::TransformCost;
 use crate::counts::PrimitiveCounts;
-use crate::handing::{
-    BUDGET, BUDGET_OF_ENTRY, MESSAGE_BYTES, MOST_ENTRIES, MessagePieces, PIECE_BYTES, listed, token_source,
-};
 use crate::layout::{
     ENTRY_BYTES, ENVELOPES, KEPT, KEPT_BYTES, LISTS, MOST_KEPT, MOST_WINDOWS, PIECES, REGION_WINDOWS, STACK,
     TOKEN_PARAMETERS, WINDOW_LISTS, WINDOW_PLACES, WINDOWS, WINDOWS_CODE,

@@ -215,7 +215,7 @@ impl FrameBuffer {
 
     fn swap(&mut self, field: PeriodNumber, context: &mut Out) {
         let now = context.now();
-        // Of the swap requests that arrived before this instant, the last request takes effect.
+        // The last swap request that arrived before this instant takes effect.
         let due = self.swaps.iter().filter(|swap| swap.0 < now).max().copied();
         let Some((_, buffer)) = due else { return };
         self.swaps.retain(|swap| swap.0 >= now);

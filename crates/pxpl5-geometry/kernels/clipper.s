@@ -1,33 +1,6 @@
 .if PRECOMPUTED
-// What the clipper interpolates of triangles whose colours are precomputed: these, 0 to 255 * 256. No normal is looked at.
-
+// Precomputed colours do not depend on the normal.
         .macro  turnsaway
-        .endm
-
-        .macro  extras
-        st.l    r20, SIDE(r2)
-        mov     r16, r5
-        adds    VERTICES, r2, r6
-        mov     3, r4
-colour: ld.l    COLOUR(r5), r8
-        mov     16, r9
-        mov     -8, r7
-        adds    V_EXTRA, r6, r10
-        fld.l   P_TWO23(r20), f8
-byte:   shr     r9, r8, r11                 // 256 times 8 bits of the colour, by way of 2^23
-        and     255, r11, r11
-        shl     8, r11, r11
-        orh     0x4B00, r11, r11
-        ixfr    r11, f17
-        adds    -8, r9, r9
-        adds    4, r10, r10
-        fsub.ss f17, f8, f17
-        fst.l   f17, -4(r10)
-        btne    r9, r7, byte                // r7 is the shift behind the last one
-        adds    -1, r4, r4
-        adds    VERTEX_BYTES, r5, r5
-        adds    V_BYTES, r6, r6
-        btne    r0, r4, colour
         .endm
 .else
 // How far the normal of the vertex at r5 turns away from the eye, to the structure at r6; where it is from the eye in f16 f17 f18.
@@ -43,8 +16,10 @@ byte:   shr     r9, r8, r11                 // 256 times 8 bits of the colour, b
         fadd.ss f16, f18, f16
         fst.l   f16, V_AWAY(r6)
         .endm
+.endif
+
 .if PHONG
-// What the clipper interpolates of Phong triangles: the normals of their corners in eye coordinates, in units of the command's normal.
+// The clipper interpolates the normals of Phong triangles in eye coordinates, in units of the command's normal.
 
         .macro  extras
         sided   VERTICES+V_AWAY, V_BYTES
@@ -68,14 +43,18 @@ axis:   alongaxis
         btne    r0, r4, normal
         .endm
 .else
-// What the clipper interpolates of Gouraud triangles: the lit colours of their corners, 0 to 255 * 256.
+// The clipper interpolates the colours of the corners, 0 to 255 * 256: lit colours, or the precomputed ones.
 
         .macro  extras
         st.l    r20, SIDE(r2)
         mov     r16, r5
         adds    VERTICES, r2, r6
         mov     3, r4
-light:  intensity V_AWAY
+.if GOURAUD
+colour: intensity V_AWAY
+.else
+colour: ld.l    COLOUR(r5), r8
+.endif
         mov     16, r9
         mov     -8, r7
         adds    V_EXTRA, r6, r10
@@ -88,15 +67,16 @@ byte:   shr     r9, r8, r11                 // 256 times 8 bits of the colour, b
         adds    -8, r9, r9
         adds    4, r10, r10
         fsub.ss f17, f8, f17
+.if GOURAUD
         fmul.ss f17, f16, f17
+.endif
         fst.l   f17, -4(r10)
         btne    r9, r7, byte                // r7 is the shift behind the last one
         adds    -1, r4, r4
         adds    VERTEX_BYTES, r5, r5
         adds    V_BYTES, r6, r6
-        btne    r0, r4, light
+        btne    r0, r4, colour
         .endm
-.endif
 .endif
 
 // Triangles that are not wholly inside the guard band: the tests of the native code, what six planes leave of them, and each piece of

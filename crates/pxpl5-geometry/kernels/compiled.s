@@ -194,17 +194,7 @@ done:   othereye
         btne    r0, r3, eye
         adds    -1, r17, r17
         adds    LIST_STEP, r16, r16
-        btne    r0, r17, next
-        ld.l    SAVE(r2), r1
-        nop
-        bri     r1
-        nop
-clip:   ld.l    P_CLIPPER(r20), r6          // not wholly inside the guard band
-        nop
-        calli   r6
-        nop
-        br      done
-        nop
+        nextorclip
 
 // ---- corner: vertex at r5 to the structures of both eyes, of which that of the left one is at r6, and r6 to the next; r23 gets the eyes
 // of whose guard band it is outside
@@ -301,17 +291,7 @@ lit:    surfaces
 done:   adds    -1, r17, r17
         adds    LIST_STEP, r16, r16
         adds    E_BYTES, r21, r21
-        btne    r0, r17, next
-        ld.l    SAVE(r2), r1
-        nop
-        bri     r1
-        nop
-clip:   ld.l    P_CLIPPER(r20), r6          // not wholly inside the guard band
-        nop
-        calli   r6
-        nop
-        br      done
-        nop
+        nextorclip
 
 // f18 = the whole number nearest to the part f30 of the way from f12 to f14, up between two; 1.5 * 2^52 in f26, 1/2 in f28
         .macro  nearest
@@ -400,17 +380,7 @@ each:   call    corner
         set_up  done
 done:   adds    -1, r17, r17
         adds    LIST_STEP, r16, r16
-        btne    r0, r17, next
-        ld.l    SAVE(r2), r1
-        nop
-        bri     r1
-        nop
-clip:   ld.l    P_CLIPPER(r20), r6          // not wholly inside the guard band
-        nop
-        calli   r6
-        nop
-        br      done
-        nop
+        nextorclip
 .endif
 
 .if PRECOMPUTED & !BETWEEN

@@ -1,5 +1,20 @@
 // Display list: macros and constants for triangles with corners of their own, or for strips.
 
+// The end of a loop over triangles: the next triangle, or the return. A triangle that is not wholly inside the guard band comes to `clip`.
+        .macro  nextorclip
+        btne    r0, r17, next
+        ld.l    SAVE(r2), r1
+        nop
+        bri     r1
+        nop
+clip:   ld.l    P_CLIPPER(r20), r6
+        nop
+        calli   r6
+        nop
+        br      done
+        nop
+        .endm
+
 .if STRIPS
 // A display list of strips: each vertex makes a triangle with the two before it, but for those that begin a strip.
 

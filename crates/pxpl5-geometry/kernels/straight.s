@@ -715,14 +715,4 @@ oriented: edge  0, 0, 1
         adds    COMMAND_BYTES, r18, r18
 done:   adds    LIST_STEP, r16, r16
         adds    -1, r17, r17
-        btne    r0, r17, next
-        ld.l    SAVE(r2), r1
-        nop
-        bri     r1
-        nop
-clip:   ld.l    P_CLIPPER(r20), r6          // not wholly inside the guard band
-        nop
-        calli   r6
-        nop
-        br      done
-        nop
+        nextorclip

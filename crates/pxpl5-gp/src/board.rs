@@ -3,10 +3,10 @@
 
 use crate::cpu::{Cpu, Priority};
 use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Shared, Wait};
-use crate::look::GpSnapshot;
 use crate::memory::Memory;
 use crate::probe::Mark;
 use crate::processor::{BreakpointHit, CodeVersion, Processor};
+use crate::snapshot::GpSnapshot;
 use crate::timing::GpTiming;
 use pxpl5_sim::{Context, Phase, Span, Time};
 use pxpl5_wire::{Message, NodeId, PeriodNumber};
@@ -142,12 +142,12 @@ impl GpBoard {
     }
 
     /// Makes the board run i860 code for each [`Work`](crate::Work) instead of using the timing table. `core`
-    /// configures the i860. Boards with the same `shelf` (store of decoded programs) share decoded programs and their
+    /// configures the i860. Boards with the same `decoded` (store of decoded programs) share decoded programs and their
     /// memoized clocks.
-    pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, shelf: &Rc<RefCell<i860::DecodedPrograms>>) {
+    pub fn run_code(&mut self, version: CodeVersion, core: i860::Config, decoded: &Rc<RefCell<i860::DecodedPrograms>>) {
         let shared = &mut *self.shared.borrow_mut();
         let mut processor = Processor::new(shared.node, shared.timing.memory_bytes, version, core);
-        processor.share(shelf);
+        processor.share(decoded);
         shared.processor = Some(Box::new(processor));
     }
 

@@ -161,7 +161,7 @@ pub struct Processor {
     /// True if memory still holds the loaded program unchanged.
     is_as_loaded: bool,
     /// Decoded programs with their memoized clocks. Several boards share this store.
-    shelf: Rc<RefCell<DecodedPrograms>>,
+    decoded: Rc<RefCell<DecodedPrograms>>,
     /// All programs that were loaded so far, in the order of their first calls.
     programs: Vec<Arc<Program>>,
     /// Address range of the output of each bin context (one of two sets of bins). `None` if no range is reserved.
@@ -214,7 +214,7 @@ impl Processor {
             memory,
             loaded: None,
             is_as_loaded: false,
-            shelf: Rc::default(),
+            decoded: Rc::default(),
             programs: Vec::new(),
             outputs: [None, None],
             breakpoints: BTreeSet::new(),
@@ -224,8 +224,8 @@ impl Processor {
 
     /// Shares decoded programs and their memoized clocks with other boards. All boards must have the same configuration
     /// of the i860. Simulated times do not depend on this call.
-    pub fn share(&mut self, shelf: &Rc<RefCell<DecodedPrograms>>) {
-        self.shelf = Rc::clone(shelf);
+    pub fn share(&mut self, decoded: &Rc<RefCell<DecodedPrograms>>) {
+        self.decoded = Rc::clone(decoded);
     }
 
     /// Resets the i860 and turns memoization off. Simulated times do not depend on this call.
@@ -355,19 +355,19 @@ impl Processor {
         }
     }
 
-    /// Runs the loaded program until it returns. The decoded code of the program comes from the shared store `shelf`.
+    /// Runs the loaded program until it returns. The decoded code of the program comes from the shared store `decoded`.
     fn run(&mut self, program: &Arc<Program>, begin: u64, budget: u64) -> RunEnd {
-        let shelf = Rc::clone(&self.shelf);
-        let shelf = &mut *shelf.borrow_mut();
+        let decoded = Rc::clone(&self.decoded);
+        let decoded = &mut *decoded.borrow_mut();
         // Code that has changed in memory must be decoded again.
         let known = self.is_as_loaded.then_some(program);
-        self.cpu.open(shelf, known);
+        self.cpu.open(decoded, known);
         let end = if self.breakpoints.is_empty() {
             self.cpu.run(&mut self.memory, Some(RETURN), budget)
         } else {
             self.run_with_breakpoints(begin, budget)
         };
-        self.is_as_loaded = self.cpu.close(shelf, known);
+        self.is_as_loaded = self.cpu.close(decoded, known);
         end
     }
 

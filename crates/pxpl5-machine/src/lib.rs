@@ -22,12 +22,12 @@ mod host_line;
 mod machine;
 mod observation;
 mod observed_event;
+mod optimization;
 mod pixels;
 mod ports;
 mod preset;
 mod record;
 mod run_error;
-mod savings;
 mod traffic;
 
 pub use board::{Board, EventDescription};
@@ -36,12 +36,12 @@ pub use host_line::HostLine;
 pub use machine::{DEADLOCK_TICKS, Machine};
 pub use observation::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};
 pub use observed_event::{ObservedEvent, ObservedKind};
+pub use optimization::Optimization;
 pub use pixels::{PixelWorker, SameThread};
 pub use ports::Ports;
 pub use preset::{PRESETS, Preset};
 pub use record::Record;
 pub use run_error::{Blocked, RunError};
-pub use savings::Optimization;
 pub use traffic::{Traffic, Transfer};
 
 /// Compiles and runs the example of the README.

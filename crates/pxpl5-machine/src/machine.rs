@@ -18,11 +18,11 @@ use crate::config::MachineConfig;
 use crate::event::Event;
 use crate::facts::{facts, host_line_facts, mark_facts};
 use crate::host_line::HostLine;
+use crate::optimization::Optimization;
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
 use crate::record::Record;
 use crate::run_error::{Blocked, RunError};
-use crate::savings::Optimization;
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, GpUse, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
@@ -148,8 +148,8 @@ impl Machine {
     pub fn run_code(&mut self) {
         if let Some(version) = self.record.config.code {
             let core = self.record.config.i860;
-            let shelf = Rc::default();
-            self.processors.iter_mut().skip(1).for_each(|board| board.run_code(version, core, &shelf));
+            let decoded = Rc::default();
+            self.processors.iter_mut().skip(1).for_each(|board| board.run_code(version, core, &decoded));
         }
     }
 

@@ -5,7 +5,7 @@ use crate::command::CommandKind;
 use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
 use crate::fifo::{Block, CommandBatch, InputFifo, Progress};
 use crate::job::{ArrayPool, NoPixels, PixelJob};
-use crate::look::{RendererSnapshot, SentLists};
+use crate::snapshot::{RendererSnapshot, SentLists};
 use crate::timing::RendererTiming;
 use crate::{Lanes, PixelArray};
 use pxpl5_sim::{Context, Phase, Span, Time};

@@ -62,8 +62,8 @@ mod controller;
 pub mod isa;
 mod lanes;
 mod layout;
-mod look;
 mod simd;
+mod snapshot;
 
 pub use array::{ArrayFault, EMPTY_PLANE, Executed, FaultKind, OutputRegion, PIXELS, PixelArray, Plane};
 pub use bit_serial::BitSerial;
@@ -77,8 +77,8 @@ pub use contents::MAX_CONTEXTS;
 pub use job::ArrayPool;
 pub use lanes::Lanes;
 pub use layout::{ContextPlan, FieldRange, Layout};
-pub use look::RendererSnapshot;
 pub use simd::Vectors;
+pub use snapshot::RendererSnapshot;
 pub use timing::RendererTiming;
 
 /// Compiles and runs the example of the README.

@@ -54,6 +54,20 @@ export default {
     assert.equal(ages.length, limits.count);
     assert.deepEqual(ages.slice(-3), [20, 10, 0]);
     assert.ok(ages.every((age, n) => n === 0 || ages[n - 1] - age <= 10 + 0.9 * ages[n - 1]), `${ages}`);
+    // Each page that grew after a checkpoint is lost once, however often the run returns to this checkpoint.
+    const grown = new Checkpoints(new WebAssembly.Memory({ initial: 1 }), { ...limits, every: 1000, lost: 3 * 65536 });
+    grown.take(0, "begin");
+    for (let lost = 1; lost <= 3; lost += 1) {
+      grown.memory.grow(1);
+      assert.equal(grown.back(5).at, 0);
+      assert.equal(grown.lost, lost * 65536);
+    }
+    grown.memory.grow(1);
+    assert.equal(grown.back(5), null);
+    // A checkpoint is taken when the memory has grown, and a return to it loses nothing more.
+    assert.ok(grown.take(7, "grown") && !grown.take(8, "same size"));
+    assert.equal(grown.back(9).at, 7);
+    assert.equal(grown.lost, 3 * 65536);
     // A return that would lose too much is refused.
     const small = new Checkpoints(new WebAssembly.Memory({ initial: 1 }), { ...limits, lost: 65536 });
     small.take(0, "begin");

@@ -33,8 +33,8 @@ export class Checkpoints {
 
   /** Discards all checkpoints, for example because other machines were built. */
   clear() {
-    /** Checkpoints, the oldest first. Each has the instant, the note of the caller, the size of the memory, and the pages that turn the
-     *  next newer checkpoint into this checkpoint. */
+    /** Checkpoints, the oldest first. Each has the instant, the note of the caller, the size of the memory, the number of lost bytes in
+     *  this size, and the pages that turn the next newer checkpoint into this checkpoint. */
     this.all = [];
     this.newest = new Uint8Array(0);
   }
@@ -44,12 +44,14 @@ export class Checkpoints {
     return this.all.reduce((sum, { pages }) => sum + pages.size * PAGE, 0);
   }
 
-  /** Takes a checkpoint at an instant if a checkpoint is due. Returns true if a checkpoint was taken. `back` returns the `note`. `worked`
+  /** Takes a checkpoint at an instant if a checkpoint is due. A checkpoint is also due if the memory has grown, because a return to a
+   *  smaller memory loses the difference. Returns true if a checkpoint was taken. `back` returns the `note`. `worked`
    *  is the number of milliseconds of computing since the last checkpoint. */
   take(at, note, worked = 0) {
     const last = this.all.at(-1);
-    if (last && (at <= last.at || (at < last.at + this.limits.every && worked < this.limits.work))) return false;
     const size = this.memory.buffer.byteLength;
+    const due = !last || at >= last.at + this.limits.every || worked >= this.limits.work || size > last.size;
+    if (!due || at <= last?.at) return false;
     if (this.newest.length < size) {
       const larger = new Uint8Array(size);
       larger.set(this.newest);
@@ -67,7 +69,7 @@ export class Checkpoints {
       if (page * PAGE < (last?.size ?? 0)) pages.set(page, this.newest.slice(page * PAGE, (page + 1) * PAGE));
       this.newest.set(bytes.subarray(page * PAGE, (page + 1) * PAGE), page * PAGE);
     }
-    this.all.push({ at, note, size, pages: new Map() });
+    this.all.push({ at, note, size, lost: this.lost, pages: new Map() });
     this.thin(at);
     return true;
   }
@@ -94,9 +96,10 @@ export class Checkpoints {
   back(to) {
     const found = this.all.findLastIndex(({ at }) => at <= to);
     if (found < 0) return null;
-    const { at, note, size } = this.all[found];
-    const lost = this.memory.buffer.byteLength - size;
-    if (this.lost + lost > this.limits.lost) return null;
+    const { at, note, size, lost: before } = this.all[found];
+    // Bytes that were lost before the checkpoint are part of its size.
+    const lost = before + this.memory.buffer.byteLength - size;
+    if (lost > this.limits.lost) return null;
     for (let n = this.all.length - 2; n >= found; n -= 1) {
       for (const [page, content] of this.all[n].pages) this.newest.set(content, page * PAGE);
     }
@@ -104,7 +107,7 @@ export class Checkpoints {
     this.all[found].pages = new Map();
     this.newest = this.newest.slice(0, size);
     new Uint8Array(this.memory.buffer).set(this.newest);
-    this.lost += lost;
+    this.lost = lost;
     return { at, note };
   }
 }

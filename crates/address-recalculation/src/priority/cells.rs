@@ -137,7 +137,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Creates the policy for a world. `occupied` lists the cells that contain parts of the scene.
+    /// Creates the policy for a world. The scene lies in the cells of `occupied`.
     ///
     /// With `has_cascade`, an update of a memory makes all memories that are drawn more often due for an update as
     /// well. Warping requires such a cascade.

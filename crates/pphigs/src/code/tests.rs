@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::layout::{BEGIN_CODE, MESSAGE, ORDER_CODE, ORDER_HEAD, SORT_CODE, TOKEN_CODE, WINDOWS, WINDOWS_CODE};
-use crate::{begin, handing, interpolating, ordering, surrounding, windows};
+use crate::{begin, bin_handoff, cube_transform, interpolating, ordering, windows};
 use pxpl5_geometry::kernel::{KernelList, KernelPicture};
 
 const SURFACES: [KernelSurface; 3] = [KernelSurface::Gouraud, KernelSurface::Precomputed, KernelSurface::Phong];
@@ -51,9 +51,9 @@ fn no_two_programs_of_a_board_lie_in_the_same_place() {
             assert!(program.warnings.is_empty(), "{kernel:?}: {:?}", program.warnings);
         }
     }
-    let sort = surrounding::program();
+    let sort = cube_transform::program();
     assert!(sort.base == SORT_CODE && end(&sort) <= BEGIN_CODE, "{:#x}", end(&sort));
-    let token = handing::program();
+    let token = bin_handoff::program();
     assert!(token.base == TOKEN_CODE && end(&token) <= MESSAGE, "{:#x}", end(&token));
     let windows = windows::program();
     assert!(windows.base == WINDOWS_CODE && end(&windows) <= WINDOWS, "{:#x}", end(&windows));

@@ -2,9 +2,9 @@
 
 mod configuration;
 mod messages;
+mod optimizations;
 mod presets;
 mod record;
 mod rig;
 mod running;
-mod savings;
 mod stopping;

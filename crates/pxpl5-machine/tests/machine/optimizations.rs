@@ -1,6 +1,6 @@
 //! Behaviour of a machine with a disabled optimization, and names of optimizations.
 //!
-//! The workspace's `tests/savings.rs` shows that no optimization changes a result.
+//! The workspace's `tests/optimizations.rs` shows that no optimization changes a result.
 
 use crate::rig::{FIRST_GP, SECOND_GP, happenings, load_sender, machine, us, words};
 use pxpl5_machine::{Board, Optimization};

@@ -2,8 +2,8 @@
 
 /// An optimization of the simulator. An experiment can disable each optimization (`Experiment::without`).
 ///
-/// No optimization changes a time or a visible pixel. The test `tests/savings.rs` repeats runs with each optimization
-/// disabled. `cargo bench --bench savings` measures the speed-ups.
+/// No optimization changes a time or a visible pixel. The test `tests/optimizations.rs` repeats runs with each optimization
+/// disabled. `cargo bench --bench optimizations` measures the speed-ups.
 ///
 /// A separate setting of the experiment, `Pixels`, skips the computation of pixels that no reader needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -79,8 +79,8 @@ fn compare(
     region: RegionId,
     envelope: RegionEnvelope,
 ) -> usize {
-    let handing = BinHandoffWork { pass, context, view: 0, region, envelope };
-    let span = handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
+    let handoff = BinHandoffWork { pass, context, view: 0, region, envelope };
+    let span = handoff.by_code(&GpTiming::PAPERS, processor).expect("it returns");
     assert!(span > Span::ZERO);
     let found = BinHandoffWork::listed(processor).expect("in memory");
     let expected = region_messages(pass, region, 0, envelope);
@@ -144,9 +144,9 @@ fn a_bin_of_more_entries_than_the_list_of_pieces_holds_is_a_fault() {
     let pass = pass(&share, 0.1, Shading::Gouraud, Layout::slats(), RegionBinning::Touched);
     let full = (0..20).map(RegionId).find(|region| pass.counts(*region).total() as usize == triangles).expect("in one");
     let mut processor = Processor::new(NodeId(7), 64 << 20, CodeVersion::Scheduled, i860::Config::cycle());
-    let handing =
+    let handoff =
         BinHandoffWork { pass: &pass, context: 1, view: 0, region: full, envelope: RegionEnvelope::default() };
-    let fault = handing.by_code(&GpTiming::PAPERS, &mut processor).expect_err("too many");
+    let fault = handoff.by_code(&GpTiming::PAPERS, &mut processor).expect_err("too many");
     let (needed_bytes, available_bytes) = (8 * triangles as u32, 8 * 44_236);
     assert_eq!(fault, ProcessorFault::NoRoom { gp: NodeId(7), context: 1, needed_bytes, available_bytes });
 }
@@ -158,12 +158,12 @@ fn by_the_published_table_it_is_part_of_a_message() {
     let pass = pass(&share, 0.0, Shading::Phong, layout, RegionBinning::Touched);
     let regions = (0..20).map(RegionId);
     let region = regions.max_by_key(|region| pass.counts(*region).total()).expect("twenty");
-    let handing = BinHandoffWork { pass: &pass, context: 0, view: 0, region, envelope: RegionEnvelope::default() };
-    assert_eq!(handing.by_table(&GpTiming::PAPERS), Span::ZERO);
+    let handoff = BinHandoffWork { pass: &pass, context: 0, view: 0, region, envelope: RegionEnvelope::default() };
+    assert_eq!(handoff.by_table(&GpTiming::PAPERS), Span::ZERO);
     let entries = u64::from(pass.counts(region).total());
     assert!(entries > 0);
     let timing = GpTiming { token_entry_ns: 700, ..GpTiming::PAPERS };
-    assert_eq!(handing.by_table(&timing), Span::from_ns(700 * entries));
+    assert_eq!(handoff.by_table(&timing), Span::from_ns(700 * entries));
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn without_bins_of_code_nothing_is_handed_over() {
     let share = share(30, 0);
     let pass = pass(&share, 0.0, Shading::Gouraud, Layout::slats(), RegionBinning::All);
     let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
-    let handing =
+    let handoff =
         BinHandoffWork { pass: &pass, context: 0, view: 0, region: RegionId(9), envelope: RegionEnvelope::default() };
-    assert_eq!(handing.by_code(&GpTiming::PAPERS, &mut processor), Ok(Span::ZERO));
+    assert_eq!(handoff.by_code(&GpTiming::PAPERS, &mut processor), Ok(Span::ZERO));
 }

@@ -122,8 +122,8 @@ fn board(version: CodeVersion, share: &Share) -> Processor {
 }
 
 fn run(processor: &mut Processor, passes: &[Arc<Pass>; 6], context: u8) -> CubeTransformOutput {
-    let surrounding = CubeTransform { passes, context };
-    surrounding.run_code(&GpTiming::PAPERS, processor).expect("it returns").expect("it has kernels")
+    let transform = CubeTransform { passes, context };
+    transform.run_code(&GpTiming::PAPERS, processor).expect("it returns").expect("it has kernels")
 }
 
 /// Returns the words of a region's primitives as the native firmware makes them.
@@ -137,8 +137,8 @@ fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
 
 /// Returns the words of a region's primitives as the code sends them.
 fn handed_over(processor: &mut Processor, pass: &Pass, context: u8, view: u8, region: RegionId) -> Vec<Word> {
-    let handing = BinHandoffWork { pass, context, view, region, envelope: RegionEnvelope::default() };
-    handing.by_code(&GpTiming::PAPERS, processor).expect("it returns");
+    let handoff = BinHandoffWork { pass, context, view, region, envelope: RegionEnvelope::default() };
+    handoff.by_code(&GpTiming::PAPERS, processor).expect("it returns");
     let messages = BinHandoffWork::listed(processor).expect("in memory");
     let words = |[at, words]: [Word; 2]| processor.read(at, words as usize).expect("in memory");
     messages.into_iter().flatten().flat_map(words).collect()
@@ -207,7 +207,7 @@ fn views_without_room_for_all_of_them_are_refused() {
     let memory = (1 << 20) + share.bytes() + 4 * 500 + 1000;
     let mut small = Processor::new(NodeId(4), memory, CodeVersion::Compiled, i860::Config::cycle());
     share.install(&mut small).expect("it fits");
-    let surrounding = CubeTransform { passes: &passes, context: 0 };
-    let fault = surrounding.run_code(&GpTiming::PAPERS, &mut small).expect_err("a thousand bytes for all commands");
+    let transform = CubeTransform { passes: &passes, context: 0 };
+    let fault = transform.run_code(&GpTiming::PAPERS, &mut small).expect_err("a thousand bytes for all commands");
     assert!(matches!(fault, ProcessorFault::NoRoom { context: 0, .. }), "{fault}");
 }

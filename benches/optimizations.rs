@@ -1,5 +1,5 @@
 //! Measures the effect of each optimization: the same run with the optimization enabled and disabled, in one process.
-//! The results are equal (`tests/savings.rs`).
+//! The results are equal (`tests/optimizations.rs`).
 //!
 //! Also measures the cost of reading pictures: no pixels, one field of 60 read, all pixels. The goal is that the second
 //! takes at most 10 % longer than the first.
@@ -29,21 +29,23 @@ fn experiments() -> [(&'static str, Experiment); 3] {
 }
 
 /// Returns a number of fields that is large enough to show a picture and small enough for the slowest run.
-const fn fields(saving: Optimization) -> u64 {
-    if matches!(saving, Optimization::IdleBoards) { 2 } else { 20 }
+const fn fields(optimization: Optimization) -> u64 {
+    if matches!(optimization, Optimization::IdleBoards) { 2 } else { 20 }
 }
 
 /// Measures every optimization. An element is a field.
-fn savings(criterion: &mut Criterion) {
+fn optimizations(criterion: &mut Criterion) {
     for (name, experiment) in experiments() {
-        for saving in Optimization::ALL {
-            let pixels = if saving == Optimization::EmptyRegions { Pixels::All } else { Pixels::Off };
-            let level = if saving == Optimization::RepeatedCode { Level::Cycle } else { Level::Transaction };
+        for optimization in Optimization::ALL {
+            let pixels = if optimization == Optimization::EmptyRegions { Pixels::All } else { Pixels::Off };
+            let level = if optimization == Optimization::RepeatedCode { Level::Cycle } else { Level::Transaction };
             let with = experiment.clone().pixels(pixels).level(level).host(Workstation::with_threads(1));
-            let mut group = criterion.benchmark_group(format!("savings/{name}/{saving}"));
-            group.throughput(Throughput::Elements(fields(saving)));
-            for (way, experiment) in [("with", with.clone()), ("without", with.without(saving))] {
-                group.bench_function(BenchmarkId::from_parameter(way), |b| b.iter(|| run(&experiment, fields(saving))));
+            let mut group = criterion.benchmark_group(format!("optimizations/{name}/{optimization}"));
+            group.throughput(Throughput::Elements(fields(optimization)));
+            for (way, experiment) in [("with", with.clone()), ("without", with.without(optimization))] {
+                group.bench_function(BenchmarkId::from_parameter(way), |b| {
+                    b.iter(|| run(&experiment, fields(optimization)))
+                });
             }
             group.finish();
         }
@@ -77,7 +79,7 @@ fn looking(criterion: &mut Criterion) {
     let head = scene::builtin("head").expect("built in");
     let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head)
         .host(Workstation::with_threads(1));
-    let mut group = criterion.benchmark_group("savings/rendering-control-head");
+    let mut group = criterion.benchmark_group("optimizations/rendering-control-head");
     group.throughput(Throughput::Elements(FIELDS));
     let looks = [
         ("none", Pixels::Off, 0),
@@ -101,5 +103,5 @@ fn quick() -> Criterion {
         .measurement_time(std::time::Duration::from_secs(2))
 }
 
-criterion_group! { name = benches; config = quick(); targets = savings, looking }
+criterion_group! { name = benches; config = quick(); targets = optimizations, looking }
 criterion_main!(benches);
