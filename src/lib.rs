@@ -175,7 +175,6 @@ pub mod measure {
     pub use pxpl5_measure::{
         FacesReport, GpUtilisation, MemoryReport, PICTURES_FOLLOWED, PortShare, PortUtilisation, RendererUtilisation,
         RingUtilisation, RotationPart, Shares, Vdrt, latency_by_surface, latency_parts, pixel_errors, program, screen,
-        summary,
     };
 }
 

@@ -65,7 +65,7 @@ fn figure_4_a_trivial_stereo_scene_is_1_percent_later_than_measured() {
     // FIXME(accuracy): the published value is 56.5 ms, as a mean over both eyes from the start of each TRANSFORM. The
     // frame rate is exact.
     let outcome = trivial();
-    let both = pxpl5::measure::summary(&outcome).eye_swap_latencies_ms;
+    let both = outcome.summary().eye_swap_latencies_ms;
     let mean = both.iter().sum::<f64>() / both.len() as f64;
     assert!((mean / 56.5 - 1.0).abs() < 0.015, "{mean} ms");
     assert!((outcome.report().updates_hz.expect("two pictures") - 30_000.0 / 1_001.0).abs() < 1e-3);

@@ -78,7 +78,7 @@ fn where_the_bins_of_both_eyes_do_not_fit_transform_waits_for_render_of_the_eye_
         let outcome = cover(2_400, bin_bytes).expect("it fits");
         let steady = outcome.steady_pictures().len();
         assert!(steady > 3, "{steady} frames");
-        let summary = pxpl5::measure::summary(&outcome);
+        let summary = outcome.summary();
         Statistics::of(summary.eye_latencies_ms.into_iter()).mean
     };
     // A slave has 200 triangles, which take 16,000 bytes an eye. A region takes a renderer 2,400 x 7.3 us = 17.5 ms,

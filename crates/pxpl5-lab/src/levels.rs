@@ -8,7 +8,6 @@ pub use compare::{LevelQuery, compare_with};
 pub use random::{compared_ms, experiment as random_experiment};
 pub use record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 
-use pxpl5_measure::summary;
 use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
 
 /// Runs an experiment at its level of modelling, without pixels, and returns the summary.
@@ -19,7 +18,7 @@ use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
 /// form, or [`ExperimentError::Level`] if the pipeline has none.
 pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary, ExperimentError> {
     if experiment.modelling_level() != Level::Analytic {
-        return Ok(summary(&experiment.run()?));
+        return Ok(experiment.run()?.summary());
     }
     let entry = registry.pipeline(experiment.pipeline().name()).ok();
     match entry.and_then(|entry| entry.closed_form) {

@@ -46,7 +46,6 @@ mod rows;
 mod screen;
 mod shown;
 mod step_observer;
-mod summary;
 mod too_heavy;
 mod trail;
 mod turn_observer;
@@ -74,7 +73,6 @@ pub use registration::Registration;
 pub use report::{HeadReport, Report};
 pub use reproject::reproject;
 pub use resource::Resource;
-pub use summary::summary;
 pub use too_heavy::TooHeavy;
 pub use turn_observer::RotationPart;
 pub use utilisation::{

@@ -3,7 +3,6 @@
 use crate::Report;
 use crate::budget::tracking_and_rendering_ms;
 use crate::resource::Resource;
-use crate::summary::summary;
 use pxpl5_gp::Stage;
 use pxpl5_run::{DuePictures, Outcome, Summary};
 use pxpl5_sim::parameters::{SettingError, find_named};
@@ -258,7 +257,7 @@ impl Measure {
     #[must_use]
     pub fn of_outcome(&self, outcome: &Outcome) -> Option<f64> {
         let value = match self.0.value {
-            Value::OfSummary(value) => Some(value(&summary(outcome))),
+            Value::OfSummary(value) => Some(value(&outcome.summary())),
             Value::OfRun(value) => value(outcome, &Report::of(outcome)),
         };
         value.filter(|value| value.is_finite())
@@ -293,7 +292,7 @@ impl Results {
     #[must_use]
     pub fn of_run(outcome: Outcome) -> Self {
         let report = Report::of(&outcome);
-        Self { summary: summary(&outcome), run: Some((outcome, report)) }
+        Self { summary: outcome.summary(), run: Some((outcome, report)) }
     }
 
     /// Returns the results of a closed form, without a simulated run.

@@ -4,7 +4,7 @@ use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::Reading;
 use crate::rig::Rig;
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::{Budget, LatencyCurve, summary};
+use pxpl5_measure::{Budget, LatencyCurve};
 use pxpl5_run::{Experiment, ExperimentError, Head, Pipeline, Pixels, RenderingControl, Statistics};
 use std::sync::Arc;
 use tracking::motion::Synthetic;
@@ -134,7 +134,7 @@ pub(super) fn tracker_and_rendering(
         Budget::of(&outcome);
     // The paper adds its own mean latencies, so rendering is measured like figure 4. Eyes of Slats have no TRANSFORM
     // of their own.
-    let of_eyes = summary(&outcome);
+    let of_eyes = outcome.summary();
     let samples = reading.latencies_ms(&of_eyes);
     let rendering_ms =
         if samples.is_empty() { drawing_ms + showing_ms } else { Statistics::of(samples.iter().copied()).mean };

@@ -12,7 +12,6 @@ use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::CodeUse;
 use pxpl5_machine::{MachineConfig, PRESETS, Preset};
-use pxpl5_measure::summary;
 use pxpl5_renderer::{CommandKind, Layout};
 use pxpl5_run::{
     Experiment, ExperimentError, Level, Pipeline, Pixels, Slats, Statistics, Summary, WARM_UP_PICTURES, display_list,
@@ -192,7 +191,7 @@ impl Bench {
             return Ok((summarise(&crate::registry(), &experiment)?, true));
         }
         let outcome = experiment.run()?;
-        Ok((summary(&outcome), outcome.record().met_full_store()))
+        Ok((outcome.summary(), outcome.record().met_full_store()))
     }
 
     fn stereo(&self, machine: MachineConfig) -> Result<Arc<Summary>> {

@@ -4,7 +4,7 @@ use super::is_reached;
 use crate::error::StudyError;
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_machine::PRESETS;
-use pxpl5_measure::{CriticalPath, Utilisation, summary};
+use pxpl5_measure::{CriticalPath, Utilisation};
 use pxpl5_run::{Experiment, ExperimentError, Goal, Keep, Level, Outcome, Pixels};
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::{SettingError, Value};
@@ -232,7 +232,7 @@ impl Search<'_> {
             Err(ExperimentError::TooShort { partial, .. } | ExperimentError::Run { partial, .. }) => (*partial, false),
             Err(error) => return Err(error.into()),
         };
-        let summary = summary(&outcome);
+        let summary = outcome.summary();
         let reached = is_whole && is_reached(goal, &summary);
         Ok(Trial { reached, score: score(goal, &summary), because: (!reached).then(|| because(&outcome)).flatten() })
     }
