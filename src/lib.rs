@@ -179,7 +179,7 @@ pub mod measure {
 }
 
 /// Snapshots of boards during a run: see [`Stepper`].
-pub mod looks {
+pub mod snapshots {
     pub use pxpl5_gp::{
         Account, BreakpointHit, GpBoard, GpSnapshot, Priority, Processor, ProgramSnapshot, WaitingMessageInfo,
     };
@@ -190,7 +190,7 @@ pub mod looks {
 /// Types for writing a pipeline: firmware on graphics processors, display lists, commands for renderers, and messages
 /// on the ring. Names of other modules that every pipeline needs are included.
 pub mod firmware {
-    pub use crate::looks::{PixelArray, Priority};
+    pub use crate::snapshots::{PixelArray, Priority};
     pub use crate::{PeriodNumber, PictureNumber, RegionBinning, ViewNumber};
     pub use pphigs::{DisplayList, EyeView, FrameView, Pass, Picture, RegionEnvelope, Shading, Share, region_messages};
     pub use pxpl5_geometry::{Culling, Viewport};

@@ -303,7 +303,7 @@ impl Stepper {
 }
 
 /// Returns the state of a processor as JSON. Times are in picoseconds.
-fn processor_state(snapshot: &pxpl5::looks::GpSnapshot) -> Value {
+fn processor_state(snapshot: &pxpl5::snapshots::GpSnapshot) -> Value {
     let programs: Vec<Value> = snapshot
         .programs
         .iter()
@@ -336,7 +336,7 @@ fn processor_state(snapshot: &pxpl5::looks::GpSnapshot) -> Value {
 }
 
 /// Returns the state of a renderer as JSON. Times are in picoseconds.
-fn renderer_state(snapshot: pxpl5::looks::RendererSnapshot) -> Value {
+fn renderer_state(snapshot: pxpl5::snapshots::RendererSnapshot) -> Value {
     json!({
         "fifo_words": snapshot.fifo_words,
         "fifo_depth_words": snapshot.fifo_depth_words,

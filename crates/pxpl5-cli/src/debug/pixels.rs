@@ -2,8 +2,8 @@
 
 use super::words::below;
 use image::RgbImage;
-use pxpl5::looks::PixelArray;
 use pxpl5::run::bit_of;
+use pxpl5::snapshots::PixelArray;
 use pxpl5::{Stepper, SurfaceId};
 use std::fmt::Write as _;
 

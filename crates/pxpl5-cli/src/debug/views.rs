@@ -2,8 +2,8 @@
 
 use super::words::address;
 use i860::Program;
-use pxpl5::looks::GpBoard;
 use pxpl5::run::{in_ms as ms, in_us as us};
+use pxpl5::snapshots::GpBoard;
 use pxpl5::{Board, Stepper};
 use std::fmt::Write as _;
 use std::sync::Arc;
