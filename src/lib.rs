@@ -56,7 +56,7 @@
 //! # Look
 //!
 //! [`Outcome::events`] lists what happened on each board. A [`Stepper`] runs an experiment in steps, and shows the state
-//! of the boards between two steps ([`looks`]).
+//! of the boards between two steps ([`snapshots`]).
 //!
 //! ```
 //! # use pxpl5::prelude::*;
@@ -101,7 +101,7 @@
 //! | module | content | feature |
 //! |---|---|---|
 //! | [`scene`], [`tracking`] | the scene, and the motion and tracking of the viewer's head | |
-//! | [`looks`] | snapshots of boards during a run | |
+//! | [`snapshots`] | snapshots of boards during a run | |
 //! | [`firmware`], [`device`] | types for writing a pipeline or a display | |
 //! | [`run`], [`measure`] | rarely needed names for an outcome and for its evaluation | |
 //! | [`analytic`] | results of experiments from formulas, without simulated events | |
