@@ -82,7 +82,7 @@ pub struct Experiment {
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
     pub(crate) results_from: Option<PeriodNumber>,
-    pub(crate) hmd: HmdConfig,
+    pub(crate) hmd: Hmd,
     pub(crate) estimates: Option<Estimates>,
     pub(crate) sums: Option<ObserverFactory>,
     pub(crate) dry_run: Option<Arc<DryRun>>,
@@ -129,7 +129,7 @@ impl Experiment {
             head: None,
             on_demand: false,
             results_from: None,
-            hmd: HmdConfig::unc(),
+            hmd: Hmd::unc(),
             estimates: None,
             sums: None,
             dry_run: None,
@@ -285,14 +285,14 @@ impl Experiment {
     /// from the machine's display.
     #[must_use]
     pub const fn with_hmd(mut self, hmd: Hmd) -> Self {
-        self.hmd = *hmd.config();
+        self.hmd = hmd;
         self
     }
 
     /// Returns the head-mounted display with the resolution of the papers' display. A run uses the resolution of the
     /// machine's display instead.
     #[must_use]
-    pub const fn hmd(&self) -> &HmdConfig {
+    pub const fn hmd(&self) -> &Hmd {
         &self.hmd
     }
 
@@ -367,8 +367,9 @@ impl Experiment {
         if self.on_demand {
             hash.setting("on_demand", true);
         }
-        if self.hmd != HmdConfig::unc() {
-            let HmdConfig { eye_separation_m, horizontal_fov_deg, near_m, far_m, convergence_m, .. } = self.hmd;
+        if self.hmd != Hmd::unc() {
+            let HmdConfig { eye_separation_m, horizontal_fov_deg, near_m, far_m, convergence_m, .. } =
+                *self.hmd.config();
             hash.setting("hmd", format!("{eye_separation_m} {horizontal_fov_deg} {near_m} {far_m}"));
             if let Some(metres) = convergence_m {
                 hash.setting("hmd.convergence", metres);

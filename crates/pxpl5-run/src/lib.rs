@@ -94,7 +94,7 @@ pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry
 pub use reprojection::{Every, Reprojection, Warp};
 pub use result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use says::{PixelField, bit_of, in_ms, in_us};
-pub use scene_views::views;
+pub use scene_views::{hmd_on, views};
 pub use so_far::SoFar;
 pub use stepper::{Pause, Stepper};
 pub use summary::{Summary, retraces};
