@@ -284,13 +284,12 @@ impl Command {
     }
 }
 
-/// Returns the error for valid instructions that differ from the program of a command. `label` is the opcode of the
-/// command's kind.
+/// Returns the error for instructions that begin with the label of a kind of command, but differ from the program of
+/// this kind. `label` is the opcode of the kind.
 fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
     DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
 }
 
-/// Name of a field of pixel memory that a layout does not have.
 pub(crate) struct MissingField(&'static str);
 
 fn encode_all(program: &[ArrayInstruction], out: &mut Vec<Word>) {

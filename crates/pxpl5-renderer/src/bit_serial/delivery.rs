@@ -8,7 +8,7 @@ use crate::controller::FieldBits;
 use crate::simd::SimdVector;
 use std::ops::Range;
 
-/// A consumer of the bits of an expression, which arrive one by one.
+/// A consumer of the bits of an expression, which arrive one bit per clock.
 trait BitSink {
     /// Applies bit `t` of the expression to one vector of pixels of a tile.
     ///
@@ -19,7 +19,6 @@ trait BitSink {
     fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
-/// The use of an expression by the pixels: the range of used bits, and the operation on these bits.
 #[derive(Clone, Debug)]
 pub(super) struct Delivery {
     /// Clocks in which the pixels use the arriving bit of the expression. One bit arrives in each clock.
@@ -27,8 +26,8 @@ pub(super) struct Delivery {
     pub(super) effect: ExpressionEffect,
 }
 
-/// The operation of the pixels with the bits of an expression. The number of a destination field is the field's first
-/// bit in pixel memory.
+/// An operation that each pixel performs with every arriving bit of an expression. A destination field is given by its
+/// first bit in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,

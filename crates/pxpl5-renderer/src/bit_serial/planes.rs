@@ -64,7 +64,8 @@ pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane)
     }
 }
 
-/// Simulates one clock of a serial adder or, if `subtracts` is true, of a serial subtracter in all pixels of a tile.
+/// Simulates one clock of a serial adder in all pixels of a tile. If `subtracts` is true, simulates a serial
+/// subtracter.
 #[inline(always)]
 pub(super) fn step(subtracts: bool, a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     if subtracts { subtract(a, b, carry) } else { add(a, b, carry) }

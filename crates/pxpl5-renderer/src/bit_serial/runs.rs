@@ -162,8 +162,6 @@ impl InstructionRun {
 }
 
 impl Delivery {
-    /// Delivers the bits of an expression or constant to those vectors of a tile that contain enabled pixels. `word`
-    /// selects the expression's word in the outputs of the adder trees.
     #[inline(always)]
     fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {

@@ -33,8 +33,8 @@ pub(super) struct Bounds {
     limits: Option<[RowLimit; 3]>,
 }
 
-/// Limit that one edge sets on the columns x of row y. If `from_left` is true, the limit is `x >= (b y + c) * scale`,
-/// else it is `x <= (b y + c) * scale`. All numbers except `scale` are exact.
+/// Limit that one edge sets on the columns x of row y. The limit is `x >= (b y + c) * scale` if `from_left` is true,
+/// otherwise `x <= (b y + c) * scale`. All numbers except `scale` are exact.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
     b: f64,
@@ -93,7 +93,7 @@ impl RowLimit {
     }
 }
 
-/// One value for each triangle of a batch.
+/// A value for each triangle of a batch.
 pub(super) type PerTriangle<T> = [T; LANES];
 
 /// The edges of all triangles of a batch, relative to the array's upper left pixel.
@@ -111,8 +111,8 @@ impl Edges {
         }
     }
 
-    /// Converts all edges from picture coordinates to the array's own. `left` and `top` are the picture coordinates of
-    /// the array's upper left pixel.
+    /// Moves the origin of all edge expressions from the picture's upper left pixel to the array's upper left pixel.
+    /// `left` and `top` are the picture coordinates of the array's upper left pixel.
     #[inline(always)]
     pub(super) fn localise(&mut self, [left, top]: [i32; 2]) {
         for e in &mut self.0 {
@@ -123,7 +123,6 @@ impl Edges {
         }
     }
 
-    /// Returns the edges of triangle `i`.
     #[inline(always)]
     pub(super) const fn get(&self, i: usize) -> [Linear; 3] {
         [self.0[0].get(i), self.0[1].get(i), self.0[2].get(i)]
@@ -231,8 +230,8 @@ fn doubles(v: &PerTriangle<i32>) -> PerTriangle<f64> {
     out
 }
 
-/// Returns the first and the last pixel between `low` and `high`, for each triangle. The interval is widened by
-/// [`MARGIN`] at both ends.
+/// Returns the first and the last pixel in the interval from `low` to `high`, for each triangle. The interval is first
+/// widened by [`MARGIN`] at both ends.
 #[inline(always)]
 fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
@@ -244,7 +243,7 @@ fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>;
     out
 }
 
-/// Converts a number of small magnitude to an integer. NaN gives an arbitrary result.
+/// Converts a number of small magnitude (below 2^31) to an integer. NaN gives an arbitrary result.
 ///
 /// A cast with `as` would not compile to a single vector instruction.
 #[inline(always)]

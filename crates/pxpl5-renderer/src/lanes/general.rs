@@ -99,7 +99,7 @@ impl Lanes {
         Ok(())
     }
 
-    /// Stores the values of the first operand buffer in the field `destination` of the enabled pixels.
+    /// Copies the first operand buffer into the field `destination` of all enabled pixels.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
@@ -197,7 +197,7 @@ impl Lanes {
     }
 
     /// Computes `f` for every pixel and stores the results in the first operand buffer. The arguments of `f` are the
-    /// pixel's value of the expression, `shift`, and the pixel's value in the second operand buffer.
+    /// expression's value at the pixel, `shift`, and the pixel's entry in the second operand buffer.
     fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {

@@ -1,5 +1,4 @@
-//! Steps that triangles of all widths have in common: the values of expressions for a vector of pixels, the depth test,
-//! and the stores.
+//! Steps for triangles of all widths: the values of expressions for a vector of pixels, the depth test, and the stores.
 
 use super::columns::Values;
 use super::enable::Enable;

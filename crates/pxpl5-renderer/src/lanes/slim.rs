@@ -18,8 +18,8 @@ pub(super) struct SlimTriangles {
     /// array.
     x: PerTriangle<i32>,
     y: PerTriangle<i32>,
-    /// Number of vectors, one below the other, that cover each triangle. The number is 0 for a triangle without pixels,
-    /// and -1 for a triangle that is not slim.
+    /// Number of vectors, one below the other, that cover each triangle. Zero for a triangle without pixels, and -1 for
+    /// a triangle of more than four columns.
     vectors: PerTriangle<i32>,
     /// Values of each triangle's edges at the first pixel of its first vector.
     edges: [PerTriangle<i32>; 3],
