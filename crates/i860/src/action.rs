@@ -5,8 +5,8 @@ use crate::decoded::Decoded;
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
-/// The effect of a core instruction: load, store or integer operation. Branches and control-register moves have no
-/// special effect, so the processor executes them from the decoded instruction.
+/// The effect of a core instruction: a load, a store or an integer operation. Branches and control-register moves have
+/// no effect of this type, because the processor executes them from the decoded instruction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CoreAction {
     pub(crate) does: Core,
@@ -23,7 +23,6 @@ pub(crate) struct CoreAction {
     pub(crate) immediate: u32,
 }
 
-/// The kinds of effect that a core instruction can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Core {
     Nothing,
@@ -190,7 +189,7 @@ pub(crate) struct Action {
 }
 
 impl Action {
-    /// Chooses the effects of a single instruction, or of a pair of instructions if `second` has the core half.
+    /// Chooses the effects of a single instruction, or of a pair whose core half is `second`.
     pub(crate) fn new(number: u8, first: &Decoded, second: Option<&Decoded>) -> Action {
         // Instructions without any effect get no action.
         let floating = Some(first).filter(|first| first.is_floating() && !first.is_idle());

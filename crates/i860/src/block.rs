@@ -101,7 +101,7 @@ fn is_store(op: Op) -> bool {
 
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 
-/// Initial value of [`Block::held_in`], which differs from the numbers of all states of the instruction cache.
+/// Initial value of [`Block::held_in`]. No state of the instruction cache has this number.
 const NEVER: u64 = u64::MAX;
 
 /// A basic block of instructions and pairs. A block ends at a branch, at an instruction that cannot be executed, or at
@@ -125,8 +125,7 @@ pub(crate) struct Block {
     pub(crate) count: usize,
     /// Number of instructions of the block. A pair counts as two instructions. The delay slot counts as well.
     pub(crate) instructions: u64,
-    /// Number of the latest cache state in which the instruction cache held the whole block. The cache numbers its
-    /// states.
+    /// Number of the latest state of the instruction cache in which the cache held the whole block.
     held_in: u64,
     /// Effects of the instructions and pairs, in the order of execution. The effects of the delay slot come last.
     pub(crate) actions: Box<[Action]>,
@@ -254,8 +253,8 @@ impl Block {
         &self.units[number]
     }
 
-    /// Returns an address on the cache line of instruction or pair `number`, and the index of the first instruction or
-    /// pair after this line.
+    /// Returns an address on the cache line that holds instruction or pair `number`, and the index of the first
+    /// instruction or pair after this line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         // Find the last line that begins at or before this instruction.

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-/// The set of memory words that were decoded. With this set, the processor finds out if a store can have changed
-/// decoded code.
+/// The set of memory words that were decoded. The processor uses this set to detect stores that can change decoded
+/// code.
 #[derive(Debug)]
 pub(crate) struct CodeMap {
     /// Address range of the assembled program, or an empty range without a program.

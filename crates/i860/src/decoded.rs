@@ -17,7 +17,7 @@ pub(crate) mod hazard {
     pub(crate) const COUNT: usize = 9;
 }
 
-/// Bits for the classes of hazards that an instruction causes for later instructions.
+/// Bits for the classes of hazards that an instruction can cause for later instructions.
 pub(crate) mod arm {
     pub(crate) const LOAD: u16 = 1 << 0;
     pub(crate) const LONG_LOAD: u16 = 1 << 1;
@@ -102,8 +102,8 @@ impl Decoded {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 
-    /// Returns two booleans, for the first and the second source. A boolean is true if this source is in double
-    /// precision and therefore takes a pair of registers.
+    /// Returns, for the first and the second source, true if this source is in double precision. Such a source takes a
+    /// pair of registers.
     #[inline]
     pub(crate) fn source_widths(&self) -> (bool, bool) {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)

@@ -49,7 +49,6 @@ impl DecodedPrograms {
         self.place(program).take().unwrap_or_else(|| Code::of(program))
     }
 
-    /// Puts the decoded code of a program back into the store.
     pub(crate) fn put(&mut self, program: &Arc<Program>, code: Code) {
         *self.place(program) = Some(code);
     }

@@ -70,8 +70,8 @@ impl Dram {
         self.data_end.max(self.free)
     }
 
-    /// Adds the times of the refreshes and of the transfers of other bus masters that take place before a request at
-    /// clock `now`.
+    /// Adds the time of a refresh and of a transfer by another bus master, if they are due before a request at clock
+    /// `now`. Of several refreshes or transfers that are due, only the latest takes time (assumed).
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [

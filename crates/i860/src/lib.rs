@@ -55,7 +55,7 @@
 //! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte lines
 //! and pseudo-random replacement. A write miss allocates no line. The TLB has 64 entries.
 //!
-//! All rows are *assumed*. Their numbers are quoted from memory from Intel's list of instruction timings. Tests compare
+//! All rows are *assumed*. They repeat Intel's list of instruction timings as the authors remember it. Tests compare
 //! the model with published figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, and about 48
 //! clocks for a square root. One published figure is a tree-traversal loop of 117 instructions in 106 clocks. The
 //! published description is not sufficient to write the same code. The test runs a loop of the same shape (pairs, odd

@@ -86,7 +86,7 @@ impl Memo {
         Some(number)
     }
 
-    /// Makes the scoreboard state after the memoized run `remembered` the current state. A run is a part of a block.
+    /// Sets the current scoreboard state to the state after the memoized run `remembered`, which is a part of a block.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
@@ -118,10 +118,9 @@ pub(crate) struct ArrivingLine {
 pub(crate) struct Run(u64);
 
 impl Run {
-    /// Makes the key of a run (a part of a block). `entry` is the number of the scoreboard state before the run. `from`
-    /// and `to` are the first and the last position in the block. `taken` is true if the branch was taken, and
-    /// `trapped` if the last instruction trapped. `continues` is true if the first fetch is from a cache line that is
-    /// still arriving.
+    /// Makes the key of a run, which is the part of a block from position `from` to position `to`. `entry` is the
+    /// number of the scoreboard state before the run. `taken` is true if the branch was taken, and `trapped` if the
+    /// last instruction trapped. `continues` is true if the first fetch is from a cache line that is still arriving.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
         let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;
@@ -186,7 +185,7 @@ pub(crate) struct RememberedClocks {
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,
-    /// Number of the cache line from which the last fetch of the run came. A run is a part of a block.
+    /// Number of the cache line of the last fetch in the run (a part of a block).
     pub(crate) line: u32,
     /// Clocks of delay in the run (a part of a block), by cause.
     pub(crate) waited: WaitedClocks,

@@ -6,7 +6,7 @@ pub mod psr {
     pub const BR: u32 = 1 << 0;
     /// BW: break on data write.
     pub const BW: u32 = 1 << 1;
-    /// CC: condition code, set by compares, sums and logical operations.
+    /// CC: condition code, set by compares, additions, subtractions and logical operations.
     pub const CC: u32 = 1 << 2;
     /// LCC: loop condition code, tested by `bla`.
     pub const LCC: u32 = 1 << 3;
