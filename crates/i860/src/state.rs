@@ -263,7 +263,6 @@ impl State {
         self.psr = self.psr & !psr::PM | mask << psr::PM_SHIFT;
     }
 
-    /// Returns the pixel size psr.PS: 0, 1, 2 for 8, 16, 32 bits. The reserved value 3 counts as 2.
     pub(crate) fn pixel_size(&self) -> u32 {
         ((self.psr & psr::PS) >> psr::PS_SHIFT).min(2)
     }

@@ -205,19 +205,18 @@ impl TestVector {
         memory
     }
 
-    /// Runs the program of the vector on a new processor and compares the state after the run.
+    /// Runs the program of the vector on a new processor, and compares the state after the run with the expected state.
     ///
-    /// # Errors
-    /// Returns the differences in the state, or the reason why the program did not reach its stop address.
+    /// # Errors Returns the differences in the state, or the reason why the program did not reach its stop address.
     pub fn check(&self, config: Config) -> Result<(), Failure> {
         let mut cpu = Cpu::at(config, self.entry);
         self.check_on(&mut cpu)
     }
 
-    /// Resets a processor, runs the program of the vector on this processor, and compares the state after the run.
+    /// Resets a processor, runs the program of the vector on this processor, and compares the state after the run with
+    /// the expected state.
     ///
-    /// # Errors
-    /// Returns the same errors as [`TestVector::check`].
+    /// # Errors Returns the same errors as [`TestVector::check`].
     pub fn check_on(&self, cpu: &mut Cpu) -> Result<(), Failure> {
         cpu.reset();
         // Registers are zero after the reset. Only the start address is set here.

@@ -13,8 +13,8 @@ use std::sync::Arc;
 /// [`BufferContents`](crate::BufferContents) share such a list.
 pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
 
-/// Smallest number of kept regions above which the buffer searches for regions that newer regions cover completely. The
-/// search compares single pixels, so it would be too slow for every retrace.
+/// Number of kept regions above which the buffer searches for regions that newer regions cover completely. The search
+/// compares single pixels, so a search at every retrace would take too long.
 const FEW: usize = 128;
 
 #[derive(Clone, Debug)]
@@ -78,8 +78,8 @@ impl Buffer {
         self.scans.begin(field);
     }
 
-    /// Records that the region with index `place` is complete. Of two complete regions with the same pixels, the newer
-    /// region hides the older region. Returns the index of the older region if region `place` hides such a region.
+    /// Records that the region with index `place` is complete. The region hides an older complete region that fills
+    /// exactly the same pixels. Returns the index of the hidden region, or `None` if there is no such region.
     pub(crate) fn hide_below(&mut self, place: usize) -> Option<usize> {
         self.arriving.retain(|other| *other != place);
         let newest = self.newest.entry(cut(&self.held[place].region.target)).or_insert(place);

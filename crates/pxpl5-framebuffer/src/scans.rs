@@ -39,11 +39,11 @@ impl Scans {
         pair.older.rows().filter(|row| !self.shows_row(*row, pair)).count() as u64
     }
 
-    /// Returns true if a fast test proves that the older region was shown completely. The test handles the even rows
-    /// and the odd rows of the region separately. For each of these two groups, the test needs a field in which the
-    /// beam passes the first and the last pixel of the group between two instants. These instants are the write of the
-    /// older region and the write of the newer region. The beam then passes all other pixels of the group between these
-    /// instants as well.
+    /// Returns true if a fast test proves that the older region was shown completely. The test treats the even rows and
+    /// the odd rows of the region as two groups.
+    ///
+    /// For each group, a field must show the first and the last pixel after the write of the older region and before
+    /// the write of the newer region. The beam then also shows all other pixels of the group between these two writes.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };

@@ -48,7 +48,7 @@ pub(crate) struct RingChannels {
     /// Time at which each channel becomes free. The time is `UNKNOWN` for free channels, and for messages whose
     /// receiver has not answered yet.
     ends_at: Vec<Time>,
-    /// Known end times of messages with their channels. The earliest end is the last element.
+    /// Known end times of messages with their channels, sorted by falling time.
     due: Vec<(Time, usize)>,
     /// Bit set of the free channels.
     free: u64,
