@@ -354,8 +354,8 @@ impl GpBoard {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
-    /// Returns the name of the condition for which the board waits. Deadlock reports contain this name. If the two
-    /// programs wait, the function returns the condition of the foreground program.
+    /// Returns the name of the condition for which the board waits, for deadlock reports. If both programs wait, the
+    /// function returns the condition of the foreground program.
     #[must_use]
     pub fn blocked(&self) -> Option<&'static str> {
         Some(self.wait()?.what)

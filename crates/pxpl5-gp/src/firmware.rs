@@ -61,7 +61,6 @@ pub(crate) struct Batch {
     pub(crate) links: Vec<ChainLink>,
 }
 
-/// One message of a chain of messages that the DMA sends together.
 #[derive(Debug)]
 pub(crate) struct ChainLink {
     pub(crate) message: Message,
@@ -197,8 +196,7 @@ impl Shared {
         Cause::Acceptance
     }
 
-    /// If the DMA is free, removes and returns the batch of messages that waits longest, and records the receivers of
-    /// the batch.
+    /// If the DMA is free, removes the oldest waiting batch of messages, records its receivers, and returns the batch.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
         // All messages of the batch now wait for their acceptance.

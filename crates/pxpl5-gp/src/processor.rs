@@ -153,7 +153,6 @@ const LINK: usize = 1;
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,
-    /// Configuration of the i860: the timing of its instructions and of its memory.
     core: i860::Config,
     cpu: Cpu,
     memory: Memory,
@@ -166,7 +165,6 @@ pub struct Processor {
     programs: Vec<Arc<Program>>,
     /// Address range of the output of each bin context (one of two sets of bins). `None` if no range is reserved.
     outputs: [Option<Range<u32>>; 2],
-    /// Code addresses of the breakpoints.
     breakpoints: BTreeSet<u32>,
     /// Breakpoint hits recorded since the last [`Processor::take_hits`].
     hits: Vec<BreakpointHit>,

@@ -37,7 +37,8 @@ pub struct Video {
 }
 
 impl Video {
-    /// Makes the video signal that `numbers` describes. Returns `None` if a number is too large for a clock.
+    /// Makes the video signal that `numbers` describes. Returns `None` if the period of a pixel, line or field is
+    /// shorter than a picosecond, or too long for 64-bit arithmetic.
     #[must_use]
     pub const fn new(numbers: VideoNumbers) -> Option<Self> {
         let VideoNumbers { pixel_ps, pixel_divisor, line_pixels, frame_lines, .. } = numbers;
