@@ -97,7 +97,6 @@ impl CoreAction {
     }
 }
 
-/// The effect of a floating-point instruction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FloatingAction {
     pub(crate) does: Floating,

@@ -108,7 +108,6 @@ const NEVER: u64 = u64::MAX;
 /// the greatest length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Address at which the block begins.
     pub(crate) pc: u32,
     /// Pairing mode (single instructions or pairs) at the start of the block.
     mode: Mode,
@@ -155,7 +154,6 @@ impl Access {
     }
 }
 
-/// An instruction or pair that accesses data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AccessingUnit {
     pub(crate) access: Access,

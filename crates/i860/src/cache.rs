@@ -25,7 +25,7 @@ const fn sets(cache_bytes: u64) -> usize {
     (cache_bytes / ChipSizes::PAPERS.line_bytes) as usize / CACHE_WAYS
 }
 
-/// Tag arrays of the instruction cache and of the data cache.
+/// Tag array of the instruction cache.
 pub(crate) type InstructionTags = CacheTags<{ sets(ChipSizes::PAPERS.instruction_cache_bytes) }>;
 pub(crate) type DataTags = CacheTags<{ sets(ChipSizes::PAPERS.data_cache_bytes) }>;
 

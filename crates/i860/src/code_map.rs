@@ -24,7 +24,6 @@ impl CodeMap {
         CodeMap { program, is_stored_to: false, range, words: Box::default() }
     }
 
-    /// Returns the lowest and the highest address in a range.
     fn ends(program: &Range<u32>) -> (u32, u32) {
         if program.is_empty() { (u32::MAX, 0) } else { (program.start, program.end - 1) }
     }

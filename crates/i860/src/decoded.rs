@@ -36,7 +36,6 @@ pub(crate) mod arm {
 /// Register number of an absent operand.
 pub(crate) const NONE: u8 = 0xFF;
 
-/// A decoded instruction with its properties for the timing model.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Decoded {
     pub(crate) reads: u64,

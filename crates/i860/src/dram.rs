@@ -24,7 +24,6 @@ impl Transfer {
     }
 }
 
-/// State of the external bus and the memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Dram {
     timing: DramTiming,

@@ -107,7 +107,6 @@ pub enum ProcessorFault {
 /// address.
 const RETURN: u32 = 0x0800;
 
-/// Returns the range of memory addresses that an assembled program occupies.
 fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
@@ -275,7 +274,6 @@ impl Processor {
         self.memory.0.words(address, words).map_err(|_| self.unmapped(address, words))
     }
 
-    /// Reads one word of memory.
     pub(crate) fn word(&self, address: u32) -> Result<Word, ProcessorFault> {
         let bytes = self.memory.0.bytes().get(address as usize..).and_then(<[u8]>::first_chunk);
         bytes.map(|bytes| Word::from_le_bytes(*bytes)).ok_or_else(|| self.unmapped(address, 1))

@@ -118,7 +118,6 @@ impl Lanes {
     }
 }
 
-/// State of the array while it draws a command list.
 struct Drawing<'a> {
     array: &'a mut Lanes,
     /// Words of commands that were collected, but not executed yet.

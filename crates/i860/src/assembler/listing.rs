@@ -53,7 +53,6 @@ impl Program {
     }
 }
 
-/// A listing under construction.
 struct Rows<'a> {
     text: String,
     /// Labels that are not listed yet, sorted by address.

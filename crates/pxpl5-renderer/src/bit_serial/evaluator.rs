@@ -199,7 +199,6 @@ pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 /// Outputs of the adder trees for a quadratic expression, one entry for each clock.
 pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
-/// Outputs of the adder trees for a quadratic expression in one clock.
 #[derive(Clone, Copy, Default)]
 struct QuadraticBits {
     /// Bits of two sums: `xx x^2` for each column x, and `one + y y + yy y^2` for each row y.
@@ -208,7 +207,6 @@ struct QuadraticBits {
     coefficients: Streams,
 }
 
-/// State of a pixel vector's adders for a quadratic expression, between two clocks.
 pub(super) struct QuadraticCarries<V> {
     /// Bits of the coefficient of x, one for each level of the product with the column's index. Level n has the bit of
     /// the coefficient that arrived n clocks ago.

@@ -37,7 +37,6 @@ pub(super) struct InstructionRun {
     pub(super) steps: Vec<RunStep>,
     /// Linear expressions of the instruction run, with the array's upper left pixel as origin.
     pub(super) expressions: Vec<Linear>,
-    /// Number of words that the run of instructions takes in the list.
     pub(super) words: usize,
 }
 
@@ -48,7 +47,6 @@ pub(super) struct RunStep {
     pub(super) delivery: Delivery,
 }
 
-/// Source of the bits that an instruction delivers to the pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
     /// An expression, given by its index among the expressions of the instruction run.

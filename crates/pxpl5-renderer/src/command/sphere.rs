@@ -81,7 +81,6 @@ const ROOT_BITS: u8 = 12;
 const COLOUR_ROOT_BITS: u8 = 8;
 const FACTOR_BITS: u8 = 10;
 
-/// Fields of pixel memory that hold temporary values in the program of a sphere command.
 #[derive(Clone, Copy)]
 pub(crate) struct SphereScratch {
     radicand: Operand,

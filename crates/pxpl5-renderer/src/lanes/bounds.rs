@@ -93,7 +93,6 @@ impl RowLimit {
     }
 }
 
-/// A value for each triangle of a batch.
 pub(super) type PerTriangle<T> = [T; LANES];
 
 /// The edges of all triangles of a batch, relative to the array's upper left pixel.
@@ -101,7 +100,6 @@ pub(super) type PerTriangle<T> = [T; LANES];
 pub(super) struct Edges(pub(super) [LinearLanes; 3]);
 
 impl Edges {
-    /// Sets the edges of triangle `i`.
     #[inline(always)]
     pub(super) fn set(&mut self, i: usize, edges: [Linear; 3]) {
         for (e, Linear { a, b, c }) in edges.into_iter().enumerate() {

@@ -195,7 +195,6 @@ fn split_wide(cuts: &[usize]) -> Vec<usize> {
 /// Indices of the columns (arrays of words) that hold the fields of one context, which is a region in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContextColumns {
-    /// First bit of the context in pixel memory.
     pub(super) base: u8,
     pub(super) colour: usize,
     pub(super) z: usize,

@@ -51,7 +51,6 @@ pub(super) trait PaintTriangle {
     fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
-/// A painter that draws triangles into a region.
 pub(super) struct TrianglePainter<'a, P> {
     /// Picture coordinates (column and row) of the array's upper left pixel.
     pub(super) origin: [i32; 2],
@@ -61,7 +60,6 @@ pub(super) struct TrianglePainter<'a, P> {
     pub(super) enable: &'a mut Enable,
 }
 
-/// The result of the depth test for a vector of pixels.
 pub(super) struct DepthTest<V: SimdVector> {
     pub(super) old: V,
     pub(super) new: V,

@@ -12,7 +12,7 @@ use pxpl5_wire::{LANES, LinearLanes, TriangleBatch};
 
 const WIDTH: i32 = 128;
 
-/// The slim triangles of a batch.
+/// The triangles of a batch that are at most four columns wide (slim triangles).
 pub(super) struct SlimTriangles {
     /// First column of each triangle's vectors. If needed, the column is moved left so that the vectors lie inside the
     /// array.

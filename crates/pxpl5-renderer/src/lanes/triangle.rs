@@ -112,7 +112,6 @@ impl Surface for BatchSurface<'_> {
     }
 }
 
-/// The triangle that the loop draws now.
 struct CurrentTriangle<S> {
     /// Edge expressions of the triangle, relative to the array's upper left pixel.
     edges: [Linear; 3],
