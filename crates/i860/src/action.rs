@@ -105,9 +105,8 @@ pub(crate) struct FloatingAction {
     pub(crate) second: u8,
 }
 
-/// The kinds of effect that a floating-point instruction can have. Kinds that read single-precision operands come
-/// first, then kinds that read double-precision operands. If a source can be the result that leaves a pipe in the same
-/// clock, the kind is [`Floating::Any`].
+/// The kinds of effect that a floating-point instruction can have. The order is: kinds with single-precision operands,
+/// kinds with double-precision operands, then [`Floating::Any`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Floating {
     /// Pipelined multiplication of two single-precision operands.
@@ -130,8 +129,8 @@ pub(crate) enum Floating {
     SubtractDoubles,
     /// Any other operation that reads two double-precision operands.
     Doubles,
-    /// Any operation with mixed precisions, or with a source that can be the result that leaves a pipe in the same
-    /// clock.
+    /// Any operation with mixed precisions, or an operation that can read a result in the clock in which the result
+    /// leaves a pipe.
     Any,
     Nothing,
 }

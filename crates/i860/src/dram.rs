@@ -27,8 +27,8 @@ impl Transfer {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Dram {
     timing: DramTiming,
-    /// First clock at which a read of the open DRAM row can start. Such a read overlaps with the data of the previous
-    /// read.
+    /// First clock at which a read of the open DRAM row can start. The data of the previous read can still arrive at
+    /// this clock.
     free: u64,
     /// Clock at which the transfer of the data of all requests ends. A write, or a request to another DRAM row, starts
     /// at this clock or later.

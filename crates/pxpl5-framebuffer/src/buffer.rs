@@ -194,8 +194,7 @@ mod tests {
         }
     }
 
-    /// Returns the target of a region. `random` selects one of four kinds. Regions of different kinds fill different
-    /// pixels.
+    /// Returns the target of a region for the test. `random` selects one of four combinations of lines and grid.
     fn target(picture: u64, random: u64) -> CopyTarget {
         let cut = |region_width, region_height| RegionGrid { width: 640, height: 240, region_width, region_height };
         let (lines, grid) = [

@@ -82,11 +82,11 @@ fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item 
     first.into_iter().chain(last)
 }
 
-/// Iterates over the end pixels of each part of a row that arrived in one message. Each item has the position of a
-/// pixel and the arrival time of its word. The region must be complete.
+/// Iterates over the first and the last pixel of each part of a row that arrived in one message. Each item has the
+/// position of the pixel and the arrival time of its word. The region must be complete.
 ///
-/// The end pixels suffice to compare the arrival of a part with the beam, because words and beam advance at constant
-/// rates. Between two messages there is a pause.
+/// If the beam passes these two pixels in time, it also passes the pixels between them in time. The reason is that the
+/// beam and the words of a message advance at constant rates.
 fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
     region.row(row, word).flat_map(move |segment| {
         [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))

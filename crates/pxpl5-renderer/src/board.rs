@@ -433,8 +433,8 @@ impl Renderer {
         self.drawn.drain(..)
     }
 
-    /// Returns pixel memory in its state after all received command lists. In each region context, lists before the
-    /// last clear have no effect.
+    /// Returns pixel memory as it is after the execution of all received command lists. In each region context, lists
+    /// before the last clear have no effect.
     ///
     /// Returns `None` if no context has received lists that change pixels. This is the case, for example, if the
     /// computation of pixels is off.

@@ -235,7 +235,7 @@ impl InputFifo {
         }
     }
 
-    /// Adds commands to the message that the next call of [`Self::message`] announces. Commands must be added in the
+    /// Adds commands to the next message, whose arrival [`Self::message`] then computes. Commands must be added in the
     /// order of their words in the message.
     pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
@@ -355,9 +355,8 @@ impl InputFifo {
     /// [`InputFifo::arrival`] and [`InputFifo::start`], called for each command.
     ///
     /// The FIFO must not be watched. Each command must fit in the FIFO, must not block, and must take at least as long
-    /// as the transfer of its words. Under these conditions, each command after the first starts at the end of the
-    /// previous command. The reason is that the command's first word finds room at the latest at the start of the
-    /// previous command. The last word has therefore arrived when the previous command ends.
+    /// as the transfer of its words. The words of each command then arrive while the previous command executes. Each
+    /// command after the first therefore starts at the end of the previous command.
     fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,

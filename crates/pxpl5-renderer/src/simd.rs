@@ -54,10 +54,10 @@ impl Vectors {
         Self::ALL[..=most].iter().rev().copied().find(|vectors| vectors.present()).unwrap_or(Self::Portable)
     }
 
-    /// Makes this vector unit the fastest unit that new pixel arrays of this process choose by default.
-    ///
-    /// The tests in `tests/hashes.rs` use the limit to run whole experiments on each unit. Existing arrays keep their
+    /// Sets the fastest vector unit that new pixel arrays of this process choose by default. Existing arrays keep their
     /// units.
+    ///
+    /// The tests in `tests/hashes.rs` use this limit to run whole experiments on each unit.
     pub fn at_most(self) {
         MOST.store(self as u8, Ordering::Relaxed);
     }

@@ -80,9 +80,8 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Multiplies the coefficient by the number of each leaf, adds `stream`, and returns bit `t` of the sums. The
-    /// number of a leaf is the index of its column or row, or the square of this index. Callers must pass `t` = 0, 1, 2
-    /// and so on.
+    /// Multiplies the coefficient by the index of each leaf (or by the square of the index), adds `stream`, and returns
+    /// bit `t` of the sums. The trees keep their carries between calls, so the calls must have `t` = 0, 1, 2 and so on.
     #[inline(always)]
     pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
         for l in (1..LEVELS).rev() {

@@ -43,7 +43,7 @@ struct RowLimit {
     from_left: bool,
 }
 
-/// First column, and one past the last column, of consecutive rows. An empty row has `left >= right`.
+/// The columns `left .. right` of several consecutive rows. A row is empty if `left >= right`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spans {
     pub(super) left: [i32; LANES],
@@ -290,7 +290,7 @@ mod tests {
         Linear { a, b, c: [c, c ^ i32::MAX][random.below(2) as usize] }
     }
 
-    /// Checks that all inside pixels of random triangles are within the bounds, and returns the number of these pixels.
+    /// Checks that the pixels inside random triangles are within the bounds, and returns the number of these pixels.
     fn pixels_lie_within(triangles: u32, edge: fn(&mut Random) -> Linear) -> usize {
         let mut random = Random::new(5);
         let mut inside = 0;

@@ -116,8 +116,8 @@ impl SlimTriangles {
     }
 }
 
-/// Returns the value of each triangle's expression at the pixel (x, y) of this triangle, for all triangles of a batch.
-/// The loop writes only into a new array, so the compiler knows that the inputs do not change.
+/// Evaluates an expression of each triangle of a batch, at a pixel (x, y) of this triangle. The loop writes only into a
+/// new array, so the compiler can assume that the inputs do not change.
 #[inline(always)]
 fn values(e: &LinearLanes, [x, y]: [&PerTriangle<i32>; 2]) -> PerTriangle<i32> {
     let mut all = [0; LANES];
