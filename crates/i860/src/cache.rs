@@ -40,7 +40,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Numbers the current state of the array, and all later states, above `latest`.
+    /// Gives numbers above `latest` to the current state of the array and to all later states.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }

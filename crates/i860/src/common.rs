@@ -99,7 +99,7 @@ impl Common {
         }
     }
 
-    /// Freezes the processor for the constant part of the delay in a row of the freeze table.
+    /// Freezes the processor for the constant part of the delay in row `why` of the freeze table.
     #[inline]
     pub(crate) fn charge(&mut self, why: Freeze) {
         self.freeze_until(self.now + self.costs.clocks(why), why);

@@ -17,14 +17,14 @@
 //!
 //! # Words and clocks
 //!
-//! | kind | words | clocks | published or assumed |
+//! | kind | words | clocks | published or assumed clocks |
 //! |---|---|---|---|
-//! | triangle (Gouraud) | 30 | 258 | 267 (TR94, 150,000 a second); budget 256 |
-//! | Phong triangle | 32 | 292 | the same; budget 262 to 292. The object's colour costs 28 |
-//! | sphere | 53 | 810 (Slats 748) | assumed "a little dearer than a triangle"; see [`SphereCommand`] |
+//! | triangle (Gouraud) | 30 | 258 | 267 at 150,000 a second (TR94); the published steps need 256 |
+//! | Phong triangle | 32 | 292 | the same rate; the published steps need 262 to 292, with 28 for the object's colour |
+//! | sphere | 53 | 810 (748 for Slats) | assumed "a little dearer than a triangle"; see [`SphereCommand`] |
 //! | Phong sphere | 38 | 504 | the same |
 //! | shade | 89 | 3,790 = 95 us | assumed 4,000 to 8,000 (100 to 200 us); see [`Shade`] |
-//! | clear | 5 | 62 (Slats 58) | |
+//! | clear | 5 | 62 (58 for Slats) | |
 //! | select region | 2 | 6 | |
 //!
 //! The transaction level uses the same times ([`crate::RendererTiming`]).

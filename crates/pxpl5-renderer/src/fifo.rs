@@ -45,8 +45,8 @@ struct HeldCommand {
 /// An interval is at least as long as the transfer of a command's words over the channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Index of the first word that gets room in the FIFO only when the first command of this sequence starts. The
-    /// index counts all words since the start of the simulation, from 0.
+    /// Index of the first word that must wait for the start of this sequence's first command, because the FIFO is full
+    /// before. Words are counted from 0 since the start of the simulation.
     made_room_for: u64,
     left_at: Time,
     count: u64,

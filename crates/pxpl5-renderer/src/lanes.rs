@@ -50,8 +50,8 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// Creates an array in which all bits are zero. The array recognizes the commands of `layout` and executes them
-    /// fast.
+    /// Creates an array in which all bits are zero. The array recognizes the commands of `layout`, and executes these
+    /// commands faster than single instructions.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())

@@ -110,7 +110,7 @@ impl Layout {
         )))
     }
 
-    /// Returns the unchecked plan with the fields of the layout.
+    /// Returns the fields of the layout as a plan, from which a similar layout can be made.
     #[must_use]
     pub const fn plan(&self) -> &ContextPlan {
         &self.0

@@ -22,7 +22,7 @@ trait BitSink {
 
 #[derive(Clone, Debug)]
 pub(super) struct Delivery {
-    /// Range of the bits that the pixels use. Bit `t` arrives in clock `t`.
+    /// Range of the expression's bits that the pixels use. Bit `t` arrives in clock `t`.
     pub(super) taken: Range<usize>,
     pub(super) effect: ExpressionEffect,
 }

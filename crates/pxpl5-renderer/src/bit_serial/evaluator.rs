@@ -207,8 +207,8 @@ struct QuadraticBits {
 }
 
 pub(super) struct QuadraticCarries<V> {
-    /// Bits of the coefficient of x, one for each level of the product with the column's index. Level n has the bit of
-    /// the coefficient that arrived n clocks ago.
+    /// For each bit of the column's index, the bit of the coefficient of x that is multiplied in this clock. Entry n
+    /// holds the bit that arrived n clocks ago.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,

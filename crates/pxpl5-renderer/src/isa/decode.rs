@@ -28,7 +28,7 @@ pub enum DecodeErrorKind {
     #[error("the instruction needs {expected} words, the list has {found} left")]
     Truncated {
         expected: usize,
-        /// Number of words that the list has from the instruction's first word on.
+        /// Number of words from the instruction's first word to the end of the list.
         found: usize,
     },
     /// Bits that must be zero are set.

@@ -99,7 +99,8 @@ impl Lanes {
         Ok(())
     }
 
-    /// Copies the first operand buffer into the field `destination` of all enabled pixels.
+    /// Stores the values of the first operand buffer, one for each pixel, in the field `destination` of all enabled
+    /// pixels.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
