@@ -178,7 +178,6 @@ impl AccessingUnit {
     }
 }
 
-/// Returns, for each cache line of a block, the index of the first instruction or pair on the line.
 fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
     let mut line = None;
     let lines = (0..).zip(units);
@@ -228,7 +227,6 @@ impl Block {
         })
     }
 
-    /// Returns the instructions and pairs of the block that were executed.
     #[inline]
     pub(crate) fn executed(&self, execution: Execution) -> &[Unit] {
         self.units.get(..execution.units + usize::from(execution.slot)).unwrap_or_default()
@@ -277,7 +275,6 @@ impl Block {
         held
     }
 
-    /// Returns true if the block begins at address `pc` in pairing mode `mode`.
     #[inline]
     pub(crate) fn begins(&self, pc: u32, mode: Mode) -> bool {
         self.pc == pc && self.mode == mode

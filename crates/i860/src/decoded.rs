@@ -108,8 +108,8 @@ impl Decoded {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
     }
 
-    /// Returns true if a source register of a pipelined operation can be its destination register. The operation then
-    /// reads the result that leaves the pipe.
+    /// Returns true if a pipelined operation can have the same register as source and destination. The operation then
+    /// reads the result that leaves the pipe in the same clock.
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
         self.marks & mark::MAY_BYPASS != 0

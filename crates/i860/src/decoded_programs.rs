@@ -16,7 +16,7 @@ pub struct DecodedPrograms {
     pub(crate) numbers: Box<Numbers>,
     /// Programs with their decoded code. The code is `None` while a processor uses it.
     codes: Vec<(Arc<Program>, Option<Code>)>,
-    /// Highest number of a state of an instruction cache, among all processors that have used the store.
+    /// Highest number that a state of an instruction cache has had, in any processor that has used the store.
     pub(crate) cache_states: u64,
 }
 

@@ -73,7 +73,6 @@ impl Fetch {
         self.cache.changes()
     }
 
-    /// Returns true if the instruction cache holds all cache lines of the block.
     #[inline]
     pub(crate) fn holds(&self, block: &mut Block) -> bool {
         block.is_held(&self.cache)

@@ -46,10 +46,10 @@ pub(crate) struct Numbers {
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard state, if the latest clocks were memoized clocks. `None` means that the
+    /// Number of the current scoreboard state, if the latest clocks were reused from the memo. `None` means that the
     /// [`Scoreboard`] itself holds the state.
     present: Option<Number>,
-    /// Number of executed instructions whose clocks were memoized clocks of an earlier execution.
+    /// Number of executed instructions whose clocks were reused from an earlier execution.
     pub(crate) instructions: u64,
 }
 
@@ -58,7 +58,6 @@ impl Memo {
         Memo { numbers: Box::default(), present: None, instructions: 0 }
     }
 
-    /// Returns the number of the current scoreboard state. `None` means that the [`Scoreboard`] itself holds the state.
     #[inline]
     pub(crate) fn present(&self) -> Option<Number> {
         self.present
@@ -187,7 +186,6 @@ pub(crate) struct RememberedClocks {
     pub(crate) instructions: u16,
     /// Number of the cache line of the last fetch in the run (a part of a block).
     pub(crate) line: u32,
-    /// Clocks of delay in the run (a part of a block), by cause.
     pub(crate) waited: WaitedClocks,
 }
 

@@ -86,8 +86,6 @@ impl Clock {
         }
     }
 
-    /// Returns the number of the current scoreboard state. A new state gets a new number, or `None` if no number is
-    /// free.
     #[inline]
     fn number(&mut self) -> Option<Number> {
         let memo = self.memo.as_mut()?;

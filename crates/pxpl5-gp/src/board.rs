@@ -285,8 +285,8 @@ impl GpBoard {
         self.fault.as_ref()
     }
 
-    /// Removes the records of stages that the programs have made, and passes the records to `take` in the order of
-    /// their making.
+    /// Removes the records of stages that the programs have made, and passes the records to `take`, the oldest record
+    /// first.
     pub fn drain_marks(&mut self, take: impl FnMut(Mark)) {
         let marks = &mut self.shared.borrow_mut().marks;
         if !marks.is_empty() {

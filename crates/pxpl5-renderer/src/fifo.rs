@@ -300,7 +300,6 @@ impl InputFifo {
         }
     }
 
-    /// Returns the changes of the FIFO's content since the last call. The changes are not sorted by time.
     pub(crate) fn take_changes(&mut self) -> Vec<(Time, i64)> {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }

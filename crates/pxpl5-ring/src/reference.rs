@@ -88,8 +88,8 @@ pub struct SteppedRing<'a, R> {
     n_nodes: u16,
     traffic: &'a [PlannedMessage],
     receivers: R,
-    /// Queue of each source: the indices of the waiting messages, and the time since which the first message has been
-    /// the first of the queue.
+    /// Queue of each source: the indices of its waiting messages, and the time at which the first message reached the
+    /// head of the queue.
     queues: Vec<(VecDeque<usize>, Time)>,
     /// Number of messages that each source is sending on channels.
     sending: Vec<u64>,

@@ -228,7 +228,7 @@ pub trait CommandWords: Debug + Send + Sync {
 /// A receiver of renderer commands in order. The commands come as words, or as batches of triangles
 /// ([`TriangleBatch`]).
 pub trait CommandSink {
-    /// Returns the list of words. The sender of commands appends the words of its commands to this list.
+    /// Returns the list to which the sender appends the words of its commands.
     fn words(&mut self) -> &mut Vec<Word>;
 
     /// Offers a batch of triangles that follow the words appended so far. Returns true if the sink accepts the batch.

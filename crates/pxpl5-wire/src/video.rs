@@ -119,7 +119,7 @@ impl Video {
 
     /// Returns the number of whole scan lines between time zero and the start of line `y` of the frame in a field.
     /// Returns `None` if the field does not scan the line. An odd field begins with a blanked half line, so its first
-    /// whole line begins half a line later.
+    /// whole line begins half a line time after the retrace.
     fn line_number(&self, y: u32, field: PeriodNumber) -> Option<u64> {
         let parity = FieldParity::of_field(field);
         if y >= self.height() || y % 2 != parity.first_line() {

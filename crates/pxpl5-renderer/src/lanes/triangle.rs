@@ -113,7 +113,6 @@ impl Surface for BatchSurface<'_> {
 }
 
 struct CurrentTriangle<S> {
-    /// Edge expressions of the triangle, relative to the array's upper left pixel.
     edges: [Linear; 3],
     surface: S,
     /// True if a later command reads the Enable bits that this triangle leaves.
