@@ -20,7 +20,7 @@ pub const BUDGET: u64 = 10_000;
 /// One conformance vector: a program, the memory before the program runs, and the state expected afterwards.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct TestVector {
-    /// Identifier, unique in its file.
+    /// Identifier of the vector, unique in its file.
     pub id: String,
     /// Name of the group of vectors, within the file, to which this vector belongs.
     #[serde(default)]
@@ -30,7 +30,7 @@ pub struct TestVector {
     pub what: String,
     /// Address of the first word of `code`.
     pub load: u32,
-    /// Instruction words from `load` on.
+    /// Instruction words, which are loaded into memory from address `load` on.
     #[serde(deserialize_with = "hex_list")]
     pub code: Vec<u32>,
     /// Address of the first instruction to execute.
@@ -207,7 +207,8 @@ impl TestVector {
 
     /// Runs the program of the vector on a new processor, and compares the state after the run with the expected state.
     ///
-    /// # Errors Returns the differences in the state, or the reason why the program did not reach its stop address.
+    /// # Errors
+    /// Returns the differences in the state, or the reason why the program did not reach its stop address.
     pub fn check(&self, config: Config) -> Result<(), Failure> {
         let mut cpu = Cpu::at(config, self.entry);
         self.check_on(&mut cpu)
@@ -216,7 +217,8 @@ impl TestVector {
     /// Resets a processor, runs the program of the vector on this processor, and compares the state after the run with
     /// the expected state.
     ///
-    /// # Errors Returns the same errors as [`TestVector::check`].
+    /// # Errors
+    /// Returns the same errors as [`TestVector::check`].
     pub fn check_on(&self, cpu: &mut Cpu) -> Result<(), Failure> {
         cpu.reset();
         // Registers are zero after the reset. Only the start address is set here.

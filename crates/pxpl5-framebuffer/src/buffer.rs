@@ -20,7 +20,8 @@ const FEW: usize = 128;
 #[derive(Clone, Debug)]
 pub(crate) struct Buffer {
     held: Vec<StoredRegion>,
-    /// List of the regions in `held` for readers of pictures, or `None` after `held` has changed.
+    /// The regions in `held` as a list that pictures can share. `None` from a change of `held` until a picture needs
+    /// the list.
     shared: Option<Regions>,
     search_above: usize,
     /// Indices in `held` of the regions that are still arriving. The list is short, because a port receives one region

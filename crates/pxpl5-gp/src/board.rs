@@ -29,7 +29,7 @@ pub enum GpEvent {
     /// The status signal of another board has changed. A status signal carries one number, for example the count of a
     /// frame buffer's swaps. The event belongs to phase `Arrive` of the event queue.
     Status {
-        /// Port of the board whose status signal has changed.
+        /// Ring port of the board whose status signal has changed.
         from: NodeId,
         /// New value of the status signal.
         value: u64,

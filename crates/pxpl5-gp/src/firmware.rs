@@ -28,7 +28,7 @@ pub enum Fault {
     /// The program has received a message that it does not expect.
     #[error("node {}: unexpected message {found}", node.0)]
     Protocol {
-        /// Port of the board that received the message.
+        /// Ring port of the board that received the message.
         node: NodeId,
         /// Description of the unexpected message.
         found: String,
@@ -43,7 +43,7 @@ pub enum Fault {
 pub struct Received {
     /// Arrival time of the last word of the message.
     pub arrived: Time,
-    /// Port of the sender.
+    /// Ring port of the board that sends the message.
     pub source: NodeId,
     /// Content of the message: words, commands or pixels.
     pub body: Body,

@@ -235,8 +235,8 @@ impl InputFifo {
         }
     }
 
-    /// Adds commands to the next message, whose arrival [`Self::message`] then computes. Commands must be added in the
-    /// order of their words in the message.
+    /// Adds commands to the next message. Commands must be added in the order of their words in the message. A call of
+    /// [`Self::message`] then computes the arrival of the message.
     pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
     }

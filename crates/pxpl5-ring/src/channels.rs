@@ -11,9 +11,9 @@ const UNKNOWN: Time = Time(u64::MAX);
 pub struct ChannelSnapshot {
     /// Number of the channel, counted from 0.
     pub channel: usize,
-    /// Port of the sender.
+    /// Ring port of the board that sends the message.
     pub source: NodeId,
-    /// Port of the receiver.
+    /// Ring port of the board that receives the message.
     pub destination: NodeId,
     /// Length of the message in words.
     pub words: u32,

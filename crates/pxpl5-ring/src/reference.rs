@@ -27,9 +27,9 @@ use std::collections::VecDeque;
 pub struct PlannedMessage {
     /// Time at which the sending board passes the message to its port.
     pub at: Time,
-    /// Port of the sender.
+    /// Ring port of the board that sends the message.
     pub source: NodeId,
-    /// Port of the receiver.
+    /// Ring port of the board that receives the message.
     pub destination: NodeId,
     /// Length of the message in words, 1 to 1,024, without the overhead.
     pub words: u32,

@@ -298,8 +298,8 @@ fn components_below<V: SimdVector>(surface: &impl Surface, [p, q, r]: &[Walk<V>;
     [p.below(i.b), q.below(j.b), r.below(k.b)]
 }
 
-/// Reads the edges of several commands. The function must not be inlined, because the compiler would then assemble the
-/// vectors from single numbers.
+/// Reads the edges of several commands. The function must not be inlined, because the compiler would then build each
+/// vector from single numbers, which takes more time.
 #[inline(never)]
 fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     for (i, words) in commands.iter().enumerate().take(LANES) {
