@@ -183,7 +183,7 @@ pub(crate) trait SimdVector: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct PortableVector([i32; 8]);
 
-/// A mask of four lanes for each number of four bits. A lane is all ones if the corresponding bit of the number is set.
+/// Table of masks for four lanes, indexed by a number of four bits. Lane i is all ones if bit i of the number is set.
 /// Processors without AVX2 need this table, because they cannot shift each lane by its own count.
 const FOUR_LANES: [[i32; 4]; 16] = {
     let mut out = [[0; 4]; 16];

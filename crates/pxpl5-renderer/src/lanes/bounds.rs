@@ -130,7 +130,8 @@ impl Edges {
 /// Bounding boxes of the triangles of a batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes {
-    /// First column (0 to 128) and last column (-1 to 127) of each triangle inside the array.
+    /// First column (0 to 128) and last column (-1 to 127) of each triangle, limited to the array. The first column can
+    /// be greater than the last column if the triangle covers no pixel.
     pub(super) x: [PerTriangle<i32>; 2],
     pub(super) y: [PerTriangle<i32>; 2],
     /// True if the edges enclose a finite triangle, which means that the normals of the edges turn in the same

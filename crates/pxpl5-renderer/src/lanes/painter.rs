@@ -29,8 +29,8 @@ impl<V: SimdVector> Walk<V> {
         Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
     }
 
-    /// Returns the values for a vector that lies some rows below this vector. All values increase by `b`, which is the
-    /// increase over these rows.
+    /// Returns the values for a vector that begins some rows below this vector. `b` is the increase of the expression
+    /// over these rows.
     #[inline(always)]
     pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }
