@@ -67,9 +67,10 @@
 //! slot. The processor executes a block, and the clock then counts its time.
 //!
 //! A *run* is a part of a block whose instructions and data are all in the caches. A run uses neither the bus nor the
-//! queues nor the replacement sequence. The clocks of a run depend only on the remaining waits of earlier instructions,
-//! on the rest of an arriving instruction line, and on taken branches and traps. The model memoizes these clocks and
-//! reuses them, like FastSim (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization on.
+//! queues nor the replacement sequence. The clocks of a run depend only on three things: the remaining waits of earlier
+//! instructions, the rest of an arriving instruction line, and taken branches and traps. The model memoizes these
+//! clocks and reuses them, like FastSim (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization
+//! on.
 //!
 //! A block is one run, or several runs separated by accesses that leave the cache. The model counts these accesses, and
 //! instructions after a wait of more than 15 clocks, one by one. A block that is not entirely in the instruction cache

@@ -42,8 +42,8 @@ impl Scans {
     /// Returns true if a fast test proves that the older region was shown completely. The test treats the even rows and
     /// the odd rows of the region as two groups.
     ///
-    /// For each group, a field must show the first and the last pixel after the write of the older region and before
-    /// the write of the newer region. The beam then also shows all other pixels of the group between these two writes.
+    /// For each group, a field must show the first and the last pixel between the write of the older region and the
+    /// write of the newer region. The beam then also shows all other pixels of the group between these two writes.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };

@@ -336,8 +336,8 @@ impl Gp {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
-    /// Returns true if the bins of `context` (one of two sets of bins) can occupy `bytes` bytes of memory beside the
-    /// bins of the other set.
+    /// Returns true if the bins of `context` can occupy `bytes` bytes of memory beside the bins of the other context. A
+    /// context is one of two sets of bins.
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)

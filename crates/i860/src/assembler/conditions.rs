@@ -77,7 +77,7 @@ pub(crate) fn select(source: &str) -> Result<Cow<'_, str>, (usize, String)> {
     }
 }
 
-/// Stores the constant that a line defines. A value with an unknown name gives no constant, because the line can be a
+/// Stores the constant that a line defines. A value with an unknown name gives no constant here. The line can be a
 /// statement of linear code, or can use a label whose address is not known yet.
 fn define(code: &str, constants: &mut Symbols) {
     let equ = code.strip_prefix(".equ").or_else(|| code.strip_prefix(".set"));

@@ -81,8 +81,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the index of the word, and the bit of this word, at which row `y` of tile `number` begins in a bit plane of
-/// the array.
+/// Returns the position at which row `y` of tile `number` begins in a bit plane of the array: the index of a word, and
+/// a bit of this word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

@@ -53,8 +53,8 @@ impl Lanes {
         })
     }
 
-    /// Returns the columns (arrays of words) that hold x, y and z of the normals in the selected context, which is a
-    /// region in pixel memory. Returns `None` if the layout has no normals.
+    /// Returns the columns (arrays of words) that hold x, y and z of the normals in the selected context (region in
+    /// pixel memory). Returns `None` if the layout has no normals.
     fn normal_columns(&self) -> Option<[usize; 3]> {
         let x = self.column(self.layout.normal(0)?)?;
         let y = self.column(self.layout.normal(1)?)?;
