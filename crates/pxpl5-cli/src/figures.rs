@@ -128,7 +128,6 @@ fn text(figures: &Figures) -> String {
     text
 }
 
-/// Column headings of a table of figures.
 const HEADER: &str =
     "#           published    simulated  unit             error  interval               provenance what\n";
 

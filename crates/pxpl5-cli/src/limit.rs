@@ -233,7 +233,6 @@ impl LimitArgs {
     }
 }
 
-/// Returns a goal in words.
 fn goal_text(goal: Goal) -> String {
     match goal {
         Goal::NoMissedRetrace => "every picture that is due is shown in time".to_owned(),

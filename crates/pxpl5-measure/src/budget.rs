@@ -124,7 +124,6 @@ impl BudgetSum {
         }
     }
 
-    /// Returns the mean time of each latency stage.
     pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
         let means = self.stages_ms.map(|samples| samples.statistics().mean);
@@ -134,12 +133,12 @@ impl BudgetSum {
     }
 }
 
-/// Returns the poses that the head of a run still has in memory.
+/// Returns the head poses for which views were drawn, as far as the run has not discarded these poses.
 pub(crate) fn poses(run: &FinalResults<'_>) -> Poses {
     run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
 }
 
-/// Returns the duration of each stage, for every complete picture whose measured pose is still in memory.
+/// Returns the duration of each stage in milliseconds, for each complete picture whose head pose is still in memory.
 pub(crate) fn of_pictures<'a>(
     run: &FinalResults<'_>,
     poses: &Poses,

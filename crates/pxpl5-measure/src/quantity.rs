@@ -188,7 +188,7 @@ pub static QUANTITIES: [Quantity; 57] = [
     of_run("critical_path.other", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Other))),
 ];
 
-/// Returns a number of pictures due, or NaN if no picture was due.
+/// Returns the number that `count` reads from the result of the due pictures, or NaN if no picture was due.
 fn of_due(summary: &Summary, count: fn(&DuePictures) -> u64) -> f64 {
     summary.due.map_or(f64::NAN, |due| count(&due) as f64)
 }

@@ -188,8 +188,8 @@ fn hmd_of(outcome: &Outcome) -> HmdConfig {
 }
 
 impl Report {
-    /// Returns the number of region lines that were overwritten before the display showed them. `None` if the display
-    /// does not count such lines.
+    /// Returns the number of lines of regions that were overwritten before the display showed these lines. `None` if
+    /// the display does not count such lines.
     #[must_use]
     pub fn lines_never_shown(&self) -> Option<u64> {
         let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);

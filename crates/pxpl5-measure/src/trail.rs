@@ -46,7 +46,8 @@ const NEAR: Span = Span::from_us(20);
 /// same time.
 const SLACK: u64 = 4;
 
-/// Number of earlier arrivals among which the cause of a wait is searched: several pictures of 40 regions (assumed).
+/// Largest number of earlier arrivals of regions in which the search for the cause of a wait looks (assumed). This
+/// number covers several pictures of 40 regions.
 const ARRIVALS_SEARCHED: usize = 512;
 
 /// Largest number of steps that are followed for one picture. The part of the latency before these steps is assigned to
@@ -67,7 +68,7 @@ pub(crate) struct Trail<'a> {
     surface_of_port: BTreeMap<NodeId, SurfaceId>,
     /// EDIT, TRANSFORM and SEND stages on each board.
     stages: Vec<StageWork>,
-    /// Earliest start of RENDER on any board, for each picture and surface.
+    /// Earliest start of RENDER on any renderer, for each picture and surface.
     render_begins: BTreeMap<(PictureNumber, Option<SurfaceId>), Time>,
     render_ends: Vec<(Time, PictureNumber, Option<SurfaceId>)>,
     swaps: Vec<Time>,
@@ -86,7 +87,7 @@ enum At {
     Begin,
 }
 
-/// The steps found so far, from the end of the latency backwards. There is no gap between two steps.
+/// Steps found so far, from the end of the latency backwards. Each step begins where the step before it in time ends.
 struct Way {
     steps: Vec<Step>,
     cursor: Time,
@@ -361,8 +362,8 @@ impl<'a> Trail<'a> {
         self.to_transform(way, picture, surface)
     }
 
-    /// Continues at the earlier work for which the region's commands had to wait on the renderer. This work is the
-    /// commands of the previous region, or a copy that waited for room.
+    /// Continues at the earlier work on the same renderer for which the region's commands had to wait. This work is the
+    /// commands of the previous region, or a copy that waited for room in the backing store.
     fn before_next_region(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let held = Span(way.cursor.0.saturating_sub(region.copy_at.0));
@@ -386,7 +387,7 @@ impl<'a> Trail<'a> {
         own.checked_sub(1).map(|before| of[before])
     }
 
-    /// Returns the part of an interval in which at least one graphics processor was in TRANSFORM for a picture.
+    /// Returns the part of an interval in which at least one graphics processor executed TRANSFORM for a picture.
     fn transform_beside(&self, picture: PictureNumber, surface: Option<SurfaceId>, from: Time, to: Time) -> Span {
         let of = self.transforms(picture, surface);
         let begin = of.iter().map(|work| work.begin).min().unwrap_or(to).max(from);

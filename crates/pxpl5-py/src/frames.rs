@@ -104,7 +104,6 @@ pub(crate) fn film_bytes(
     result?.map_err(exception)
 }
 
-/// Converts an error of a film to an exception.
 fn exception(error: PictureError) -> PyErr {
     match error {
         PictureError::Run(_) | PictureError::Experiment(ExperimentError::Run { .. }) => failed_run(error),

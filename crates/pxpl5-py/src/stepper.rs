@@ -186,7 +186,7 @@ impl Stepper {
         self.step(py, |stepper, _| stepper.step_period())
     }
 
-    /// Runs until the next line of the first surface begins to be lit. Returns the same texts as :meth:`run_to_ps`.
+    /// Runs until the first surface begins to light its next line. Returns the same texts as :meth:`run_to_ps`.
     fn step_line(&self, py: Python<'_>) -> PyResult<String> {
         self.step(py, |stepper, _| stepper.step_line())
     }

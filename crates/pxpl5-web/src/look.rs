@@ -10,7 +10,6 @@ use pxpl5_sim::Time;
 use pxpl5_views::timeline::{self, TimelineOptions};
 use serde_json::{Value, json};
 
-/// Returns the state of the run as JSON: time, failure, hashes and surfaces.
 pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     let record = stepper.record();
     let surfaces = record
@@ -46,7 +45,6 @@ fn back(stepper: &Stepper) -> Option<Time> {
     Some(tick(before) + now.since(tick(period)))
 }
 
-/// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
 pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     let run = stepper.so_far();
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
@@ -82,7 +80,6 @@ pub(crate) fn channels(stepper: &Stepper) -> Value {
     all.map(|number| channel(number).unwrap_or(Value::Null)).collect()
 }
 
-/// Returns a JSON object with the present state of each board.
 pub(crate) fn boards(stepper: &Stepper) -> Value {
     stepper.boards().filter_map(|board| Some(line(stepper, board, &stepper.says(board)?))).collect()
 }
@@ -127,8 +124,8 @@ pub(crate) fn board(stepper: &Stepper, board: Board) -> Option<Vec<String>> {
     Some(lines)
 }
 
-/// Returns the fields in a renderer's memory for one pixel, one per line. Returns `None` for a pixel that does not
-/// exist, or before the renderer's first command.
+/// Returns the parts of one pixel's memory in a renderer, such as colour and depth, with one part per line. Returns
+/// `None` for a pixel that does not exist, or before the renderer's first command.
 pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Option<Vec<String>> {
     let fields = stepper.pixel_fields(renderer, x, y)?.into_iter();
     let lines = fields.map(|field| {
@@ -139,7 +136,6 @@ pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Optio
     Some(lines.collect())
 }
 
-/// Returns a timeline of the last `fields` display periods as SVG.
 pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
     let run = stepper.so_far();
     let newest = run.pictures().iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
