@@ -69,9 +69,9 @@ const VIEWS: u64 = 4;
 /// Time between two successive head poses in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
-/// Half the side of the square that a triangle covers at a distance of 1 m, in metres. The measurement of the clipper
-/// uses such triangles. The corners of the triangle lie up to 4,477 pixels outside the picture's corners. Assumed: any
-/// size beyond the guard band has the same effect.
+/// Size in metres of the triangles that measure the clipper. Each triangle covers a square whose sides have twice this
+/// length at a distance of 1 m. The corners of the triangle lie up to 4,477 pixels outside the picture's corners.
+/// Assumed: any size beyond the guard band has the same effect.
 const CLIPPED_M: f32 = 2.0;
 
 /// Size of a clump: the number of triangles that Slats transforms at a time (published in TR94).
@@ -122,11 +122,11 @@ pub struct CodeTimes {
 /// Number of iterations of [`CodeTimes::improve`]. Each iteration leaves only a small part of the previous error.
 const ROUNDS: usize = 30;
 
-/// One pass over triangles: number of unclipped triangles, number of clipped triangles, number of bin entries, time in
-/// nanoseconds.
+/// Result of one pass over triangles: number of unclipped triangles, number of clipped triangles, number of bin
+/// entries, time in nanoseconds.
 type Sample = [f64; 4];
 
-/// One pass over spheres: number of spheres, number of bin entries, time in nanoseconds.
+/// Result of one pass over spheres: number of spheres, number of bin entries, time in nanoseconds.
 type SphereSample = [f64; 3];
 
 fn picture(of: CodeUse) -> Picture {

@@ -255,11 +255,11 @@ pub enum Study {
     },
 }
 
-/// CPU seconds of all figures. This constant and the following constants are fitted to measurements with the build
-/// profile `dist` on one core of 3 GHz (25 November 2026).
+/// CPU seconds to measure all published figures. This constant and the following constants are fitted to measurements
+/// with the build profile `dist` on one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
-/// CPU seconds of one frame of an application scene. An interpretation that is also simulated with events adds the
-/// fraction `READINGS_BEST` of this time.
+/// CPU seconds to rank all interpretations for one frame of an application scene. Each interpretation that is also
+/// simulated with events adds the fraction `READINGS_BEST` of this time.
 const READINGS_FRAME_S: f64 = 0.0172;
 const READINGS_BEST: f64 = 0.1;
 /// CPU seconds to simulate the published figures at all levels of modelling. The next two constants are the CPU seconds
@@ -267,8 +267,8 @@ const READINGS_BEST: f64 = 0.1;
 const LEVELS_S: f64 = 56.0;
 const LEVELS_EXPERIMENT_S: f64 = 0.52;
 const SPEEDS_S: f64 = 23.0;
-/// Peak memory of the study of all figures in bytes. This constant and the next two were measured with two threads and
-/// rounded up.
+/// Peak memory in bytes to measure all published figures. This constant and the next two were measured with two threads
+/// and rounded up.
 const FIGURES_BYTES: f64 = 300e6;
 const READINGS_BYTES: f64 = 60e6;
 const LEVELS_BYTES: f64 = 800e6;

@@ -42,11 +42,12 @@ const MACHINES: [(usize, usize); 9] = [(2, 5), (4, 5), (13, 5), (24, 5), (50, 5)
 /// each.
 const MEMORY_BYTES: u64 = 1 << 30;
 
-/// Time to process a triangle in nanoseconds: on its graphics processor, and on a renderer for the 1.35 regions that
-/// the triangle touches. The number of fields of a run is computed from these times.
+/// Time to process a triangle in nanoseconds. The first time is for the graphics processor. The second time is for
+/// renderers, over the 1.35 regions that a triangle touches. The number of fields of a run is computed from these
+/// times.
 const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 
-/// Number of frames that a run must be long enough to show.
+/// Minimum number of frames that a run shows.
 const FRAMES: u64 = 30;
 
 /// Returns the number of display periods that a run needs to show [`FRAMES`] stereo frames.

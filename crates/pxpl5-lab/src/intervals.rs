@@ -228,8 +228,9 @@ pub(crate) fn photodiode_line() -> Option<Variation> {
     Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
 }
 
-/// Combines two designs of experiments into the interval of one figure. `ends` has the figure's values at both ends of
-/// each parameter's range, one parameter after the other. `joint` has the figure's values on the random machines.
+/// Combines the results of two designs of experiments into the interval of one figure. `ends` has the figure's values
+/// at both ends of each parameter's range, one parameter after the other. `joint` has the figure's values on the random
+/// machines.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {
@@ -257,7 +258,7 @@ impl Interval {
     }
 }
 
-/// Returns the element nearest to a quantile of sorted values. `share` is the quantile, from 0 to 1.
+/// Returns a quantile of sorted values: the value nearest to the position `share`, from 0 (first) to 1 (last).
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() - 1) as f64 * share).round() as usize]
 }
@@ -275,7 +276,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Smallest relative change of a figure for which a parameter is listed.
+/// Smallest relative change of a figure for which the causing parameter is listed.
 const VISIBLE: f64 = 1e-3;
 
 fn effects(variations: &[Variation], ends: &[f64], nominal: f64) -> Vec<Effect> {

@@ -97,7 +97,6 @@ impl MeanInterval {
         Some(self.high - self.low).filter(|width| width.is_finite())
     }
 
-    /// Returns the same mean without its confidence interval.
     pub(super) const fn without_interval(self) -> Self {
         Self { low: f64::NAN, high: f64::NAN, method: IntervalMethod::None, ..self }
     }

@@ -35,7 +35,7 @@ pub const LEAST_SEEDS: usize = 5;
 #[derive(Clone, Debug)]
 pub struct CompareQuery {
     /// Machine, scene, head and number of fields, without a pipeline. The compared pipelines come from the registry of
-    /// this file. If `head.motion` is `synthetic`, every seed has a different motion.
+    /// the experiment file. If `head.motion` is `synthetic`, every seed has a different motion.
     pub shared: ExperimentFile,
     /// Names of the rows (pipelines with settings) to run. An empty list runs all rows.
     pub only: Vec<String>,

@@ -205,7 +205,6 @@ impl ComparisonRow {
 /// Number and kind of the runs from which a row is computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sampling {
-    /// Number of seeds.
     pub(super) seeds: usize,
     /// True if the head moves the same way for every seed, for example because the motion is a recording.
     pub(super) is_one_motion: bool,

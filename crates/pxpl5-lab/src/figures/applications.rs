@@ -43,7 +43,7 @@ impl<K, T> Default for ByCapacity<K, T> {
 
 impl<K: Ord + Clone, T> ByCapacity<K, T> {
     /// Returns the result for a capacity. `make` computes the result, and a boolean that is true if a backing store was
-    /// full in the run or if that is unknown. `make` is not called if no smaller store was ever full.
+    /// full in the run or if that is unknown. `make` is not called if a smaller store was never full.
     fn get(&self, key: K, capacity: u64, make: impl FnOnce() -> Result<(T, bool)>) -> Result<Arc<T>> {
         if let Some((least, known)) = locked(&self.roomy).get(&key)
             && *least <= capacity

@@ -90,9 +90,9 @@ impl Measurement {
         Ok(FigureRow { interval, ..self.figure.row(measured) })
     }
 
-    /// Returns the minimum and maximum of the figure when each parameter in turn takes the two ends of its range. The
-    /// figure for the presets is included, and also replaces a result that the experiment does not yield. Returns
-    /// `None` if no parameter is varied.
+    /// Returns the minimum and maximum of the figure when one parameter at a time takes either end of its range. The
+    /// result includes `nominal`, the figure for the presets. `nominal` also replaces the result of an experiment that
+    /// fails. Returns `None` if no parameter is varied.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));

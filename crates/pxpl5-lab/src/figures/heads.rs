@@ -47,7 +47,6 @@ impl RigLines {
         FigureValue { value: assumed.value, details, unprinted }
     }
 
-    /// Returns the measurement with the photodiode under the assumed line.
     pub(super) fn assumed(&self) -> Arc<RigMeasurement> {
         Arc::clone(&self.measured[1].1)
     }
@@ -67,7 +66,7 @@ fn photodiode_lines() -> [u32; 3] {
     range.map_or([assumed; 3], |(first, last)| [first as u32, assumed, last as u32])
 }
 
-/// Measures the latency with the photodiode on one line.
+/// Measures the latency with the photodiode on the line `line` of the screen.
 pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u64) -> Result<RigMeasurement> {
     let ([measured], _) = under_lines(machine, pipeline, [u32::try_from(line).unwrap_or(u32::MAX)])?;
     Ok(measured)

@@ -193,7 +193,7 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(line / field, details))
 }
 
-/// Number of display fields over which vertex transforms are counted.
+/// Number of display fields over which the transforms of vertices are counted.
 const COUNTED: u64 = 20;
 
 /// Returns a machine with one slave. The software of all boards takes no simulated time, because only the number of

@@ -20,7 +20,6 @@ pub struct FigureValue {
 }
 
 impl FigureValue {
-    /// Returns a figure's value, together with additional numbers of the same experiment.
     pub(super) const fn with(value: f64, details: Vec<Detail>) -> Self {
         Self { value, details, unprinted: None }
     }

@@ -166,8 +166,8 @@ const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
 /// Numbers of finished regions that a renderer may keep. The last number fills the backing store.
 const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
-/// Returns several copies of each interpretation, one copy for each possible answer to one question. The function
-/// `answer` sets the answer in a copy.
+/// Returns several copies of each interpretation: one for each possible answer to a question. The function `answer`
+/// sets the answer in a copy.
 fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
     readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
 }

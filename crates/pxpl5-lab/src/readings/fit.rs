@@ -135,7 +135,7 @@ impl Fit {
     }
 }
 
-/// Returns half a unit of the last digit, for a value that is printed with three digits.
+/// Returns half of the last printed digit of a value that is printed with three digits.
 pub(super) fn half_a_digit(value: f64) -> f64 {
     0.5 * 10f64.powf(value.log10().floor() - 2.0)
 }
