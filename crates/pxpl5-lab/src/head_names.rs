@@ -132,8 +132,8 @@ fn no_path(motion: &str) -> SettingError {
     ))
 }
 
-/// Creates the error of an unknown name. The message states the most similar of the valid names first, then `forms`: all
-/// names, or names with their parameters.
+/// Creates the error of an unknown name. The message states the most similar of the valid names first, then `forms`:
+/// all names, or names with their parameters.
 pub(crate) fn unknown<'a>(what: &str, found: &str, names: impl Iterator<Item = &'a str>, forms: &str) -> SettingError {
     let SettingError { nearest, .. } = SettingError::unknown_path(what, found, names);
     SettingError::combination(format_args!(

@@ -98,7 +98,7 @@ impl Interval {
 }
 
 /// Times per triangle in nanoseconds of the machines for Slats. The times were fitted to the largest numbers of
-/// triangles in the papers (figures 12 and 14). Any time within its range reproduces the figure exactly.
+/// triangles in the papers (rows 12 and 14 of ACCURACY.md). Any time within its range reproduces the figure exactly.
 const FITTED: [(&str, u64, (u64, u64)); 2] =
     [("slats:gp.triangle_ns", 30_000, (29_800, 30_100)), ("slats-1995:gp.triangle_ns", 55_800, (55_400, 56_300))];
 
@@ -317,7 +317,7 @@ mod tests {
     use super::*;
     use crate::figures::{Figure, FigureValue};
 
-    /// Returns the row of figure 2, published as 31.2 ms. The analytic level gives an interval of 20 to 22 ms, and 21
+    /// Returns row 2 of ACCURACY.md, published as 31.2 ms. The analytic level gives an interval of 20 to 22 ms, and 21
     /// ms for the presets.
     fn row_of_figure_2(simulated: f64) -> FigureRow {
         let figure: &Figure = FIGURES.iter().find(|figure| figure.id == "2").expect("listed");

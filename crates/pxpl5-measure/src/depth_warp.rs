@@ -455,8 +455,8 @@ mod tests {
         }
     }
 
-    /// A step of t metres to the right moves a plane at z metres by f t / z pixels to the left. A near plane in front of
-    /// a far plane hides f t (1 / near - 1 / far) columns.
+    /// A step of t metres to the right moves a plane at z metres by f t / z pixels to the left. A near plane in front
+    /// of a far plane hides f t (1 / near - 1 / far) columns.
     #[test]
     fn a_step_moves_planes_by_f_t_by_z_and_opens_the_difference() {
         let focal = HmdView::ntsc().focal_px();

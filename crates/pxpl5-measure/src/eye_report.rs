@@ -30,7 +30,8 @@ pub struct ReprojectionReport {
     pub pose_age_ms: Percentiles,
     /// Number of checked pixels. For each of these pixels, the evaluation searched the picture for the pixel's content.
     pub looked_at: u64,
-    /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was checked.
+    /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was
+    /// checked.
     pub empty_share: Option<f64>,
     /// Share of the checked pixels, 0 to 1, whose content is hidden in the picture. `None` unless the device uses
     /// depth.

@@ -1,9 +1,9 @@
 //! Moving-block bootstrap: the interval of a mean over time, from one series of values that depend on each other.
 //!
 //! Successive fields of a run have similar errors. The values are therefore not independent, and an interval from their
-//! standard deviation would be too narrow. The bootstrap draws blocks of successive values, so that each block keeps the
-//! dependence. H. R. Künsch, "The jackknife and the bootstrap for general stationary observations", Annals of Statistics
-//! 17 (1989).
+//! standard deviation would be too narrow. The bootstrap draws blocks of successive values, so that each block keeps
+//! the dependence. H. R. Künsch, "The jackknife and the bootstrap for general stationary observations", Annals of
+//! Statistics 17 (1989).
 //!
 //! The block length follows the data: D. N. Politis and H. White, "Automatic block-length selection for the dependent
 //! bootstrap", Econometric Reviews 23 (2004), with the correction of A. Patton, D. N. Politis and H. White, Econometric

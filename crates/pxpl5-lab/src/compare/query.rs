@@ -43,8 +43,8 @@ pub struct CompareQuery {
     pub seeds: Vec<u64>,
     /// True if the comparison also searches for the largest number of triangles that each row can draw.
     pub limits: bool,
-    /// True if the error of each row is split by its causes ([`ComparisonRow::causes`]). Each run is then evaluated once
-    /// for each cause.
+    /// True if the error of each row is split by its causes ([`ComparisonRow::causes`]). Each run is then evaluated
+    /// once for each cause.
     pub causes: bool,
     /// True if each row also runs with every other predictor ([`ComparisonRow::predictors`]).
     pub predictors: bool,

@@ -300,9 +300,8 @@ impl Plan {
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
-    /// Returns warnings about settings that do not represent the real machine. Two kinds exist: parameters out of
-    /// range, and times from a table although executed code was requested. Warnings about the head's recording are
-    /// included.
+    /// Returns warnings about settings that do not represent the real machine. The warnings concern parameters out of
+    /// range, times from a table although executed code was requested, and the recording of the head motion.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());

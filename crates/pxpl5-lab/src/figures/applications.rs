@@ -176,8 +176,8 @@ mod tests {
         Experiment::new(machine, reading.pipeline(), scene).fields(40).pixels(Pixels::Off).run().expect("it runs")
     }
 
-    /// Compares whole traces. A run that has met no full store must be the run with any larger store. A run that has met
-    /// one must be able to differ, or the flag would tell nothing.
+    /// Compares whole traces. A run that has met no full store must be the run with any larger store. A run that has
+    /// met one must be able to differ, or the flag would tell nothing.
     #[test]
     fn a_run_that_met_no_full_store_is_the_run_with_every_larger_store() {
         let (mut shared, mut differing) = (0, 0);

@@ -72,7 +72,7 @@ impl Reading {
     };
 
     /// The rules in the text of TR94: a renderer stores its finished region and continues with the next region. The
-    /// theoretical latencies in TR94 (figures 3 and 5) assume this interpretation.
+    /// theoretical latencies in TR94 (rows 3 and 5 of ACCURACY.md) assume this interpretation.
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
     /// Returns the interpretations that differ from this interpretation in the answer to exactly one question.
