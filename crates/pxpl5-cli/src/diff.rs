@@ -34,7 +34,6 @@ pub(crate) struct DiffArgs {
     json: bool,
 }
 
-/// Difference between two pictures of the same file name.
 #[derive(Debug)]
 struct PictureDifference {
     name: String,

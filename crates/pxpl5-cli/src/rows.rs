@@ -13,7 +13,6 @@ const COMPARISON_FILE: &str = "comparison.json";
 
 pub(crate) type Row = Vec<(String, Value)>;
 
-/// The kind of a results file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RowsKind {
     Sweep,
@@ -22,7 +21,6 @@ pub(crate) enum RowsKind {
     Comparison,
 }
 
-/// All rows of a results folder.
 #[derive(Debug)]
 pub(crate) struct ResultRows {
     pub(crate) kind: RowsKind,
@@ -72,7 +70,6 @@ pub(crate) fn folder_of(results: &Path) -> &Path {
     folder.map_or(results, |folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
 }
 
-/// Returns the value with this name in a row.
 pub(crate) fn value<'a>(row: &'a Row, name: &str) -> Option<&'a Value> {
     row.iter().find(|(key, _)| key == name).map(|(_, value)| value)
 }

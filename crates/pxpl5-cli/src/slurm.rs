@@ -99,7 +99,6 @@ impl Sample {
         }
     }
 
-    /// Returns the estimated cost of the whole sweep on a number of threads.
     fn whole(self, threads: usize) -> Estimate {
         let threads = threads.max(1) as f64;
         Estimate { bytes: self.most_bytes * threads, seconds: self.mean_s * self.points as f64 / threads }

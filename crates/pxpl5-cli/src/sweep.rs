@@ -104,7 +104,6 @@ pub(crate) struct SweepCommand {
     pub(crate) verb: &'static str,
     /// Number of points in parallel.
     pub(crate) parallel: usize,
-    /// Value of the option --threads.
     pub(crate) threads: Option<u64>,
 }
 

@@ -152,7 +152,6 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     Ok(Figures { rows, of_code, intervals, families, groups, readings, application_times: application_times? })
 }
 
-/// Measures one figure under common settings (`bench`) and returns its row.
 fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, FigureError> {
     match bench.measure(figure.id) {
         Ok(measured) => Ok(figure.row(measured)),

@@ -48,7 +48,6 @@ pub struct CriticalPath {
 /// still has all records of its last 24 pictures.
 pub const PICTURES_FOLLOWED: usize = 24;
 
-/// Largest number of waits of a chain that are printed.
 const LINKS_PRINTED: usize = 16;
 
 impl CriticalPath {

@@ -368,7 +368,6 @@ struct Pixel {
     light: Time,
 }
 
-/// Errors collected so far.
 #[derive(Debug)]
 struct Collected {
     grid: [Distribution; 2],

@@ -48,7 +48,6 @@ pub(crate) struct Device {
     pub(crate) has_depth: bool,
 }
 
-/// Sums from which an [`EyeReport`] is computed.
 #[derive(Debug)]
 pub(crate) struct EyeSum {
     smear: Option<Distribution>,

@@ -46,7 +46,6 @@ impl StreamingObserver for HeadSum {
     }
 }
 
-/// Results of a [`HeadSum`].
 #[derive(Clone, Debug)]
 pub(crate) struct HeadResults {
     pub(crate) end_to_end: Budget,

@@ -56,7 +56,6 @@ const fn ending(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-/// Writes the warning in one line.
 impl fmt::Display for TooHeavy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { due, not_shown, triangles, advice, .. } = self;

@@ -26,7 +26,6 @@ impl Step {
     }
 }
 
-/// One stage of a picture's work on one board.
 #[derive(Clone, Copy, Debug)]
 struct StageWork {
     node: NodeId,

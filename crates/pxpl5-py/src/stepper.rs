@@ -28,7 +28,6 @@ pub(crate) struct MachineThread {
 }
 
 impl MachineThread {
-    /// Starts a thread and begins the run on it.
     pub(crate) fn start(
         py: Python<'_>,
         experiment: pxpl5::Experiment,
@@ -81,7 +80,6 @@ impl MachineThread {
         found.ok_or_else(|| failed_run("the run is finished: expected a stepper before finish()"))
     }
 
-    /// Runs the machine to the end of the experiment and returns the outcome.
     pub(crate) fn finish(&self, py: Python<'_>) -> PyResult<Result<pxpl5::Outcome, Box<ExperimentError>>> {
         let found = self.ask(py, |stepper, _| stepper.take().map(|stepper| stepper.finish().map_err(Box::new)))?;
         found.ok_or_else(|| failed_run("the run is finished: expected a stepper before finish()"))

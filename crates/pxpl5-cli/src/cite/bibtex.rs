@@ -5,7 +5,6 @@ use super::{AUTHOR, REPOSITORY, TITLE};
 use crate::version::VERSION;
 use std::fmt::Write;
 
-/// Returns the entries of the software and of all papers.
 pub(super) fn entries() -> String {
     let software = [
         ("author", format!("{{{AUTHOR}}}")),

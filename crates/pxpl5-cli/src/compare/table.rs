@@ -178,7 +178,6 @@ fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
     format!("{:<NAME$}{cells}\n", name(comparison, row))
 }
 
-/// Returns the table of the contributions of causes to the error.
 fn causes(comparison: &Comparison) -> String {
     let mut text = format!("\n{:<NAME$}", "error by cause, px");
     for cause in Cause::ALL {

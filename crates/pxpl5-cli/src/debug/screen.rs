@@ -9,7 +9,6 @@ use ratatui::widgets::{Block, Paragraph};
 use std::io;
 use std::time::Duration;
 
-/// Input line, output log and history of the debugger's screen.
 #[derive(Default)]
 struct ScreenState {
     /// Lines of output, oldest first.

@@ -188,7 +188,6 @@ pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str)
     })
 }
 
-/// Returns the labels at an address of a board's code.
 pub(super) fn labels(board: &GpBoard, at: u32) -> Vec<String> {
     let programs = programs_of(board);
     let labels = programs.iter().flat_map(|program| program.labels.clone());

@@ -24,7 +24,6 @@ struct Span {
     words: Vec<u32>,
 }
 
-/// A finished execution of an i860 program, with the data of its report.
 struct Run<'a> {
     program: &'a Program,
     cpu: Cpu,

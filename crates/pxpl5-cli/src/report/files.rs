@@ -57,7 +57,6 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// Returns the names of the files that the manifest lists.
     pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         self.manifest.iter().flat_map(Manifest::names)
     }

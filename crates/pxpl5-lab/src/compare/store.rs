@@ -34,7 +34,6 @@ pub(super) struct Header {
     pub(super) schema: String,
     /// Version of the program that wrote the rows.
     pub(super) version: String,
-    /// Names of all rows of the comparison.
     pub(super) rows: Vec<String>,
     /// Keys and options with their values, and the hashes of the files that the values name.
     pub(super) settings: BTreeMap<String, String>,

@@ -70,7 +70,6 @@ type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 /// The cached values, by key. A key is added when its value is first requested.
 type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 
-/// The cache of scenes, loads, measurements and results.
 #[derive(Debug, Default)]
 pub(crate) struct Applications {
     scenes: Places<Key, Scene>,

@@ -31,7 +31,6 @@ pub(super) struct Measurement {
     pub(super) moved_by: &'static [&'static str],
 }
 
-/// A topic, with the experiments of its figures.
 pub(super) struct Topic {
     pub(super) title: &'static str,
     pub(super) about: &'static str,
