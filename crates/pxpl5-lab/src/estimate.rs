@@ -196,13 +196,13 @@ impl RunWork {
         WORD_S * ((self.block * self.block) as f64 + BLOCK_WORDS)
     }
 
-    /// Estimates memory and time by the formulas in the module's documentation.
+    /// Estimates memory and time of the experiment by the formulas in the documentation of [`crate::estimate`].
     #[must_use]
     pub fn estimate(&self) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() }
     }
 
-    /// Estimates the peak memory in bytes.
+    /// Estimates the peak memory of the experiment in bytes.
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
@@ -218,7 +218,7 @@ impl RunWork {
         BASE + pictures + GP * self.gps as f64 + lists + kept + errors
     }
 
-    /// Estimates the run time in seconds on one idle core.
+    /// Estimates the run time of the experiment in seconds on one idle core.
     #[must_use]
     pub fn core_seconds(&self) -> f64 {
         let (fields, eyes, primitives) = (self.fields as f64, self.eyes as f64, self.primitives as f64);

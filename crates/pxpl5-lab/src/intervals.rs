@@ -90,7 +90,8 @@ impl Interval {
         [low.min(self.readings[0]), high.max(self.readings[1])]
     }
 
-    /// Returns the minimum and maximum of the figure over all parameters, without other interpretations.
+    /// Returns the minimum and maximum of the figure while only the parameters vary. The interpretation of the papers
+    /// stays the same.
     #[must_use]
     pub const fn of_parameters(&self) -> [f64; 2] {
         [self.one_at_a_time[0].min(self.joint[0]), self.one_at_a_time[1].max(self.joint[1])]

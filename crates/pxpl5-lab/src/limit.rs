@@ -47,7 +47,8 @@ pub struct LimitQuery {
     pub level: Level,
 }
 
-/// A model that is decimated evenly to each number of triangles. The search stops at the model's own number.
+/// A scene whose triangles are reduced evenly to each number that a search tries. The largest number is the scene's own
+/// number of triangles.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Settings of the model's scene. The search ignores the number of triangles in these settings.

@@ -110,7 +110,7 @@ impl Manifest {
         }
     }
 
-    /// Returns the name of the command that wrote the files.
+    /// Returns the name of the command that wrote the files of the manifest.
     #[must_use]
     pub fn command(&self) -> &str {
         &self.command

@@ -83,7 +83,7 @@ impl PipelineFigure {
         Ok(plan.experiment(plan.load_scene()?).run()?)
     }
 
-    /// Returns the title above the drawing.
+    /// Returns the title of the diagram, which stands above the drawing.
     #[must_use]
     pub fn title(&self) -> String {
         format!("{} ({})", self.shows, self.source)

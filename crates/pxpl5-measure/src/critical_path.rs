@@ -40,7 +40,7 @@ pub struct CriticalPath {
     pub parts: Vec<PathPart>,
     /// The wait with the largest share, as a sentence.
     pub limited_by: String,
-    /// Waits of the last followed picture as text. The first wait ends at the screen, and each other wait is earlier.
+    /// Waits of the last followed picture as text, from the screen back to the start of TRANSFORM.
     pub chain: Vec<String>,
 }
 

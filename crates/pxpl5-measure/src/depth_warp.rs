@@ -25,7 +25,8 @@ pub struct DepthPicture {
 }
 
 impl DepthPicture {
-    /// Creates a picture from the depth of each pixel, in metres along the axis of the view.
+    /// Creates the depths of a picture. `depth` returns the depth of the pixel (x, y), in metres along the axis of the
+    /// view.
     #[must_use]
     pub fn from_fn(width: u32, height: u32, depth: impl Fn(u32, u32) -> f32) -> Self {
         let depth = &depth;

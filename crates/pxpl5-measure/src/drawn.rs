@@ -22,7 +22,7 @@ impl Moment {
     }
 }
 
-/// The source of a displayed pixel.
+/// The pose or the poses for which a displayed pixel was drawn.
 #[derive(Clone, Debug)]
 pub(crate) enum Drawn {
     View(Moment),

@@ -62,13 +62,13 @@ pub struct PixelErrors {
     pub before: u64,
     /// Errors of each field, in the order of time.
     ///
-    /// A run that keeps only statistics has the first [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields here.
+    /// If a run keeps only statistics, the list has only its first [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields.
     #[serde(skip)]
     pub by_field: Vec<FieldMisregistration>,
     /// Error of each evaluated pixel, in pixels.
     ///
-    /// A run that keeps only statistics has the first 20,971 fields here. Percentiles of longer runs have a relative
-    /// error of at most 1/2048.
+    /// If a run keeps only statistics, the list has only the pixels of its first 20,971 fields. Percentiles of longer
+    /// runs have a relative error of at most 1/2048.
     #[serde(skip)]
     pub all_px: Vec<f64>,
 }

@@ -63,7 +63,7 @@ fn evaluated(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (Pi
 }
 
 impl EyeReport {
-    /// Evaluates a run with a head in the display mode `showing`.
+    /// Returns the report of a run with a head, for the display mode `showing`.
     ///
     /// Returns `None` for a run without a head, and for a display without persistence and without reprojection.
     #[must_use]

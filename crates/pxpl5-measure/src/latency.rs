@@ -21,7 +21,7 @@ pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStati
     named.collect()
 }
 
-/// Statistics of one part of the latency.
+/// One part of the latency of pictures, with its statistics.
 #[derive(Clone, PartialEq, serde::Serialize)]
 pub struct LatencyPartStatistics {
     /// Name of the part, as in [`LATENCY_PARTS`].

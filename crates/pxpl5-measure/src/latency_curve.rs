@@ -14,7 +14,8 @@ pub struct LatencyCurve {
 }
 
 impl LatencyCurve {
-    /// Computes the curve over `seconds`. At time t the display shows the head's pose at t - `latency_ms`.
+    /// Computes the curve for the first `seconds` seconds of `motion`. At time t the display shows the head's pose at t
+    /// - `latency_ms`.
     ///
     /// The error is the displacement of a point `distance_m` metres ahead of the head.
     #[must_use]
@@ -29,7 +30,7 @@ impl LatencyCurve {
         Self { latency_ms, points: points.collect() }
     }
 
-    /// Returns the mean error in pixels.
+    /// Returns the mean of the errors at all points of the curve, in pixels.
     #[must_use]
     pub fn mean_px(&self) -> f64 {
         self.points.iter().map(|p| p.1).sum::<f64>() / self.points.len().max(1) as f64

@@ -75,8 +75,8 @@ impl<'a> PictureMover<'a> {
         (0..width).step_by(length as usize).map(move |x| x..(x + length).min(width))
     }
 
-    /// Writes the moved rows of a field by depth, if the field shows one picture of one pose. Returns false without
-    /// writing if the field shows several pictures, or if a row has several poses.
+    /// Writes the rows of a field, moved by the depths of their pixels, if the field shows one picture of one pose.
+    /// Returns false without writing if the field shows several pictures, or if a row has several poses.
     fn move_whole_rows(
         &self,
         reprojector: &Reprojector,

@@ -113,8 +113,8 @@ impl<'a> RasterOffsets<'a> {
 
     /// Returns the raster offset in one display period.
     ///
-    /// Returns `None` if nothing is shown, or if the picture was not drawn for a single pose. Also returns `None` if
-    /// another device moves pictures.
+    /// Returns `None` if nothing is shown, or if the picture was not drawn for a single pose. Also returns `None` if a
+    /// device moves pictures to the newest pose instead.
     #[must_use]
     pub fn field(&self, field: PeriodNumber) -> Option<&RasterOffset> {
         let MovedBy::Offsets(offsets) = &self.moved_by else { return None };

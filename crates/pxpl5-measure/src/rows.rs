@@ -1,4 +1,4 @@
-//! Rows of a picture that a display period lights: all rows, or those of one field.
+//! Rows of a picture that a display period lights: all rows, or the rows of one field.
 
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;

@@ -24,7 +24,7 @@ pub struct TooHeavy {
 }
 
 impl TooHeavy {
-    /// Returns the warning for an experiment, or `None` if the load was acceptable.
+    /// Returns the warning that the load of an experiment was too heavy, or `None` if the load was acceptable.
     #[must_use]
     pub fn of(experiment: &Experiment, due: &DuePictures) -> Option<Self> {
         if !due.is_too_heavy() {

@@ -86,7 +86,8 @@ enum At {
     Begin,
 }
 
-/// Steps found so far, from the end of the latency backwards. Each step begins where the step before it in time ends.
+/// Steps found so far, from the end of the latency backwards. Each step ends at the instant at which the step before it
+/// in the list begins.
 struct Way {
     steps: Vec<Step>,
     cursor: Time,

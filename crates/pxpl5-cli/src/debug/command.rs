@@ -36,7 +36,7 @@ pub(super) enum Command {
     Quit,
 }
 
-/// The unit of a `step` command.
+/// The length of a step of the debugger's command `step`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepOf {
     Event,

@@ -22,7 +22,7 @@ impl IntervalMethod {
     /// All methods.
     pub const ALL: [Self; 4] = [Self::StudentTOfLogarithm, Self::StudentT, Self::MovingBlockBootstrap, Self::None];
 
-    /// Returns the method in words, for tables.
+    /// Returns the name of the method in words, for tables.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {

@@ -309,7 +309,7 @@ impl Plan {
         self.out_of_range().iter().map(Parameter::warning).chain(of_table).chain(of_head).collect()
     }
 
-    /// Returns the name of the level of modelling.
+    /// Returns the name of the experiment's level of modelling.
     #[must_use]
     pub fn level_name(&self) -> String {
         self.level.name().to_owned()

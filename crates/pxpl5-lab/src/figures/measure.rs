@@ -78,7 +78,8 @@ impl Bench {
         Self { seeds, frames, ..self }
     }
 
-    /// Returns the same settings with primitive times of executed code. Each preset gets the times of its own code.
+    /// Returns the same settings, but with times per triangle and sphere that were measured in executed code. Each
+    /// preset gets the times of its own code.
     #[must_use]
     pub fn with_times_of_code(mut self) -> Self {
         // Each preset runs its own code, so each has its own times.
@@ -169,7 +170,7 @@ impl Bench {
         self.photodiode_line() == other.photodiode_line() && PRESETS.iter().all(is_same)
     }
 
-    /// Returns the same settings with another interpretation of the papers.
+    /// Returns these settings of measurements with another interpretation of the papers.
     #[must_use]
     pub fn with(&self, reading: Reading) -> Self {
         Self { reading, ..self.clone() }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// Result of a figure's experiment.
+/// Result of the experiment that simulates a published figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigureValue {
     /// Value of the figure, in the figure's unit.

@@ -37,7 +37,7 @@ impl Values {
         (step > 0.0 && step.is_finite()).then_some(Self { from, step, count: STEPS + 1 })
     }
 
-    /// Returns the value with the index `number`, counted from 0.
+    /// Returns the value number `number` that a search can try, counted from 0.
     #[must_use]
     pub fn value(&self, number: u64) -> f64 {
         self.from + self.step * number as f64

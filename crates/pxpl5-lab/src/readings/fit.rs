@@ -128,7 +128,7 @@ impl Fit {
         })
     }
 
-    /// Returns the mean of the absolute errors in percent, without the figure `id`.
+    /// Returns the mean of the absolute errors in percent over all figures except the figure `id`.
     #[must_use]
     pub fn mean_error_without(&self, id: &str) -> f64 {
         mean_without(&self.figures, Some(id))

@@ -40,7 +40,7 @@ pub struct Header {
 pub struct AxisRecord {
     /// Keys of the experiment file that change together.
     pub paths: Vec<String>,
-    /// Values of the keys at each step.
+    /// Values of the keys at each step of the axis.
     #[serde(flatten)]
     pub steps: Steps,
 }
