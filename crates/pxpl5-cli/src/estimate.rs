@@ -94,7 +94,8 @@ pub(crate) fn primitives(scene: &Scene) -> u64 {
 }
 
 impl VolumeWork {
-    /// Returns the work to compute a volume with valid settings, drawn by `threads` threads.
+    /// Returns the quantities that determine the cost of a volume. The settings must be valid, and `threads` threads
+    /// draw the volume.
     pub(crate) fn of(settings: &VolumeSettings, scene: &Scene, threads: usize) -> Self {
         Self {
             slices: settings.display.slices,

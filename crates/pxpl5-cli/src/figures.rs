@@ -67,7 +67,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&figures) } else { text(&figures) })
 }
 
-/// Measures and prints the chosen figures of the main table, one after the other.
+/// Measures and prints the figures `numbers` of the main table of ACCURACY.md, one after the other.
 ///
 /// # Errors
 ///

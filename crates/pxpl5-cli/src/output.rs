@@ -208,8 +208,9 @@ fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     Ok(before)
 }
 
-/// Returns the treatment of files that are derived from a results folder, such as a report page. These files are added
-/// to the folder's manifest (list of a run's files) only if they are written into the folder `results` itself.
+/// Returns the relation to the manifest for files that are derived from a results folder, such as a report page. These
+/// files are added to the folder's manifest (list of a run's files) only if they are written into the folder `results`
+/// itself.
 fn added_to(folder: &Path, results: &Path) -> Listing {
     let whole = |path: &Path| path.canonicalize().ok();
     match (whole(folder), whole(results)) {

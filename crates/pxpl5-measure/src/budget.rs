@@ -45,7 +45,7 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// Returns the mean over the pictures of several runs, each run weighted by its number of pictures.
+    /// Returns the mean stage times over the pictures of several runs, each run weighted by its number of pictures.
     #[must_use]
     pub fn pooled(budgets: impl Iterator<Item = Self>) -> Self {
         let known: Vec<Self> = budgets.filter(|budget| budget.n > 0).collect();
@@ -96,10 +96,10 @@ pub(crate) struct BudgetSum {
 }
 
 /// Number of poses that are kept in addition to the pose of the newest picture. These older poses are needed because a
-/// slow display memory shows older views than a fast display memory.
+/// display memory that is rarely drawn shows older views than a display memory that is often drawn.
 const OLDER_POSES: usize = 64;
 
-/// Poses of the head that a pipeline requested, by the numbers of their views.
+/// Head poses that a pipeline requested. The key of a pose is the number of the view that is drawn for the pose.
 pub(crate) type Poses = BTreeMap<ViewNumber, SampledPose>;
 
 pub(crate) const STAGES: usize = 6;

@@ -33,8 +33,8 @@ pub struct ReprojectionReport {
     /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was
     /// checked.
     pub empty_share: Option<f64>,
-    /// Share of the checked pixels, 0 to 1, whose content is hidden in the picture. `None` unless the device uses
-    /// depth.
+    /// Share of the checked pixels, 0 to 1, whose content is hidden by nearer objects in the picture. `None` unless the
+    /// device uses depth.
     pub disoccluded_share: Option<f64>,
 }
 
@@ -81,7 +81,7 @@ impl EyeSum {
         }
     }
 
-    /// Adds a checked pixel, for whose content the evaluation has searched the picture.
+    /// Counts a pixel whose content the evaluation has searched in the picture.
     pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
         self.looked_at += 1;
         self.beyond += u64::from(is_beyond);

@@ -48,8 +48,8 @@ impl fmt::Debug for LatencyPartStatistics {
 /// lit.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SurfaceStatistics {
-    /// Label of the surface (`left`, `right`), or `pair`. A pair lasts from the first TRANSFORM until both surfaces
-    /// reach the event.
+    /// Label of the surface (`left`, `right`), or `pair`. The latency of a pair lasts from the first TRANSFORM until
+    /// both surfaces have reached the end `until`.
     pub of: String,
     /// Name of the end of the latency: `end_of_copy`, `swap` or `light`.
     pub until: &'static str,

@@ -7,7 +7,7 @@ use tracking::view::HmdView;
 /// Error over time in the middle of the picture, caused by a constant latency. The curve has one point per NTSC field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatencyCurve {
-    /// Time from the drawn pose until the picture is lit, in milliseconds.
+    /// Time from the instant of the drawn pose until the picture is lit, in milliseconds.
     pub latency_ms: u64,
     /// Points of the curve: time in seconds and error in pixels.
     pub points: Vec<(f64, f64)>,
@@ -17,7 +17,7 @@ impl LatencyCurve {
     /// Computes the curve for the first `seconds` seconds of `motion`. At time t the display shows the head's pose at t
     /// - `latency_ms`.
     ///
-    /// The error is the displacement of a point `distance_m` metres ahead of the head.
+    /// The error is the displacement on the screen of a point `distance_m` metres ahead of the head.
     #[must_use]
     pub fn of(motion: &dyn Motion, latency_ms: u64, seconds: u64, distance_m: f64) -> Self {
         let view = HmdView::ntsc();

@@ -13,7 +13,7 @@ use pxpl5_wire::SurfaceId;
 
 /// Common measurements of an [`Outcome`].
 pub trait Measured {
-    /// Returns all results as numbers.
+    /// Returns the report of the run, which has all results as numbers with units.
     fn report(&self) -> Report;
 
     /// Returns the value of the quantity with the name `name`, one of [`QUANTITIES`](crate::QUANTITIES). Returns `None`

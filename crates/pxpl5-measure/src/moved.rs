@@ -30,7 +30,8 @@ pub(crate) enum Moved {
 /// because the pose depends on the position if parts of a picture have different poses.
 const STEPS: usize = 4;
 
-/// Returns the content of a pixel that is lit from the time `at`, after the picture has been moved to the pose `now`.
+/// Returns the content of a pixel that is lit from the time `at` on, after the picture has been moved to the pose
+/// `now`.
 pub(crate) fn moved(
     (evaluator, shown, run): (&Evaluator, &Shown, &FinalResults<'_>),
     (by, now): (Warp, &Pose),

@@ -106,8 +106,8 @@ impl<'a> PictureMover<'a> {
         true
     }
 
-    /// Returns the moment for which all pixels of a field were drawn. Returns `None` if the pixels were drawn for
-    /// different moments, or if a pixel shows no complete picture.
+    /// Returns the pose and the time for which all pixels of a field were drawn. Returns `None` if the pixels differ in
+    /// pose or time, or if a pixel shows no complete picture.
     fn only_moment(&self, screen: &RgbImage, field: PeriodNumber) -> Option<Moment> {
         let display = self.run.record.display();
         let mut only: Option<Moment> = None;

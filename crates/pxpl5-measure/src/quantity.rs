@@ -218,13 +218,13 @@ impl Measure {
         QUANTITIES.iter().filter(is_count).map(Self).collect()
     }
 
-    /// Name of the number of pictures that were due.
+    /// Name of the quantity that counts the due pictures.
     pub const DUE: &'static str = "pictures_due";
 
-    /// Name of the number of due pictures that were not shown.
+    /// Name of the quantity that counts the due pictures that were not shown.
     pub const NOT_SHOWN: &'static str = "missed_retraces";
 
-    /// Name of the number of evaluated pixels.
+    /// Name of the quantity that counts the evaluated pixels.
     pub const EVALUATED: &'static str = "error_px.n";
 
     /// Returns the name of the quantity, which includes the unit.

@@ -40,8 +40,8 @@ impl<'a> Vdrt<'a> {
         Self { estimator, display }
     }
 
-    /// Returns the raster offset of a field whose picture was drawn for the pose `drawn_for`. The calls must have
-    /// fields in ascending order.
+    /// Returns the raster offset of a field whose picture was drawn for the pose `drawn_for`. Successive calls must
+    /// have ascending fields.
     pub fn offset(&mut self, field: PeriodNumber, drawn_for: &Pose) -> RasterOffset {
         offset(&mut self.estimator, self.display, field, drawn_for)
     }

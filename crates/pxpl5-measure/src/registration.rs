@@ -61,7 +61,7 @@ impl Evaluator {
         })
     }
 
-    /// Returns the point of the scene that a drawn pixel shows.
+    /// Returns the point of the scene that the pixel at the position `place` shows.
     pub(crate) fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
@@ -182,7 +182,7 @@ impl Evaluator {
     }
 }
 
-/// Interpolates poses and times between two moments. `part` is 0 at `from` and 1 at `to`.
+/// Interpolates between the poses and times `from` and `to`. `part` is 0 at `from` and 1 at `to`.
 fn between(from: &Moment, to: &Moment, part: f64) -> Moment {
     let begin = from.objects_at.0 as f64;
     let end = to.objects_at.0 as f64;
@@ -217,7 +217,7 @@ impl<'a> Registration<'a> {
         Some(Self { evaluator: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
     }
 
-    /// Returns the error of a pixel in a field that scans the pixel's line.
+    /// Returns the error of the pixel (`x`, `y`). The field `field` must scan the line of the pixel.
     ///
     /// Returns `None` if the picture shown was not complete in time, or if its content is behind the eye.
     #[must_use]

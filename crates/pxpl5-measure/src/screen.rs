@@ -1,4 +1,4 @@
-//! The region whose pixels are on the screen at any instant, derived from the arrivals of a run.
+//! The region whose pixels are on the screen at any instant, derived from the records of arrived regions.
 
 use pxpl5_machine::Arrival;
 use pxpl5_run::{FinalResults, region_at};

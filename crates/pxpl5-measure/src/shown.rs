@@ -45,7 +45,8 @@ pub(crate) struct Shown {
     faces: Option<LatchedFaces>,
 }
 
-/// The moment for which a view was drawn, and the arrival time of the last tracker report that the host had received.
+/// The pose and time for which a view was drawn, and the arrival time of the last tracker report that the host had
+/// received.
 #[derive(Clone, Copy, Debug)]
 struct Viewed {
     known: Time,
@@ -94,7 +95,7 @@ impl Shown {
 
     /// Discards the data of pictures that no later period can show.
     ///
-    /// Views that were made after the last final period are kept, because their pictures may still arrive.
+    /// Views that were made after the last period with final results are kept, because their pictures may still arrive.
     pub(crate) fn forget(&mut self, run: &FinalResults<'_>) {
         let instant = run.record.tick(run.until);
         self.screen.discard_before(instant);

@@ -73,7 +73,8 @@ pub(crate) struct Trail<'a> {
     swaps: Vec<Time>,
 }
 
-/// Current position while a picture is followed backwards.
+/// Current position while a picture is followed backwards. The number in a variant is an index in the list `arrivals`,
+/// `drawn` or `stages`.
 #[derive(Clone, Copy, Debug)]
 enum At {
     /// At the start of a region's transfer to a display.
@@ -291,8 +292,8 @@ impl<'a> Trail<'a> {
         At::Arrival(place)
     }
 
-    /// Assigns the time of a region's transfer to resources. Time beyond the minimum for the pixels is a wait for ring
-    /// channels.
+    /// Assigns the time of a region's transfer to resources. Time beyond the minimum that the pixels need counts as a
+    /// wait for ring channels.
     fn charge_copy(&self, way: &mut Way, arrival: &Arrival, drawn: Option<usize>) {
         let begin = arrival.begins_at(self.message);
         let board = Some(self.record.ports().board(arrival.target.frame_buffer));
@@ -387,7 +388,8 @@ impl<'a> Trail<'a> {
         own.checked_sub(1).map(|before| of[before])
     }
 
-    /// Returns the part of an interval in which at least one graphics processor executed TRANSFORM for a picture.
+    /// Returns the part of the time from `from` to `to` in which at least one graphics processor executed TRANSFORM for
+    /// a picture.
     fn transform_beside(&self, picture: PictureNumber, surface: Option<SurfaceId>, from: Time, to: Time) -> Span {
         let of = self.transforms(picture, surface);
         let begin = of.iter().map(|work| work.begin).min().unwrap_or(to).max(from);

@@ -149,8 +149,8 @@ impl Motion {
         Ok(PyArray2::from_owned_array(py, poses))
     }
 
-    /// Returns the time in seconds at which the motion ends, if no run may continue after it. Returns None for a motion
-    /// without an end.
+    /// Returns the time in seconds at which the motion ends, if no run may continue after this time. Returns None for a
+    /// motion without an end.
     #[getter]
     fn ends_s(&self) -> Option<f64> {
         self.moving.ends_ps().map(seconds)

@@ -151,7 +151,7 @@ pub(crate) struct Stepper {
 }
 
 impl Stepper {
-    /// Executes a step and returns the reason for its end.
+    /// Executes a step of the run on the thread of the machine. Returns the reason for the end of the step in words.
     fn step(
         &self,
         py: Python<'_>,
@@ -229,8 +229,8 @@ impl Stepper {
         )
     }
 
-    /// Returns the state of a processor or a renderer as a dictionary. The result is None for another board, and for a
-    /// board that the machine does not have.
+    /// Returns the state of a processor or a renderer as a dictionary. The result is None for a board of any other
+    /// kind, and for a board that the machine does not have.
     ///
     /// Raises :class:`pxpl5.SettingError` for an unknown kind of board.
     fn board<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {

@@ -32,9 +32,9 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     })
 }
 
-/// Returns the instant one display period before the present instant, for the page's step back. The result has the same
-/// distance from the beginning of its period as the present instant. Within the first period the result is time zero,
-/// and at time zero the result is `None`.
+/// Returns the target of the page's step backwards, which lies one display period before the present instant. Both
+/// instants have the same distance from the beginning of their periods. Within the first period, the target is time
+/// zero. Returns `None` at time zero.
 fn back(stepper: &Stepper) -> Option<Time> {
     let (now, period) = (stepper.now(), stepper.period());
     let tick = |period| stepper.record().tick(period);
@@ -50,8 +50,8 @@ pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
 }
 
-/// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1.
-/// `utilisation` is null at time zero, and `path` is null before the first complete picture.
+/// Returns, as JSON, the share of time (0 to 1) for which each kind of board was busy up to now, and the waits of the
+/// last pictures. `utilisation` is null at time zero, and `path` is null before the first complete picture.
 pub(crate) fn limits(stepper: &Stepper) -> Value {
     let path = CriticalPath::so_far(&stepper.so_far());
     let path = path.map(|path| {

@@ -35,7 +35,7 @@ fn of(work: &Work) -> String {
     entry(kind, work.key, &fields)
 }
 
-/// Protects the capital letters of a title, which styles of bibliographies would change.
+/// Protects the capital letters of a title, because bibliography styles change capital letters to small letters.
 fn protected(title: &str) -> String {
     format!("{{{title}}}")
 }

@@ -1,4 +1,5 @@
-//! Text views of the state of a run, shown on the debugger's screen and printed by its scripts.
+//! Text views of the state of a run. The debugger shows the views on its screen, and scripts of the debugger print
+//! them.
 
 use super::words::address;
 use i860::Program;

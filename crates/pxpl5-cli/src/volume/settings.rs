@@ -165,7 +165,7 @@ pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, Cli
     Ok(scene_choice(name, triangles).load()?)
 }
 
-/// Returns the choice of a scene that is scaled to fit into the display.
+/// Returns the settings of a scene that is scaled to fit into the display. `name` is a built-in scene or a file.
 pub(super) fn scene_choice(name: &str, triangles: Option<u64>) -> SceneChoice {
     SceneChoice {
         name: name.to_owned(),

@@ -82,7 +82,8 @@ struct VolumeSweep {
 }
 
 impl VolumeSweep {
-    /// Reads a file. `sets` are settings of the command line, which override settings of the file.
+    /// Reads an experiment file with a sweep of volumes. `sets` are settings of the command line, which override
+    /// settings of the file.
     fn load(path: &Path, sets: &[String], threads: Threads, budget: BudgetArgs) -> Result<Self, CliError> {
         let place = path.display().to_string();
         let bytes =
