@@ -67,9 +67,9 @@ pub enum StudyError {
         path: String,
         /// First key or option that differs.
         key: String,
-        /// Value of this comparison.
+        /// Value of the differing key in this comparison.
         expected: String,
-        /// Value in the file.
+        /// Value of the differing key in the file.
         found: String,
     },
     /// The folder holds rows of an interrupted comparison, and the user did not allow a resume.

@@ -108,7 +108,7 @@ const BLOCK_S: f64 = 5.6e-6;
 const LOAD_S: f64 = 2.8e-5;
 /// Seconds to simulate one primitive of a picture as i860 code. Assumed, from the speeds in the README.
 const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
-/// Number of simulations of an experiment with a tracked head: a dry run, which measures when head poses are seen, and
+/// Number of simulations of an experiment with a tracked head: a dry run, which measures the prediction interval, and
 /// the run itself.
 const RUNS_OF_HEAD: f64 = 2.0;
 /// Seconds to evaluate the pixel errors of a field.

@@ -64,7 +64,7 @@ pub struct Figures {
     pub rows: Vec<FigureRow>,
     /// Rows of the main table, measured with the times of executed i860 code, without intervals.
     pub of_code: Vec<FigureRow>,
-    /// Effects of the unpublished parameters on each figure. Figures that depend only on scenes are left out.
+    /// Interval of each figure while the unpublished parameters vary. Figures that depend only on scenes are left out.
     pub intervals: Vec<Interval>,
     /// Figures of papers about other systems than Pixel-Planes 5.
     pub families: Vec<FigureFamily>,

@@ -14,7 +14,8 @@ use tracking::motion::{
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Maximum speed of the motion `pan` in degrees per second, well above the peak rate of a head, 370.
+/// Maximum speed of the motion `pan` in degrees per second. The peak rate of a human head is far lower, 370 degrees per
+/// second.
 const FASTEST_PAN: f64 = 10_000.0;
 
 /// Forms of all motions that [`motion`] and [`walk`] accept, for help texts and errors.

@@ -99,7 +99,7 @@ impl Interval {
 }
 
 /// Times per triangle in nanoseconds of the machines for Slats. The times were fitted to the largest numbers of
-/// triangles in the papers (rows 12 and 14 of ACCURACY.md). Any time within its range reproduces the figure exactly.
+/// triangles in the papers (rows 12 and 14 of ACCURACY.md). Any time within the range reproduces the figure exactly.
 const FITTED: [(&str, u64, (u64, u64)); 2] =
     [("slats:gp.triangle_ns", 30_000, (29_800, 30_100)), ("slats-1995:gp.triangle_ns", 55_800, (55_400, 56_300))];
 
@@ -188,8 +188,8 @@ fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     Some(interval(id, nominal, &ends, vec![nominal], &variations))
 }
 
-/// Returns the values of a figure at both ends of each range, one parameter at a time. An experiment without a result
-/// gets the value `nominal`.
+/// Returns the values of a figure at both ends of each parameter's range, while all other parameters keep their
+/// presets. An experiment without a result gets the value `nominal`.
 fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: f64) -> Vec<f64> {
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     crate::parallel::map(&ends, |(v, value)| {
@@ -295,8 +295,7 @@ fn effect(v: &Variation, ends: [f64; 2], nominal: f64) -> Effect {
 }
 
 impl Effect {
-    /// Returns the largest relative change of a figure that a parameter causes, compared with the figure's nominal
-    /// value.
+    /// Returns the largest change of a figure that a parameter causes, relative to the figure's value for the presets.
     fn reach(&self, nominal: f64) -> f64 {
         bounds(self.ends.iter().map(|end| (end / nominal - 1.0).abs()))[1]
     }

@@ -20,8 +20,8 @@ pub struct PipelineFigure {
 }
 
 /// The papers' diagrams of pipelines. The papers name no scenes. This project chose scenes for which the durations of
-/// the stages have the published ratios. The diagram "figure 4" also needs a chosen number of triangles and time per
-/// triangle. TRANSFORM, RENDER and COPY then take 15.6 ms each, as in row 5 of ACCURACY.md.
+/// the stages have the published ratios. For TR94's figure 4, this project also chose the number of triangles and the
+/// time per triangle. TRANSFORM, RENDER and COPY then take 15.6 ms each, as in row 5 of ACCURACY.md.
 ///
 /// TR94's figures 3 and 4 show theory. Like rows 3 and 5 of ACCURACY.md, both figures follow the rules in the text of
 /// TR94. A renderer with a finished region continues with the next region (`finished = "store"`). By default renderers

@@ -42,7 +42,7 @@ pub struct Rig {
     pub tracker: TrackerConfig,
     /// Seed of the tracker's noise.
     pub seed: u64,
-    /// Number of passes of the pendulum through its low point to measure, at least 2.
+    /// Number of measured passes of the pendulum through its low point, at least 2.
     pub passes: usize,
 }
 

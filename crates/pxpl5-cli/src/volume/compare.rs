@@ -183,8 +183,9 @@ fn laid_out<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> Strin
     padded.collect::<String>().trim_end().to_owned()
 }
 
-/// Returns a chart of brightness: lit pixels per pixel of radius. The chart has one curve for each clip (way to cut the
-/// scene into slices) that is projected along the normal.
+/// Returns a chart of the number of lit pixels over the distance from the axis. The number is divided by the width of a
+/// ring in pixels. The chart has one curve for each clip (way to cut the scene into slices), projected along the
+/// normal.
 fn brightness(comparison: &VolumeComparison) -> String {
     let axes = ChartAxes {
         title: format!("Lit pixels over radius: {}, along the normal", comparison.scene),

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use tracking::predict::PredictorKind;
 
-/// Errors of position on the screen, computed from the runs of all seeds.
+/// Pixel errors of a comparison row, over the runs of all seeds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ErrorSpread {
     /// Mean distance of a pixel's content from its ideal position, in pixels.

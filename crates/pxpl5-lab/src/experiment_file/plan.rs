@@ -265,7 +265,7 @@ const CODES: [(&str, Option<CodeVersion>); 4] = [
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
 
-/// Names of the sources of the times of primitives: the papers (false) or executed code (true).
+/// Names of the two sources for times of primitives: the papers (false) or executed code (true).
 const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 impl PartialEq for Plan {

@@ -1,5 +1,5 @@
-//! Figures of papers about systems other than Pixel-Planes 5. These figures follow the figures of Pixel-Planes 5
-//! in the document.
+//! Figures of papers about systems other than Pixel-Planes 5. In ACCURACY.md, these figures follow the figures of
+//! Pixel-Planes 5.
 
 use super::measured::{Result, scene_named};
 use super::{Bench, FigureError};

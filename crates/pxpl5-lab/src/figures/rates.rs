@@ -156,7 +156,7 @@ fn of_boards() -> Vec<Measurement> {
     ]
 }
 
-/// Number of triangles in a frame of these experiments.
+/// Number of triangles in a frame of the experiments that measure peak rates.
 const TRIANGLES: u64 = 40_000;
 
 /// Number of display fields in a run, enough for 15 to 20 frames.

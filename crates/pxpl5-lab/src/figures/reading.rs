@@ -6,7 +6,7 @@ use pxpl5_run::{FinishedRegions, RenderingControl, Summary, retraces};
 use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 
-/// Definition of the latency samples whose mean a paper prints.
+/// Definition of the single latencies that a paper averages for a printed latency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LatencySamples {
@@ -29,11 +29,11 @@ pub enum FieldCount {
 /// An interpretation of the papers: one answer to each question that the papers leave open about the figures of
 /// Rendering Control.
 ///
-/// The first two answers concern the figures. The other answers concern the machine and the scenes. All figures are
-/// measured with the same interpretation. No answer is chosen for a single figure.
+/// The fields `samples` and `fields` define the published latencies. All other fields concern the machine and the
+/// scenes. All figures are measured with the same interpretation. No answer is chosen for a single figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {
-    /// Definition of the latency samples whose mean a paper prints.
+    /// Definition of the single latencies that a paper averages for a printed latency.
     pub samples: LatencySamples,
     /// Definition of the unit "field" in a published latency.
     pub fields: FieldCount,

@@ -37,7 +37,7 @@ impl Values {
         (step > 0.0 && step.is_finite()).then_some(Self { from, step, count: STEPS + 1 })
     }
 
-    /// Returns the value number `number` that a search can try, counted from 0.
+    /// Returns the value with the index `number` among the values that a search can try. The index is counted from 0.
     #[must_use]
     pub fn value(&self, number: u64) -> f64 {
         self.from + self.step * number as f64
@@ -104,8 +104,8 @@ struct Trial {
 impl OverQuery {
     /// Returns the values of a setting that are tried by default.
     ///
-    /// A number of boards goes up to the number in the largest preset. Any other parameter goes through the range that
-    /// the sources of the parameter allow.
+    /// For a number of boards, the values end at the number in the largest preset. For any other parameter, the values
+    /// cover the range that the sources of the parameter allow.
     ///
     /// # Errors
     ///

@@ -86,8 +86,8 @@ impl FigureFit {
 
     /// Returns the logarithm of the likelihood of the figure's printed values.
     ///
-    /// The error of the mean has a normal distribution with three parts. These are the printed digits, the error of a
-    /// mean of 87 samples, and 2 % for the model. The logarithm of the ratio of both deviations has a normal
+    /// The error of the mean has a normal distribution. The variance has three parts: the printed digits, the error of
+    /// a mean of 87 samples, and 2 % for the model. The logarithm of the ratio of both deviations has a normal
     /// distribution with a standard deviation of 0.25.
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {

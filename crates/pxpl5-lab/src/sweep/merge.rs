@@ -61,7 +61,7 @@ fn put_times(times: &mut Replacement, path: &Path) -> Result<(), FileError> {
     lines.skip(1).try_for_each(|line| times.put(format!("{line}\n").as_bytes()))
 }
 
-/// Formats a list of numbers as ranges, at most ten.
+/// Formats a list of numbers as at most ten ranges.
 fn ranges(numbers: &[u64]) -> String {
     let mut ranges: Vec<(u64, u64)> = Vec::new();
     for number in numbers {
