@@ -256,9 +256,9 @@ impl Photodiode {
         self.samples.push((at.0, is_light));
     }
 
-    /// Returns the sample of two periods ago if the screen cannot have changed since then. In this case the picture
-    /// need not be read again. The screen does not change while the ring carries no message. Two periods ago, the
-    /// display lit the same line. The state of the ring is recorded one period later than the sample of the screen.
+    /// Returns the sample of two periods ago if the ring has carried no message since then. In this case, the screen
+    /// cannot have changed, so that the picture need not be read again. The display lights each line in every second
+    /// period. The state of the ring is recorded one period later than the sample of the screen.
     fn unchanged(&self) -> Option<bool> {
         let [.., before, _, _, _, now] = self.ring[..] else { return None };
         let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;
