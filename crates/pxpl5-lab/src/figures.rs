@@ -51,7 +51,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("figure {id}: {reason}")]
 pub struct FigureError {
-    /// Number of the figure.
+    /// Number of the figure in ACCURACY.md.
     pub id: String,
     /// Reason why the experiment yields no result.
     pub reason: String,

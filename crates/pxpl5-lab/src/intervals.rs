@@ -171,8 +171,8 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     intervals
 }
 
-/// Figures of a tracker combined with a pipeline. Their experiments are simulated with events, whichever level is
-/// requested.
+/// Figures of a tracker combined with a pipeline. Their experiments are simulated with events, also at the analytic
+/// level.
 const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 
 /// Paths of the machine parameters without a source. These parameters vary for figures that need a simulation with

@@ -16,7 +16,7 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    /// Returns true if two views, drawn for the moments `self` and `other`, give the same picture.
+    /// Returns true if two views with the poses and times `self` and `other` give the same picture.
     pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
         self.pose == other.pose && self.objects_at == other.objects_at
     }

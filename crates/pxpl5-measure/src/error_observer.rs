@@ -94,8 +94,7 @@ enum Content {
     Ideal(Estimator),
     /// A device moves pictures to the newest pose of the head.
     Reprojected(Reprojector),
-    /// A video of the real world is delayed with the pictures. Video and pictures show the pose at which the head was
-    /// measured.
+    /// A video of the real world is delayed with the pictures. Video and pictures show the measured pose of the head.
     DelayedVideo,
 }
 

@@ -85,8 +85,8 @@ enum MovedBy<'a> {
 impl<'a> RasterOffsets<'a> {
     /// Returns the corrections for a run's pictures, or `None` if the head's display shows pictures as drawn.
     ///
-    /// Under VDRT a field has no offset if the field shows no picture, or if the picture was not drawn for a single
-    /// pose.
+    /// If the display shifts the raster (VDRT), some fields have no offset: fields without a picture, and fields whose
+    /// picture was drawn for several poses.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let head = outcome.head()?;

@@ -321,7 +321,7 @@ impl Plan {
         self.machine.displays.first().map_or("", |display| display.name())
     }
 
-    /// Returns the experiment with a loaded scene, to be executed on this computer.
+    /// Returns the experiment of this plan with its loaded scene. The experiment runs on this computer.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();

@@ -85,9 +85,9 @@ impl FigureFamily {
     }
 }
 
-/// Runs E1, which measures two latencies for growing numbers of triangles. The first is the latency of the head's
-/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control. In
-/// the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
+/// Runs experiment E1, which measures two latencies for growing numbers of triangles. The first is the latency of the
+/// head's rotation with the display that turns cube faces. The second is the latency of a picture under Rendering
+/// Control. In the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
 fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
     let mut turns = Vec::new();
     let mut drawn_ms = Vec::new();

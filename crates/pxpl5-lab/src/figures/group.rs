@@ -1,6 +1,6 @@
 //! Groups of published figures by topic: peak rates, just-in-time pixels, trackers. Each figure is measured by
-//! simulation with events, whichever level of modelling is chosen. The mean error of the main table does not include
-//! the figures of groups.
+//! simulation with events, also if the analytic level is chosen. The mean error of the main table does not include the
+//! figures of groups.
 
 use super::measured::{FigureValue, Result};
 use super::{Basis, Bench, Figure, FigureError, FigureRow};

@@ -8,7 +8,7 @@ use serde::Serialize;
 /// Agreement of one published figure with the model under one interpretation of the papers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FigureFit {
-    /// Number of the figure.
+    /// Number of the figure in ACCURACY.md.
     pub id: &'static str,
     /// Value printed in the paper, in `unit`.
     pub published: f64,
