@@ -5,7 +5,7 @@
 //! A volume needs `BASE + slices width height / 2 + SAMPLE drawn + targets width height TARGET samples + PRIMITIVE
 //! primitives` bytes:
 //!
-//! - `drawn = ROWS slices width + AREAS width height` is the number of pixels that surfaces touch.
+//! - `drawn = ROWS slices width + AREAS width height` is the number of pixels that triangles and spheres touch.
 //! - `targets` is the number of slices that all threads together draw at a time.
 //! - The bits of all slices count in full, although the operating system may allocate only pages that are written.
 //!
@@ -54,13 +54,13 @@ const PRIMITIVE: f64 = 200.0;
 /// Memory in bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one
 /// stencil bit.
 const TARGET: f64 = 3.125;
-/// Memory in bytes of a pixel that a surface covers, including the unused capacity of the list that stores covered
-/// pixels.
+/// Memory in bytes of a pixel that a triangle or sphere covers, including the unused capacity of the list that stores
+/// covered pixels.
 const SAMPLE: f64 = 12.0;
-/// Estimated number of pixels that surfaces touch in each column of a slice.
+/// Estimated number of pixels that triangles and spheres touch in each column of a slice.
 const ROWS: f64 = 2.0;
-/// Estimated number of additional pixels that surfaces touch, over all slices together, in multiples of the pixels of
-/// one slice.
+/// Estimated number of additional pixels that triangles and spheres touch, over all slices together, in multiples of
+/// the pixels of one slice.
 const AREAS: f64 = 2.0;
 /// Seconds to process one primitive for one slice.
 const SLICE_S: f64 = 30e-9;

@@ -76,7 +76,7 @@ struct Sample {
 struct Resources {
     tasks: u64,
     threads: u64,
-    /// Time limit of one task in minutes. Fields with the prefix `merge` are for the job that merges the rows.
+    /// Time limit of one task in minutes. Members with the prefix `merge` are for the job that merges the rows.
     minutes: u64,
     megabytes: u64,
     merge_minutes: u64,

@@ -92,7 +92,7 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
 }
 
 /// Measures all figures in parallel, with their intervals. `finished` is called with the number of finished steps and
-/// the number of all steps. A step is the measurement of one figure of the main table, or of one other field of
+/// the number of all steps. A step is the measurement of one figure of the main table, or of another member of
 /// [`Figures`].
 ///
 /// # Errors

@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// Size and result of one run. If no frame was shown, the fields from `frames` on are zero.
+/// Size and result of one run. If no frame was shown, the members from `frames` on are zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Point {
     /// Number of triangles and spheres in the scene.

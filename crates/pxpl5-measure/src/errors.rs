@@ -37,7 +37,7 @@ impl fmt::Debug for FieldMisregistration {
 
 /// Errors over a grid of pixels and all fields of the result window.
 ///
-/// Only pixels of pictures that were complete, in time and shown within the result window are evaluated. The fields
+/// Only pixels of pictures that were complete, in time and shown within the result window are evaluated. The members
 /// `behind`, `empty`, `incomplete` and `before` count the remaining pixels. Statistics of no pixels are NaN (null in
 /// JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -122,7 +122,7 @@ pub struct Report {
     pub utilisation: Option<Utilisation>,
     /// Chain of waits that make up the latency of the last complete pictures. `None` if no picture was complete.
     pub critical_path: Option<CriticalPath>,
-    /// Hash of all events of the run and of this report's statistics, up to the field `arp`.
+    /// Hash of all events of the run, and of the statistics of this report up to the member `arp`.
     pub trace_hash: String,
     /// Number of events that the simulation handled.
     pub events: u64,

@@ -42,8 +42,8 @@ const COMPARED: usize = 55;
 
 impl FigureFamily {
     /// Runs the experiments on address recalculation, priority rendering and region warping. E1 runs on Pixel-Planes 5,
-    /// E2 to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are only in the
-    /// document.
+    /// E2 to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are not measured
+    /// here, but stated in the document `document`.
     ///
     /// # Errors
     ///

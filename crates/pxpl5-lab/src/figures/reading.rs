@@ -29,7 +29,7 @@ pub enum FieldCount {
 /// An interpretation of the papers: one answer to each question that the papers leave open about the figures of
 /// Rendering Control.
 ///
-/// The fields `samples` and `fields` define the published latencies. All other fields concern the machine and the
+/// The members `samples` and `fields` define the published latencies. All other members concern the machine and the
 /// scenes. All figures are measured with the same interpretation. No answer is chosen for a single figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {

@@ -114,11 +114,11 @@ impl Joined {
     }
 }
 
-/// Reader of a file of rows in blocks. The file is open only while a block is read.
+/// Reader of a file of rows in pieces of [`BLOCK`] bytes or more. The file is open only while a piece is read.
 #[derive(Debug)]
 struct RowBlocks {
     path: PathBuf,
-    /// Byte position in the file at which the current block begins.
+    /// Byte position in the file at which the last piece begins.
     begin: u64,
     block: Vec<u8>,
 }
@@ -128,7 +128,7 @@ impl RowBlocks {
         Self { path, begin: 0, block: Vec::new() }
     }
 
-    /// Returns the row that begins at a byte position. Reading is fastest in the order of the file, because a block
+    /// Returns the row that begins at a byte position. Reading is fastest in the order of the file, because a piece
     /// holds many rows.
     fn row_at(&mut self, byte: u64) -> Result<SweepRow, FileError> {
         if self.line_at(byte).is_none() {
@@ -138,7 +138,7 @@ impl RowBlocks {
         serde_json::from_slice(line).map_err(io::Error::from).map_err(FileError::io(&self.path, AGAIN))
     }
 
-    /// Returns the line at a byte position, if the current block holds the complete line.
+    /// Returns the line at a byte position, if the last piece holds the complete line.
     fn line_at(&self, byte: u64) -> Option<&[u8]> {
         let begin = usize::try_from(byte.checked_sub(self.begin)?).ok()?;
         let rest = self.block.get(begin..)?;
@@ -146,8 +146,8 @@ impl RowBlocks {
         Some(&rest[..end])
     }
 
-    /// Reads the block that begins at a byte position. More blocks are added until the data contain a complete line or
-    /// the file ends.
+    /// Reads the piece that begins at a byte position. The piece is extended until it contains a complete line or the
+    /// file ends.
     fn read(&mut self, byte: u64) -> io::Result<()> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(byte))?;
