@@ -30,7 +30,7 @@ pub struct BinLayout {
     pub tolerance: f64,
 }
 
-/// The choice of the planes with which the test for each bin decides if a primitive belongs to the bin.
+/// Choice of the plane equations that decide if a primitive belongs to a bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Binning {
@@ -165,8 +165,8 @@ impl Codes {
 /// second is true if any part of the primitive lies on this side.
 ///
 /// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
-/// plane is therefore drawn by the slices on both sides, because the half-open rule may assign the triangle to either
-/// side.
+/// plane is therefore drawn by the slices on both sides, because the rule for points on a boundary may assign the
+/// triangle to either side.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {
         BinTolerance::Codes => return (least >= 0.0, most >= 0.0),

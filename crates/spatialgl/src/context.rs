@@ -89,8 +89,8 @@ pub struct TwoSidedLight {
     pub diffuse: f64,
 }
 
-/// The drawing state and the current recording of draw calls. [`DrawContext::present`] returns the recording and starts
-/// a new recording. The drawing state does not change.
+/// The drawing state, and the draw calls recorded since the last call of [`DrawContext::present`]. That function
+/// returns the recorded draw calls and does not change the drawing state.
 #[derive(Clone, Debug)]
 pub struct DrawContext {
     /// Matrix from object to world coordinates. The matrix must scale uniformly if there is a light.
@@ -166,7 +166,7 @@ impl DrawContext {
         Ok(())
     }
 
-    /// Ends the current recording of draw calls and returns the recording.
+    /// Returns the draw calls recorded so far, and starts a new list.
     #[must_use]
     pub fn present(&mut self) -> CommandBuffer {
         std::mem::take(&mut self.recording)

@@ -57,13 +57,13 @@ pub struct SliceStats {
 /// drawing.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceWork<'a> {
-    /// Recording whose primitives are drawn.
+    /// Draw calls whose primitives are drawn.
     pub commands: &'a CommandBuffer,
     pub bin: &'a Bin,
     pub coverage: Coverage,
 }
 
-/// A renderer of slices. [`SliceImage::clear`] has cleared the image in which a slice is drawn.
+/// A renderer of slices, which draws into an image that [`SliceImage::clear`] has cleared.
 pub trait SliceRenderer: Send + Sync {
     /// Draws one slice with all its passes.
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats;

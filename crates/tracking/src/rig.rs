@@ -7,8 +7,8 @@
 //! output to the step of the screen.
 //!
 //! This module has the parts outside of the emulated system: the pendulum and the oscilloscope. The module also has the
-//! host's detection of low points. The caller simulates the system and supplies the steps of the host's D/A output and
-//! the light on the screen.
+//! host's detection of low points. A program that uses this module simulates the system and supplies the steps of the
+//! host's D/A output and the light on the screen.
 
 mod detection;
 mod measurement;
@@ -28,8 +28,8 @@ use crate::tracker::TrackerModel;
 /// Greatest time without a detected low point, ps. After this time the measurement fails.
 const PATIENCE_PS: u64 = 10 * PS_PER_S;
 
-/// Number of equal parts into which half a swing is divided. Noise may make the detection of a low point early by up to
-/// one of these parts.
+/// Divisor of half a swing. Noise may make the detection of a low point early by at most half a swing divided by this
+/// number.
 const EARLY_PART: u64 = 10;
 
 /// The pendulum rig, which measures latency from outside the machine. The pendulum's pivot and the tracker's origin are

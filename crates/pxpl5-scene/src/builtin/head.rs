@@ -10,9 +10,9 @@ use crate::motion::HeadMotion;
 use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
 use crate::trig;
 
-/// Number of meridians. With 191 parallels, the head has 2 x 156 x 191 = 59,592
-/// triangles, including 156 at each pole.
+/// Number of vertices around the head. The head has 2 x 156 x 191 = 59,592 triangles, including 156 at each pole.
 const MERIDIANS: usize = 156;
+/// Number of rings of vertices between the two poles.
 const PARALLELS: usize = 191;
 
 const SKIN: Colour = [226, 178, 150];

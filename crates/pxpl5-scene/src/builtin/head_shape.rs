@@ -11,8 +11,9 @@ const fn xyz(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Centre of the left eyeball, and its radius, centimetres.
+/// Centre of the left eyeball, centimetres.
 pub(super) const EYE: DVec3 = xyz(3.15, 0.75, 6.6);
+/// Radius of both eyeballs, centimetres.
 pub(super) const EYE_RADIUS: f64 = 1.3;
 
 /// Returns the signed distance of a point from the surface of the head, centimetres. The head is symmetric in x. Near

@@ -94,7 +94,6 @@ impl FirstPass {
         wanted <= self.decimator.least_left
     }
 
-    /// Returns the number of triangles that remain.
     pub(super) const fn left(&self) -> usize {
         self.decimator.surface.left
     }

@@ -130,7 +130,6 @@ impl Surface {
         }
     }
 
-    /// Removes a triangle. `points` are the three points of the triangle.
     pub(super) fn remove(&mut self, triangle: u32, points: [u32; 3]) {
         for point in points {
             self.around[point as usize].retain(|other| *other != triangle);

@@ -161,7 +161,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds the triangles of a primitive.
+    /// Adds the triangles of a glTF primitive, which is a part of a mesh with one material.
     fn primitive(&mut self, part: &str, primitive: &Primitive, to_world: DMat4) -> Result<(), FileError> {
         let document = self.document;
         let mode = match primitive.mode {
@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
         Numbers::of(self.document, accessor, components, kinds)
     }
 
-    /// Adds a primitive that has normals: all its vertices, and the triangles between these vertices.
+    /// Adds a glTF primitive that has normals: all its vertices, and the triangles between these vertices.
     fn push_smooth(
         &mut self,
         vertices: &PrimitiveVertices<'_>,
@@ -241,8 +241,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds each triangle of a primitive without normals with three vertices of its own. The format demands that such
-    /// triangles are flat.
+    /// Adds each triangle of a glTF primitive without normals with three vertices of its own. The format demands that
+    /// such triangles are flat.
     fn push_flat(
         &mut self,
         vertices: &PrimitiveVertices<'_>,
@@ -263,7 +263,6 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds a vertex of a primitive to the model.
     fn push(&mut self, vertices: &PrimitiveVertices<'_>, vertex: usize) -> Result<(), FileError> {
         let place = vertices.place(vertex);
         if place.is_nan() || place.abs().max_element() > MAX_COORDINATE {

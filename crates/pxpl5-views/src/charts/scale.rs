@@ -51,7 +51,6 @@ impl Axis {
         }
     }
 
-    /// Returns the positions of the tick marks.
     pub(super) fn marks(&self) -> Vec<f64> {
         let (low, high) = self.ends;
         match &self.scale {
@@ -67,7 +66,6 @@ impl Axis {
         }
     }
 
-    /// Returns the label of the tick mark at a position.
     pub(super) fn label(&self, place: f64) -> String {
         match &self.scale {
             AxisScale::Decades => 10f64.powi(place as i32).to_string(),

@@ -56,7 +56,6 @@ fn stage_bar(run: &SoFar<'_>, span: &StageSpan) -> Bar {
     }
 }
 
-/// Returns true if the machine has more than one surface.
 fn has_many_surfaces(record: &Record) -> bool {
     record.surfaces().nth(1).is_some()
 }

@@ -77,7 +77,6 @@ pub(super) fn letters(bar: &Bar, surfaces: &[Surface]) -> String {
     stage.chars().chain(surface).chain(half).collect()
 }
 
-/// Returns the style sheet.
 pub(super) fn style() -> Element {
     let mut text = String::from(
         ".page{fill:#fff}.row{fill:#f5f5f5}.blank{fill:#fff}.heading{font-size:17px;font-weight:bold}\

@@ -1,6 +1,6 @@
 //! The figures of the SpatialGL paper. A [`FigureRow`] compares a number of the paper with a number that the code
-//! computes or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. A
-//! definition has no verdict.
+//! computes or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone, so no
+//! comparison is possible.
 
 use crate::perspecta::timing::PerspectaConfig;
 use crate::{
@@ -122,8 +122,8 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
     ]
 }
 
-/// Returns figures P20 and D12. P20 states how fast processors improve. D12 is the fraction of the time that the CPU
-/// will need in 18 months, if CPU and GPU need equal times today.
+/// Returns figures P20 and D12. P20 states how fast processors improve. D12 is the CPU's percentage of the total time
+/// in 18 months, if CPU and GPU take equal times today.
 fn doubling() -> Vec<Definition> {
     // In 18 months the CPU takes half of its time. A GPU that doubles every m months takes 2^(-18/m) of its time.
     let share = |months: f64| 100.0 / (1.0 + libm::exp2(1.0 - CPU_DOUBLES_MONTHS / months));

@@ -9,10 +9,11 @@ use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
-/// Length in seconds of the motion on which a filter is tuned. The first `SETTLING_S` seconds are not evaluated. Lively
-/// periods are rare, so the motion must be long. With 20 seconds, a filter tuned for 200 ms predicted 200 ms of another
-/// motion worse than a filter tuned for 50 ms.
+/// Length in seconds of the motion on which a filter is tuned. The motion must be long, because periods of fast motion
+/// are rare. After a tuning on 20 seconds of motion, a filter tuned for 200 ms predicted 200 ms of another motion worse
+/// than a filter tuned for 50 ms.
 const TRAINING_S: u64 = 100;
+/// Time at the start of the motion that is not evaluated, seconds.
 const SETTLING_S: u64 = 1;
 
 /// Greatest number of reports on which a filter is tuned: a 120 Hz tracker sends this number in `TRAINING_S`. A faster
@@ -23,11 +24,13 @@ const MOST_REPORTS: usize = 12_000;
 /// uses the next seed.
 const TRAINING_SEED: u64 = 0x7475_6e65;
 
-/// Range of the decimal logarithm in the search for the best white jerk. The search has `ROUNDS` rounds with
-/// `JERKS_A_ROUND` values each. The distance of two values in the last round is 0.2 decades or less. This distance
-/// changes the filter's time constant by 8 %, because the time constant varies with the sixth root of the jerk.
+/// Range of the decimal logarithm in which the search for the best white jerk begins.
 const JERK_DECADES: (f64, f64) = (-6.0, 6.0);
+/// Number of values that each round of the search tries. In the last round, two neighbouring values differ by a factor
+/// of 10^0.2 or less. The time constant of a filter varies with the sixth root of the jerk, so this factor changes the
+/// time constant by only 8 %.
 const JERKS_A_ROUND: usize = 13;
+/// Number of rounds of the search. The second round covers only the neighbourhood of the best value of the first round.
 const ROUNDS: usize = 2;
 
 /// Greatest number of reports between the two poses whose difference gives a velocity.

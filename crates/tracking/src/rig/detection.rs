@@ -15,7 +15,6 @@ pub enum Detection {
 }
 
 impl Detection {
-    /// Returns the greatest delay from the low point to its detection, in halves of a report interval.
     pub(super) fn greatest_delay_half_intervals(self) -> u64 {
         match self {
             Self::Crossing => 2,
