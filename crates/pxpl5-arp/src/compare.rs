@@ -7,7 +7,7 @@ use crate::tears::TearWidths;
 use pxpl5_scene::Scene;
 use serde::Serialize;
 
-/// Name and settings of each variant. A variant takes all other settings from the `plan` of [`compare`].
+/// Variants of a comparison. Each has a name, and the settings in which it differs from the plan of the comparison.
 const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
     ("full", &[("policy", "full")]),
     ("objects", &[("policy", "objects"), ("segment", "off")]),

@@ -48,8 +48,8 @@ impl Content {
     }
 }
 
-/// Returns the warp that joins a memory to the next less often drawn memory. `places` are the eye positions from which
-/// the two memories were drawn.
+/// Returns the warp that closes the gap between `memory` and the memory beyond its outer border, which is updated less
+/// often. `places` are the eye positions from which these two memories were drawn.
 pub(crate) fn warp(
     settings: &crate::settings::WalkSettings,
     dealing: &CellAssignment,

@@ -170,8 +170,9 @@ fn tinted(
 /// Background colour that is visible through tears (gaps between memories).
 const WHITE: u32 = 0x00FF_FFFF;
 
-/// Largest number of frames to try, and smallest number of frames between two tried frames.
+/// Greatest number of frames that are searched for the best view of a tear (gap between two memories).
 const TRIED: u64 = 63;
+/// Least number of frames from one searched frame to the next.
 const EVERY: u64 = 29;
 
 /// Returns the frame and orientation at which a tear (gap between two memories) shows the largest number of background

@@ -21,7 +21,7 @@ pub struct ArpReport {
     pub schema: &'static str,
     /// Number of texels along the edge of a cube face.
     pub face_texels: u64,
-    /// Event before which the display reads the head's orientation: `field`, `line` or `pixel`.
+    /// Occasions at which the display reads the head's orientation: before each `field`, `line` or `pixel`.
     pub latch: &'static str,
     /// Time from reading the orientation to displaying the pixel, in ns.
     pub pipeline_ns: f64,
@@ -47,8 +47,8 @@ pub struct ArpReport {
     /// The memory is drawn from the eye position at the start of a frame. The latency lasts from the start of this
     /// frame to the display of a pixel of the memory.
     pub translation_latency_ms: WalkLatency,
-    /// Mean difference between the displayed view and a direct rendering of the same pose, in pixels. Null if no view
-    /// was drawn.
+    /// Mean difference between the displayed view and a direct rendering of the same pose, in pixels. Always null,
+    /// because no run evaluates this difference yet.
     pub sampling_error_px: Option<f64>,
 }
 

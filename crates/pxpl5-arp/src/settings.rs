@@ -50,12 +50,11 @@ pub enum SourceKind {
     },
 }
 
-/// Distances of the near and the far plane along a face's axis, in metres.
-///
-/// Both limits are assumed. Walls are at least 1 m away from the gallery's path, which is at least 1 m / sqrt(3) along
-/// the axis of a face. The near limit is less than this distance. The far limit exceeds the size of the hall. A step of
-/// depth is 0.24 mm at 20 m.
+/// Distance of the near plane along a face's axis, in metres. Assumed: walls are at least 1 m away from the gallery's
+/// path, which is at least 1 m / sqrt(3) along the axis of a face.
 const NEAR_M: f64 = 0.1;
+/// Distance of the far plane along a face's axis, in metres. Assumed to exceed the size of the hall. At 20 m, the
+/// 24-bit depths then have steps of 0.24 mm.
 const FAR_M: f64 = 100.0;
 
 /// Settings of an experiment, without the scene and the viewer's walk.

@@ -11,7 +11,8 @@ pub enum ClipKind {
     UserPlanes,
     /// Clip by both boundary planes in the fragment program, which gives exactly the volume of the slice.
     Exact,
-    /// Clip by planes around the slice that are a fixed distance apart at the axis, in two drawing passes.
+    /// Clip by two planes whose distance grows from a fixed number of pixels at the axis to the exact thickness of the
+    /// slice at the rim. Each side of the axis has its own drawing pass.
     Tapered,
     /// Clip by both boundary planes of the slice, moved outwards.
     Parallel,

@@ -84,7 +84,7 @@ pub struct HeadStudy {
     pub scene: String,
     /// Latency of the head-mounted display, milliseconds.
     pub latency_ms: f64,
-    /// Origin of the latency: "the volume's" if both displays have the same latency, or "given".
+    /// Origin of the latency: "the volume's" if both displays have the same latency, or "given" if the user chose it.
     pub latency_is: &'static str,
     /// Latency with which the volume shows changes of the scene, in milliseconds, or `None` if no GPU drew the volume.
     pub volume_latency_ms: Option<f64>,
@@ -279,11 +279,8 @@ impl<'a> HeadComparison<'a> {
         Ok(grid(&shown, 2))
     }
 
-    /// Returns the exposure of the left eye's view at an instant, for use in all pictures.
-    ///
-    /// # Errors
-    ///
-    /// The same as [`Self::picture`].
+    /// Returns the exposure that suits the left eye's view at an instant. Exposure is the brightness of one lit pixel
+    /// of the volume, and all pictures use the same exposure.
     pub fn exposure(&self, time_ps: u64, side: u32, workers: &dyn Workers) -> Result<f64, SettingError> {
         self.look(time_ps, -1.0, side)?.exposure(self.volume, workers)
     }

@@ -27,7 +27,6 @@ impl Linear {
         self.y * y + self.c
     }
 
-    /// Returns the weighted sum of three functions.
     pub(crate) fn sum(parts: [Self; 3], times: [f64; 3]) -> Self {
         Self::of(parts[0].vector() * times[0] + parts[1].vector() * times[1] + parts[2].vector() * times[2])
     }
@@ -69,8 +68,7 @@ impl Edges {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
     pub(crate) edge: Linear,
-    /// True if points exactly on the edge count as inside. The inside of such an edge has larger x, or larger y if the
-    /// edge is horizontal.
+    /// True if points exactly on the edge count as inside. This is so for left edges and for horizontal upper edges.
     has_edge: bool,
     /// Factor that converts the constant part of a row's edge function to a number of columns.
     columns_of: f64,
@@ -93,8 +91,9 @@ impl Crossing {
 
     /// Restricts a range of columns to the columns on the inner side of this edge.
     ///
-    /// A quotient estimates the column at which the edge crosses the row. The function `takes` then determines the
-    /// exact column. The rounded value of the edge function rises or falls monotonically along a row.
+    /// A quotient estimates the column at which the edge crosses the row. The function `takes` then finds the exact
+    /// column. There is only one such column, because the rounded value of the edge function only rises or only falls
+    /// along a row.
     #[inline(always)]
     pub(crate) fn narrow(&self, row: f64, columns: Columns, range: &mut [i64; 2]) {
         // A horizontal edge accepts the whole row or nothing.

@@ -42,8 +42,9 @@ pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVe
     Ok(all.filter(|texel| composed(*texel) != one.texel(*texel)).count() as u64)
 }
 
-/// Number of frames that a renderer of [`STALLED_TRIANGLES_PER_S`] needs to draw all memories once.
+/// Number of frames after which the stalled renderer has drawn all memories once.
 const FRAMES: u64 = 200;
+/// Triangles that the stalled renderer draws per second.
 const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 
 /// Counts the pixels that differ between the pictures of an ideal renderer and of a stalled renderer, while a head at a

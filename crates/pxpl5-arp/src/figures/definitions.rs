@@ -1,5 +1,5 @@
 //! Numbers that are computed from numbers printed in the paper CPR05 (Chow, Pose and Regan, ACSC 2005). No simulation
-//! could change these results, so the results have no verdict.
+//! could change these results, so they are no evidence for the model.
 
 use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;

@@ -1,4 +1,5 @@
-//! The experiments E2 to E9 with an ideal renderer. The experiments are run once for all rows of the comparison.
+//! The experiments with an ideal renderer, numbered E2 to E9. Each experiment is run once for all rows of the
+//! comparison.
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;

@@ -1,9 +1,9 @@
-//! Interpretations of table 1 of the paper CPR05 (update rates). Each open question of the paper has several answers,
-//! which are simulated and ranked.
+//! Interpretations of table 1 of the paper CPR05 (update rates). Each question that the paper leaves open has several
+//! possible answers, which are simulated and ranked.
 //!
-//! If the hall and the path are measured in cells, the update rates depend only on the product of threshold and cell
-//! side. Therefore one number is fitted to three rates. In the results, each cell side therefore represents all pairs
-//! of threshold and cell side with the same product.
+//! In a hall and on a path that are measured in cells, the update rates depend only on the product of threshold and
+//! cell side. One number is therefore fitted to three rates. Each cell side in the results stands for all pairs of
+//! threshold and cell side with the same product.
 
 use super::fit::{RATES_HZ, policy_rates_hz, rates_hz};
 use super::gallery::gallery;
@@ -161,9 +161,11 @@ pub struct Interpretations {
     pub left_out: Vec<LeftOutRate>,
 }
 
-/// Smallest cell side to try, in metres. Each larger cell side is [`STEP`] times the next smaller side.
+/// Smallest cell side to try, in metres.
 const FIRST_SIDE_M: f64 = 1.4;
+/// Ratio of each cell side to the next smaller cell side.
 const STEP: f64 = 1.06;
+/// Number of cell sides that are tried before the search near the best side.
 const STEPS: i32 = 20;
 
 impl Tried {
@@ -257,6 +259,7 @@ fn left_out(ranked: &[RankedRules], memory: usize) -> Option<LeftOutRate> {
 
 /// Angle of a pixel of the display in degrees, averaged over a line of pixels.
 pub const PIXEL_DEG: f64 = 60.0 / 640.0;
+/// Angle of a texel of an ideal face in degrees, averaged over an edge of the face.
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
 /// A threshold of the image error, with the cell side and the tears (gaps between memories) that follow. The product of
