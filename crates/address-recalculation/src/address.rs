@@ -71,7 +71,7 @@ impl Footprint {
 pub struct AddressUnit {
     /// Size of the faces.
     pub geometry: FaceGeometry,
-    /// Number of bits of a quotient.
+    /// Number of bits of the quotients that the dividers compute.
     pub quotient_bits: u64,
     /// Number of bits of each fraction in [`Footprint::fractions`], from which the weights of the four texels are
     /// computed. With 0, the pixel shows the nearest texel without interpolation.

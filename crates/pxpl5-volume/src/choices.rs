@@ -1,4 +1,4 @@
-//! Settings that are choices with names: clips, projections, tie rules, bins, coverage.
+//! Settings that are choices with names: clips, projections, rules for points on a boundary, bins, coverage.
 
 use spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};
 

@@ -76,7 +76,7 @@ pub struct VolumeComparison {
     pub seed: u64,
     /// One row for each variant.
     pub variants: Vec<VariantRow>,
-    /// Views of the variants, in the order of `variants`, all with one exposure.
+    /// Views of the variants, in the order of `variants`. All have the same exposure (brightness of one lit pixel).
     #[serde(skip)]
     pub pictures: Vec<RgbImage>,
 }

@@ -1,6 +1,7 @@
-//! The hyperbolic clip on the plane of a triangle, as a quadratic in screen coordinates. This clip tests the product of
-//! the distances from both boundary planes of the slice, plus a bias. Hardware that evaluates quadratics can use this
-//! form, for example the renderers of Pixel-Planes 5. **Beyond the SpatialGL paper.**
+//! The hyperbolic clip as a quadratic function over the plane of a triangle, in screen coordinates. The hyperbolic clip
+//! adds a bias to the product of the distances from both boundary planes of a slice, and tests the sign of the sum.
+//! Hardware that evaluates quadratics can use this form, for example the renderers of Pixel-Planes 5. **Beyond the
+//! SpatialGL paper.**
 
 use crate::clip::HalfWedge;
 

@@ -27,8 +27,9 @@ pub enum Coverage {
     /// A primitive covers the pixels whose centres lie inside the primitive.
     #[default]
     Sampled,
-    /// The pixels of `Sampled`, plus a line of adjacent pixels along the intersection with the slice. **Beyond the
-    /// SpatialGL paper**, which calls for this coverage but states that GPUs do not offer it.
+    /// The pixels of `Sampled`, plus a line of adjacent pixels along the curve in which the primitive intersects the
+    /// plane of the slice. **Beyond the SpatialGL paper**, which calls for this coverage but states that GPUs do not
+    /// offer it.
     Connected,
 }
 

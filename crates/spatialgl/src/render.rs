@@ -58,8 +58,8 @@ pub struct VolumeConfig {
 }
 
 impl VolumeConfig {
-    /// Returns the SpatialGL paper's algorithms. The bins have a tolerance, so no fragments are lost, and Bayer's
-    /// matrix has 8 x 8 elements.
+    /// Returns settings with the algorithms of the SpatialGL paper: bins, tiles, and all slices of a turn drawn. The
+    /// bins have a tolerance, so that no fragment is lost. The dither matrix has 8 x 8 elements.
     ///
     /// # Panics
     /// Never panics, because the matrix has a valid size.

@@ -96,7 +96,7 @@ pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
 parameter_table! {
     /// The Polhemus Fastrak, a magnetic tracker.
     pub struct Fastrak {
-        /// Measurement rate of the Fastrak, shared by all receivers.
+        /// Number of measurements that the Fastrak makes per second. All receivers share these measurements.
         rate: 120, "Hz", Published, 120..=120 in 1..=10000, "PF";
         /// Time from the Fastrak's sync signal to the first character on the serial cable.
         sync_to_output: f64 = 5.5, "ms", Published, 5.5..=5.5 in 0.0..=10000.0, "PF";
@@ -172,7 +172,7 @@ parameter_table! {
 parameter_table! {
     /// The Polhemus 3Space, a magnetic tracker, above a steel floor.
     pub struct ThreeSpace {
-        /// Measurement rate of the 3Space, shared by all receivers.
+        /// Number of measurements that the 3Space makes per second. All receivers share these measurements.
         rate: 60, "Hz", Assumed, 30..=60 in 1..=10000, "usual figure of the product";
         /// Latency of the 3Space, from measurement to output.
         latency: f64 = 28.5, "ms", Assumed, 10.0..=90.0 in 0.0..=10000.0, "tens of milliseconds";

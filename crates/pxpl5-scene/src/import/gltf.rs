@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the numbers of an accessor.
+    /// Returns the numbers of a glTF accessor, which describes an array of vectors or indices.
     ///
     /// # Errors
     ///

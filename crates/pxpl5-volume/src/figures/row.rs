@@ -12,7 +12,7 @@ pub struct VolumeFigures {
     pub schema: &'static str,
     /// One row for each figure that the code computes or counts: printed figures by number, then derived figures.
     pub figures: Vec<FigureRow>,
-    /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
+    /// Inputs of the model, and numbers that follow from inputs by arithmetic alone. These numbers are not compared.
     pub definitions: Vec<Definition>,
     /// Statements of the SpatialGL paper without numbers, each with the measurements that test it.
     pub shown: Vec<ShownStatement>,

@@ -75,11 +75,11 @@ pub fn training_seed(evaluated_seed: u64) -> u64 {
 /// Finds the predictor settings with the least mean error on a motion. The predicted instant is `interval_ps` after the
 /// instant at which the reported pose was true.
 ///
-/// For a Kalman filter the search covers the white jerk: 10^-6 to 10^6, in two rounds over a grid of its logarithm. For
-/// a prediction by differences, the search covers the baseline, which is the distance (1 to 16 reports) between the two
-/// poses of a difference. Position and orientation have separate values. The predictor assumes the noise that the
-/// tracker model adds. The assumed speeds and accelerations before the first report are the root mean squares of the
-/// motion.
+/// For a Kalman filter, the search covers the assumed strength of the head's jerk: 10^-6 to 10^6, in two rounds over a
+/// grid of its logarithm. For a prediction by differences, the search covers the baseline, which is the distance (1 to
+/// 16 reports) between the two poses of a difference. Position and orientation have separate values. The predictor
+/// assumes the noise that the tracker model adds. The assumed speeds and accelerations before the first report are the
+/// root mean squares of the motion.
 ///
 /// The tuning uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
 /// tracker has no bias, metal or faults, and the seed of its noise differs from `evaluated_seed`. The same (motion,
@@ -179,7 +179,8 @@ impl TrainingData {
         Ok(sums.map(|sum| sum / (self.reports.len() - self.settled) as f64))
     }
 
-    /// Returns the settings with the best white jerks, and their mean errors in metres and degrees.
+    /// Returns the settings with the strengths of jerk that give the least errors. The second value has these mean
+    /// errors in metres and degrees.
     fn best_jerks(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut spans = [JERK_DECADES; 2];
         let mut best = [(f64::INFINITY, 0.0); 2];
@@ -201,8 +202,8 @@ impl TrainingData {
         Ok((PredictorConfig { position_jerk, orientation_jerk, ..*base }, best.map(|(error, _)| error)))
     }
 
-    /// Returns the settings with the best numbers of reports between the poses of a difference, and their mean errors
-    /// in metres and degrees.
+    /// Returns the settings with the baselines that give the least errors. A baseline is the number of reports between
+    /// the two poses of a difference. The second value has these mean errors in metres and degrees.
     fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut best = [(f64::INFINITY, 1.0); 2];
         for baseline in 1..=LONGEST_BASELINE {
@@ -224,8 +225,8 @@ fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     }
 }
 
-/// Returns the white jerk with the decimal logarithm `decades`, limited to the range that the filters of position and
-/// orientation both allow.
+/// Returns the strength of jerk with the decimal logarithm `decades`, limited to the range that the filters of position
+/// and orientation both allow.
 fn jerk(decades: f64) -> f64 {
     within("position_jerk", libm::pow(10.0, decades))
 }
