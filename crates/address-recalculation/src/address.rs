@@ -165,7 +165,7 @@ impl AddressUnit {
         [0, 1, 2].map(|i| inner * forward[i] + u * right[i] - v * up[i])
     }
 
-    /// Returns the texel that a direction, given as integers, hits. The computation is exact.
+    /// Returns the texel that a direction with integer components hits. The computation is exact.
     fn nearest(&self, direction: [i64; 3]) -> Option<TexelAddress> {
         let met = FaceHit::of(direction)?;
         let inner = i64::from(self.geometry.inner());

@@ -67,7 +67,7 @@ impl Batch {
         Self { count: 0, index: zero, right: zero, down: zero, leaves: [0; BATCH], is_left: false, met }
     }
 
-    /// Returns the upper left texels of those footprints (four texels) that lie on one face.
+    /// Returns the upper left texel of each footprint (four texels) that lies on a single face.
     pub(crate) fn inside(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.count).filter(|i| self.leaves[*i] == 0).map(|i| self.index[i])
     }

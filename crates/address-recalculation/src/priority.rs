@@ -11,10 +11,10 @@
 //!
 //! # Behaviour
 //!
-//! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than a given
-//!   angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or sphere), is
-//!   animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight can be drawn
-//!   later ([`time_until_visible_s`]).
+//! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than the
+//!   threshold angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or
+//!   sphere), is animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight
+//!   can be drawn later ([`time_until_visible_s`]).
 //! - **Objects** ([`Objects`]): each object is in the least often drawn memory that keeps its image right. Memory k is
 //!   drawn every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are shown
 //!   together.

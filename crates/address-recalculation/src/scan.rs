@@ -64,7 +64,8 @@ impl FaceScan {
         self.video.retrace(field)
     }
 
-    /// Returns the number of the field that is scanned at an instant. At a retrace, this is the field that begins.
+    /// Returns the number of the field that is scanned at an instant. At a retrace, the result is the field that
+    /// begins.
     #[must_use]
     pub const fn field_at(&self, time: Time) -> PeriodNumber {
         self.video.field_at(time)

@@ -14,8 +14,8 @@
 //! - A texel shows the triangle at the texel's middle. A face is drawn with more than 90 degrees if it has guard texels
 //!   (a margin around the inner texels). The tangent of its half angle is the number of all texels along an edge,
 //!   divided by the number of inner texels.
-//! - Triangles are not clipped. Edges and 1/w are linear functions over a face, even for corners behind the eye, where
-//!   w is the distance along the axis of the face. Parts of a triangle before the near plane or beyond the far plane
+//! - Triangles are not clipped. Let w be the distance along the axis of the face. Edges and 1/w are linear functions
+//!   over a face, even for corners behind the eye. Parts of a triangle before the near plane or beyond the far plane
 //!   are not drawn.
 //! - The depth has 24 bits and is a linear function of 1/w, rounded down. All faces and memories have the same near and
 //!   far plane, so their depths can be compared.

@@ -1,5 +1,5 @@
 //! Pictures of a viewer's walk: unfolded cube faces, views, the memory shown at each pixel, tears (gaps between
-//! memories), errors, a plan of cells, and updates.
+//! memories) and errors. Drawings show the cells from above and the updates.
 
 mod colours;
 mod faces;
@@ -114,7 +114,8 @@ pub fn of_walk(
     Ok(pictures)
 }
 
-/// Distance along the path from the eye to the point at which the eye looks, in metres, as in [`Walk`].
+/// Distance along the path from the eye to the point at which the eye looks, in metres. The distance is the same as in
+/// [`Walk`].
 const AHEAD_M: f64 = 1.5;
 
 /// Returns the orientation of a head that looks along the path. The head is `way_m` metres from the start of the path.

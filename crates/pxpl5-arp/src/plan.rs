@@ -19,7 +19,7 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-/// Paths of those settings that are choices instead of numbers.
+/// Paths of the settings that are choices, not numbers.
 const CHOICES: [&str; 10] = [
     "policy",
     "segment",
@@ -175,7 +175,7 @@ impl WalkPlan {
         self
     }
 
-    /// Returns the size and viewing angle of the display's picture. A lens table must match both.
+    /// Returns the size and viewing angle of the display's picture. A lens table must match this size and this angle.
     #[must_use]
     pub fn picture(&self) -> LensPicture {
         self.chosen.display.picture()

@@ -107,7 +107,7 @@ pub struct TearsReport {
     pub before: Option<TearWidths>,
     /// Widths of the tears in the displayed picture.
     pub after: Option<TearWidths>,
-    /// Largest angle by which warping moves any vertex in a frame, as percentiles over the frames.
+    /// Angle by which warping moves the most displaced vertex of a frame, as percentiles over the frames.
     pub stretch: Option<TearWidths>,
 }
 
@@ -168,8 +168,8 @@ fn rotation(display: &ArpConfig) -> WalkLatency {
     WalkLatency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
 }
 
-/// Returns the latency of translation in three parts: drawing the update, the wait after the update is first shown, and
-/// the scan until the pixel is displayed.
+/// Returns the latency of translation in three parts. The parts are the drawing of an update, the time for which the
+/// update has already been shown, and the scan until the pixel is displayed.
 fn translation(memory: Option<&MemoryTally>, settings: &WalkSettings) -> WalkLatency {
     let memory = memory.filter(|memory| memory.shown_frames > 0);
     let mean_ms = |frames: fn(&MemoryTally) -> u64| {

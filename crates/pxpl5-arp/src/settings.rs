@@ -50,8 +50,8 @@ pub enum SourceKind {
     },
 }
 
-/// Distance of the near plane along a face's axis, in metres. Assumed: walls are at least 1 m away from the gallery's
-/// path, which is at least 1 m / sqrt(3) along the axis of a face.
+/// Distance of the near plane along a face's axis, in metres. Assumed. Walls are at least 1 m away from the gallery's
+/// path. Along the axis of a face, the distance is at least 1 m / sqrt(3) = 0.58 m.
 const NEAR_M: f64 = 0.1;
 /// Distance of the far plane along a face's axis, in metres. Assumed to exceed the size of the hall. At 20 m, the
 /// 24-bit depths then have steps of 0.24 mm.

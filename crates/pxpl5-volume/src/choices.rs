@@ -11,8 +11,8 @@ pub enum ClipKind {
     UserPlanes,
     /// Clip by both boundary planes in the fragment program, which gives exactly the volume of the slice.
     Exact,
-    /// Clip by two planes whose distance grows from a fixed number of pixels at the axis to the exact thickness of the
-    /// slice at the rim. Each side of the axis has its own drawing pass.
+    /// Clip by two planes whose distance grows with the radius: a fixed number of pixels at the axis, and the exact
+    /// thickness of the slice at the rim. Each side of the axis has its own drawing pass.
     Tapered,
     /// Clip by both boundary planes of the slice, moved outwards.
     Parallel,
@@ -26,7 +26,7 @@ impl ClipKind {
         [Self::Prism, Self::UserPlanes, Self::Exact, Self::Tapered, Self::Parallel, Self::Hyperbolic];
 }
 
-/// One of the three projections.
+/// A projection of points near a slice onto the slice's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProjectionKind {
     /// Projection along the normal of the slice.

@@ -122,9 +122,9 @@ pub struct HeadComparison<'a> {
 
 impl Volume {
     /// Returns the latency with which the volume shows changes of the scene, in milliseconds. The latency is the
-    /// model's time for one volume, plus two mean waits. The waits are half a turn until strobe 0 (the first flash of a
-    /// turn), and then a quarter turn until the screen reaches the changed plane. Returns `None` if the volume was not
-    /// drawn by a GPU.
+    /// model's time for one volume, plus two mean waits. The first wait is half a turn until strobe 0 (the first flash
+    /// of a turn). The second wait is a quarter turn until the screen reaches the changed plane. Returns `None` if the
+    /// volume was not drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;
@@ -354,8 +354,8 @@ fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     DMat4::from_scale(DVec3::splat(pixels_per_metre)) * turn * DMat4::from_translation(-middle)
 }
 
-/// Returns azimuth and elevation of a position in degrees, as for cameras: the azimuth from +z to +x, the elevation
-/// above the horizon.
+/// Returns azimuth and elevation of a position in degrees. The azimuth runs from +z to +x, and the elevation is above
+/// the horizon.
 fn around(place: DVec3) -> [f64; 2] {
     let level = libm::hypot(place.x, place.z);
     [libm::atan2(place.x, place.z).to_degrees(), libm::atan2(place.y, level).to_degrees()]

@@ -101,7 +101,7 @@ pub struct VolumeReport {
     pub host_seconds: f64,
 }
 
-/// The cost of a volume that the renderers of Pixel-Planes 5 draw. This is an addition to the SpatialGL paper.
+/// The cost of a volume that the renderers of Pixel-Planes 5 draw. The SpatialGL paper does not have these renderers.
 #[derive(Clone, Debug, Serialize)]
 pub struct PixelPlanesReport {
     /// Counts of clocks, commands, words and sent tiles.

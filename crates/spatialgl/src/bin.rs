@@ -37,7 +37,7 @@ pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
     /// The test of a region uses only the two planes that bound the region, so a primitive gets into more bins than
-    /// with all planes. This is the first version in the SpatialGL paper.
+    /// with all planes. This test is the first version in the SpatialGL paper.
     TwoPlanes,
     /// The test of each region uses all planes of the layout.
     #[default]
@@ -165,7 +165,7 @@ impl Codes {
 /// second is true if any part of the primitive lies on this side.
 ///
 /// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
-/// plane is therefore drawn by the slices on both sides, because the rule for points on a boundary may assign the
+/// plane is therefore drawn by the slices on both sides of the plane. The rule for points on a boundary may assign the
 /// triangle to either side.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {

@@ -129,8 +129,8 @@ impl DrawContext {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the range exceeds the buffer, if a point size or line width is not above zero, or if
-    /// the matrix is not finite.
+    /// Returns a [`SettingError`] if the range exceeds the buffer, or if the matrix is not finite. A point size and a
+    /// line width must be above zero.
     pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SettingError> {
         let vertices = buffer.len();
         let Some(run) = buffer.vertices.get(range.clone()) else {

@@ -1,7 +1,6 @@
 //! The hyperbolic clip as a quadratic function over the plane of a triangle, in screen coordinates. The hyperbolic clip
-//! adds a bias to the product of the distances from both boundary planes of a slice, and tests the sign of the sum.
-//! Hardware that evaluates quadratics can use this form, for example the renderers of Pixel-Planes 5. **Beyond the
-//! SpatialGL paper.**
+//! multiplies the distances from both boundary planes of a slice, adds a bias, and tests the sign. Hardware that
+//! evaluates quadratics can use this form, for example the renderers of Pixel-Planes 5. **Beyond the SpatialGL paper.**
 
 use crate::clip::HalfWedge;
 

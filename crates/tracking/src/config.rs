@@ -143,8 +143,8 @@ parameter_table! {
         /// Constant orientation error of the Flock of Birds. Each run draws the error once from its seed. The value is
         /// the root mean square about each axis, over all seeds.
         orientation_bias: f64 = 0.5, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "Ascension data sheet";
-        /// Time from the first report of a Flock of Birds to the crash of the host, if the host's Unix kernel is
-        /// patched to receive every character at once.
+        /// Time from the first report of a Flock of Birds to the crash of the host. Only a host whose Unix kernel is
+        /// patched to receive every character at once crashes.
         crash: f64 = 1000.0, "ms", Assumed, 0.0..=600000.0, "TR94 says that it crashes, not when";
     }
 }

@@ -122,9 +122,9 @@ impl PendulumRig {
         Ok(Measurement::new(self.detection, tracker, place_ps, outside.ok_or(no_light)?, inside))
     }
 
-    /// Returns the instant of the pendulum's low point that caused a step of the host's D/A output. This is the last
-    /// low point before the step, or the next low point if noise caused an early detection. The result is correct for
-    /// tracking latencies below nine tenths of a half swing, 0.64 s.
+    /// Returns the instant of the pendulum's low point that caused a step of the host's D/A output. The result is the
+    /// last low point before the step, or the next low point if noise caused an early detection. The result is correct
+    /// for tracking latencies below nine tenths of a half swing, 0.64 s.
     fn low_point_before(&self, dac_ps: u64) -> u64 {
         let half_ps = self.half_swing_ps();
         let guess = dac_ps.saturating_add(half_ps / EARLY_PART).saturating_sub(half_ps / 2) / half_ps;

@@ -38,7 +38,7 @@ pub struct Segmentation {
 }
 
 impl Segmentation {
-    /// Cuts triangles at the planes x = i a and z = i a for all integers i, where a is the side of a cell.
+    /// Cuts triangles at the planes x = i a and z = i a for all integers i. The length a is the side of a cell.
     ///
     /// # Errors
     ///

@@ -68,7 +68,7 @@ impl Edges {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
     pub(crate) edge: Linear,
-    /// True if points exactly on the edge count as inside. This is so for left edges and for horizontal upper edges.
+    /// True for left edges and horizontal upper edges. Points exactly on such an edge count as inside.
     has_edge: bool,
     /// Factor that converts the constant part of a row's edge function to a number of columns.
     columns_of: f64,

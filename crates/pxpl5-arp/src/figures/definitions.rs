@@ -7,8 +7,8 @@ use address_recalculation::priority::{draws_per_s, saved_percent};
 use pxpl5_sim::figures::Definition;
 use pxpl5_sim::parameters::Provenance;
 
-/// Number of segments (parts of objects) in each display memory, with and without cutting objects at the borders of
-/// cells (table 2 of the paper CPR05).
+/// Number of segments (parts of objects) in each display memory, from table 2 of the paper CPR05. The first row is for
+/// objects that are cut at the borders of cells, and the second row for uncut objects.
 pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
 
 fn definition(id: &'static str, statement: String, value: f64, unit: &'static str) -> Definition {

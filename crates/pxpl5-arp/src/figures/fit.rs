@@ -55,8 +55,8 @@ pub(super) fn rates_hz(
     updates.into_iter().map(|count| count as f64 * numbers.frame_hz / frames as f64).collect()
 }
 
-/// Returns the cell side for which the rate of memory [`RATE_FITTED`] is nearest to table 1 of the paper CPR05, and the
-/// rates of all memories.
+/// Returns the cell side for which the rate of memory [`RATE_FITTED`] is nearest to table 1 of the paper CPR05. The
+/// second value has the rates of all memories for this cell side.
 ///
 /// The side is in metres, in steps of 0.1 m.
 ///

@@ -92,8 +92,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Returns the root mean square of the relative errors in percent, for the update rates of the given memories
-    /// compared with table 1 of the paper CPR05.
+    /// Returns the error of the update rates of `memories`, relative to table 1 of the paper CPR05: the root mean
+    /// square in percent.
     #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();
@@ -157,7 +157,8 @@ pub struct LeftOutRate {
 pub struct Interpretations {
     /// Sets of rules with their results, in ascending order of the mean error.
     pub ranked: Vec<RankedRules>,
-    /// Prediction of each of the three update rates. Rules, hall and path are those that fit the other two rates best.
+    /// Predictions of the three update rates. For each rate, the rules, the hall, the path and the cell side are chosen
+    /// to fit the other two rates.
     pub left_out: Vec<LeftOutRate>,
 }
 
@@ -200,8 +201,8 @@ fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }
 
-/// Returns the trial with the smallest error over the given memories. Of several trials with equal errors, returns the
-/// first.
+/// Returns the trial with the smallest error over the memories `memories`. Of several trials with equal errors, returns
+/// the first.
 fn best_of<'a>(trials: &'a [Trial], memories: &[usize]) -> Option<&'a Trial> {
     trials.iter().min_by(|a, b| a.error_percent(memories).total_cmp(&b.error_percent(memories)))
 }
@@ -275,13 +276,13 @@ pub struct ThresholdRow {
     /// Widest tear (gap between two memories) if each update is shown in the frame in which the update is due, in
     /// pixels of the display.
     pub at_once_px: f64,
-    /// Widest tear (gap between two memories) if the update of the less often drawn memory is shown one frame of
-    /// walking too late, in pixels of the display.
+    /// Widest tear (gap between two memories), in pixels of the display, if the less often drawn memory is shown one
+    /// frame too late.
     pub frame_late_px: f64,
 }
 
-/// Returns several thresholds, given in pixels or texels, with their consequences. `fitted_cell_m` is the cell side
-/// that fits table 1 of the paper CPR05 at the default threshold.
+/// Returns several thresholds in pixels or texels, with their consequences. `fitted_cell_m` is the cell side that fits
+/// table 1 of the paper CPR05 at the default threshold.
 #[must_use]
 pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
     let product = fitted_cell_m * PriorityTiming::PAPERS.theta_deg;

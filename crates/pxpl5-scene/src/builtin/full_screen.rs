@@ -11,8 +11,8 @@ const NEAR_M: f64 = 1.0;
 /// Distance from the head to the farthest triangle, metres. Assumed, before the far plane of any display.
 const FAR_M: f64 = 2.0;
 
-/// Tangent of the half angle that the triangles cover in each direction from each eye. The value 1 gives 90 degrees,
-/// which is enough for a head-mounted display (60 degrees) and for a face of a cube around the head (90 degrees).
+/// Tangent of the half angle that the triangles cover in each direction from each eye. The value 1 gives 90 degrees. A
+/// head-mounted display needs only 60 degrees, and a face of a cube around the head needs all 90 degrees.
 const COVERED: f64 = 1.0;
 
 /// Distance of each eye from the centre of the head, metres: half of the greatest distance between two eyes, 74 mm.

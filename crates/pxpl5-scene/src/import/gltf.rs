@@ -414,7 +414,7 @@ fn encoded(linear: f64) -> u8 {
     (part * 255.0 + 0.5) as u8
 }
 
-/// The corners of the triangles of a primitive.
+/// The corners of the triangles of a glTF primitive (a part of a mesh).
 struct Corners<'a> {
     /// Indices of the vertices at the corners. `None` if the corners are all vertices in their order.
     indices: Option<Numbers<'a>>,

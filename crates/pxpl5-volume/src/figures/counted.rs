@@ -22,7 +22,8 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingEr
 }
 
 /// Width and height in pixels of the small slices on which passes are counted. At the rim, the exact volume of such a
-/// slice is thicker than a pixel. The tapered clip, which is a pixel thick at the axis, requires this.
+/// slice is thicker than a pixel. The tapered clip needs this, because it is a pixel thick at the axis and becomes
+/// thicker towards the rim.
 const SMALL: u64 = 192;
 
 /// Returns figure P5: the number of draws of one triangle per slice, without bins.

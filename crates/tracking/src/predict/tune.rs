@@ -10,8 +10,8 @@ use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
 /// Length in seconds of the motion on which a filter is tuned. The motion must be long, because periods of fast motion
-/// are rare. After a tuning on 20 seconds of motion, a filter tuned for 200 ms predicted 200 ms of another motion worse
-/// than a filter tuned for 50 ms.
+/// are rare. With only 20 seconds, the filter tuned for predictions of 200 ms was worse on another motion than the
+/// filter tuned for 50 ms.
 const TRAINING_S: u64 = 100;
 /// Time at the start of the motion that is not evaluated, seconds.
 const SETTLING_S: u64 = 1;
@@ -66,8 +66,8 @@ pub struct Tuned {
     pub training: Option<Training>,
 }
 
-/// Returns a seed for the tracker's noise during the tuning. The result always differs from `evaluated_seed`, the seed of the
-/// noise in the evaluated run.
+/// Returns a seed for the tracker's noise during the tuning. The result always differs from `evaluated_seed`, the seed
+/// of the noise in the evaluated run.
 pub fn training_seed(evaluated_seed: u64) -> u64 {
     if evaluated_seed == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
 }
@@ -75,11 +75,11 @@ pub fn training_seed(evaluated_seed: u64) -> u64 {
 /// Finds the predictor settings with the least mean error on a motion. The predicted instant is `interval_ps` after the
 /// instant at which the reported pose was true.
 ///
-/// For a Kalman filter, the search covers the assumed strength of the head's jerk: 10^-6 to 10^6, in two rounds over a
-/// grid of its logarithm. For a prediction by differences, the search covers the baseline, which is the distance (1 to
-/// 16 reports) between the two poses of a difference. Position and orientation have separate values. The predictor
-/// assumes the noise that the tracker model adds. The assumed speeds and accelerations before the first report are the
-/// root mean squares of the motion.
+/// For a Kalman filter, the search covers the assumed strength of the head's jerk, from 10^-6 to 10^6. The search has
+/// two rounds over a grid of the logarithm of this strength. For a prediction by differences, the search covers the
+/// baseline, which is the distance (1 to 16 reports) between the two poses of a difference. Position and orientation
+/// have separate values. The predictor assumes the noise that the tracker model adds. The assumed speeds and
+/// accelerations before the first report are the root mean squares of the motion.
 ///
 /// The tuning uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
 /// tracker has no bias, metal or faults, and the seed of its noise differs from `evaluated_seed`. The same (motion,

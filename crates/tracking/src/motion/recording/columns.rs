@@ -137,7 +137,7 @@ fn number(column: &str) -> Option<usize> {
 impl FromStr for Columns {
     type Err = SettingError;
 
-    /// Parses a mapping like [`Columns::parse`].
+    /// Parses the same text as [`Columns::parse`].
     fn from_str(text: &str) -> Result<Self, SettingError> {
         Self::parse(text)
     }
