@@ -26,8 +26,8 @@
 //!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is searched among all
 //!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a
 //!   memory also makes all more often drawn memories due (cascade).
-//! - **New home cell**: when the eye has left the home cell and the least often drawn memory is due, cells are assigned
-//!   to memories anew. All memories whose cells have changed are then shown together.
+//! - **New home cell**: cells are assigned to memories anew when two conditions hold: the eye has left the home cell,
+//!   and the least often drawn memory is due. All memories whose cells have changed are then shown together.
 //! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells. Each line is cut once for all
 //!   triangles that share it, so the parts have bit-identical vertices along a cut. A segment is the part of a mesh in
 //!   one cell.

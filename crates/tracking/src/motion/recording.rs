@@ -130,8 +130,8 @@ impl Recording {
 
     /// Creates a recording from samples: ascending times in seconds, each with the pose at this time.
     ///
-    /// The axes follow [`Axes::OpenGl`]. Times are rounded to picoseconds. The same limits apply as in files. If
-    /// several samples have the same time, only the first is kept.
+    /// The axes follow [`Axes::OpenGl`]. Times are rounded to picoseconds. Times and positions have the same
+    /// limits as in a file. If several samples have the same time, only the first is kept.
     ///
     /// ```
     /// use glam::DVec3;
