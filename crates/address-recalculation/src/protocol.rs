@@ -1,9 +1,9 @@
 //! The messages that a display memory accepts besides pixels.
 //!
 //! ```text
-//! BEGIN    buffer  bit i: region i is coming     clears all valid bits of that buffer
-//! SWAP     buffer                                (pxpl5_wire::swap_request) at the next retrace at which all is there
-//! TOGETHER buffer  bit k: memory k               as SWAP, but at a retrace at which all of these memories can
+//! BEGIN    buffer  bit i: region i will arrive   makes all regions of the buffer empty
+//! SWAP     buffer                                shows the buffer when all its regions have arrived (swap_request)
+//! TOGETHER buffer  bit k: memory k               as SWAP, but together with all these memories or not at all
 //! MATRIX   nine words, row by row                an orientation, in single precision
 //! ```
 

@@ -86,8 +86,8 @@ impl FaceScan {
 
     /// Returns the time at which the orientation for a pixel is read.
     ///
-    /// This time precedes the display of a pixel by the duration of all stages. With [`Latch::Pixel`], it is the pixel
-    /// (x, y). Otherwise it is the first visible pixel of the same line or field.
+    /// The time precedes the display of one pixel by the duration of all stages. This pixel is (x, y) with
+    /// [`Latch::Pixel`], and otherwise the first visible pixel of the same line or field.
     #[must_use]
     pub fn latches(&self, latch: Latch, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         let lit = self.lights(x, y, field)?;

@@ -16,8 +16,8 @@ pub struct Content {
     pub frame: u64,
     /// Indices of the segments (parts of objects) that the memory contains.
     pub segments: Vec<usize>,
-    /// Displacement of vertices, or `None` without warping: the warp, the assignment of cells, and the index of this
-    /// memory.
+    /// Data for the displacement of vertices, or `None` without warping: the warp, the assignment of cells, and the
+    /// index of this memory.
     pub warp: Option<(RegionWarp, CellAssignment, usize)>,
 }
 

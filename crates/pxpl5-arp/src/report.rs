@@ -21,7 +21,7 @@ pub struct ArpReport {
     pub schema: &'static str,
     /// Number of texels along the edge of a cube face.
     pub face_texels: u64,
-    /// Occasions at which the display reads the head's orientation: before each `field`, `line` or `pixel`.
+    /// Time at which the display reads the head's orientation: before each `field`, `line` or `pixel`.
     pub latch: &'static str,
     /// Time from reading the orientation to displaying the pixel, in ns.
     pub pipeline_ns: f64,

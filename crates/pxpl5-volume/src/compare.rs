@@ -247,9 +247,9 @@ impl VolumeComparison {
         Some(grid(pictures, columns as u32))
     }
 
-    /// Returns five views with the hyperbolic clip side by side. The views are orthographic with 1 sample, jittered,
-    /// orthographic with 4 and with 16 samples, and with connected coverage. Returns `None` for a comparison without
-    /// pictures.
+    /// Returns five views with the hyperbolic clip side by side. The first view has an orthographic projection and one
+    /// sample per pixel. The other views differ from the first by jitter, by 4 samples, by 16 samples, and by connected
+    /// coverage. Returns `None` for a comparison without pictures.
     #[must_use]
     pub fn samples_and_coverage(&self) -> Option<RgbImage> {
         let shown: Vec<RgbImage> = self

@@ -70,7 +70,8 @@ pub(crate) struct Crossing {
     pub(crate) edge: Linear,
     /// True for left edges and horizontal upper edges. Points exactly on such an edge count as inside.
     has_edge: bool,
-    /// Factor that converts the constant part of a row's edge function to a number of columns.
+    /// Factor that converts the constant part of the edge function in a row to the column of the crossing, relative to
+    /// `middle`.
     columns_of: f64,
     /// Column index of the face's middle, with a fraction.
     middle: f64,

@@ -19,8 +19,8 @@ fn small(settings: &WalkSettings) -> WalkSettings {
 
 /// Counts the texels in which the combined picture of all memories differs from the picture of a single memory.
 ///
-/// All memories are drawn at once from one position. The single memory draws the same segments in the order of the
-/// memories.
+/// All memories are drawn at once from one position. The single memory draws the same parts of objects (segments), in
+/// the order of the memories.
 pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, SettingError> {
     let settings = small(settings);
     // Draw all memories from one position.

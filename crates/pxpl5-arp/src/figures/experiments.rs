@@ -73,8 +73,8 @@ pub struct Experiments {
     pub reductions: [f64; 2],
     /// Times for which an object's image is valid, for several ratios of size to distance.
     pub sizes: Vec<SizeRow>,
-    /// Ratios of an object's size to its distance, above which the growth of the object on the screen limits the
-    /// validity period, for each interpretation.
+    /// Limits of the ratio of an object's size to its distance, one for each interpretation. Above the limit, the
+    /// growth of the object on the screen determines the validity period.
     pub size_limits: Vec<SizeLimit>,
     /// Largest deviation of a straight edge from a straight line, in pixels: on the screen, and through the lens.
     pub lens_px: [f64; 2],
@@ -204,8 +204,9 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
-/// Ratio of an object's size to its distance, above which the growth of the object on the screen limits the validity
-/// period. The papers do not define "size" and "distance", so there is one limit for each interpretation.
+/// A limit of the ratio of an object's size to its distance. Above the limit, the growth of the object on the screen
+/// determines the validity period. The papers do not define "size" and "distance", so each interpretation has its own
+/// limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
     /// Name of the angle whose change is limited: the angle that the sphere's diameter covers, or the angle that the

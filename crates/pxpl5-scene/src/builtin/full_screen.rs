@@ -39,9 +39,9 @@ pub(super) fn scene(count: u32) -> Scene {
 /// origin. The corners of the triangle lie at (-r, -r), (r, -s) and (-s, r), so no coordinate exceeds r. The lower
 /// right, the upper left and the upper right corner of the square each lie on one side of the triangle.
 ///
-/// No triangle is clipped in pictures of up to 1,500 pixels across. At a field of view of 60 degrees, a corner is at
-/// most 4.4 times half of the picture's width away from the picture's centre. The guard band ends 4,095 pixels minus
-/// half of the width from the centre.
+/// No triangle is clipped in pictures of up to 1,500 pixels across with a field of view of 60 degrees. In a picture w
+/// pixels across, a corner is at most 2.2 w from the centre. The guard band, beyond which triangles are clipped, ends
+/// 4,095 - w / 2 from the centre.
 fn push(mesh: &mut Mesh, depth: f64, colour: [u8; 3]) {
     let half = COVERED * depth + EYES_M;
     let far = REACH * half;

@@ -16,7 +16,8 @@ use std::sync::{Mutex, PoisonError};
 /// The pixel array that draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayKind {
-    /// The fast array, which computes whole values, only for the pixels that a command touches.
+    /// The fast array, which computes with whole numbers instead of single bits, and only for the pixels that a command
+    /// touches.
     Lanes,
     /// The reference model of the array, which executes one bit of one instruction at a time. The model skips only
     /// steps that cannot change a result.
@@ -119,8 +120,7 @@ impl PixelPlanesRenderer {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the work for each of these slices at the time when the slice was last drawn. The work is zero for a
-    /// slice that was never drawn.
+    /// Returns the work of the last drawing of each of these slices. The work is zero for a slice that was never drawn.
     #[must_use]
     pub fn loads(&self, views: &[SliceView]) -> Vec<SliceLoad> {
         let loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);

@@ -62,10 +62,10 @@ fn cause(id: &str) -> &'static str {
     }
 }
 
-/// Least and greatest number of months in which the performance of GPUs doubles (published, P20).
+/// Least and greatest number of months in which the performance of GPUs doubles (figure P20 of the SpatialGL paper).
 pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
 
-/// Number of months in which the performance of CPUs doubles (published, P20).
+/// Number of months in which the performance of CPUs doubles (figure P20 of the SpatialGL paper).
 pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
 
 /// Returns the inputs of the model that the SpatialGL paper prints, and the numbers that follow from them by
@@ -83,10 +83,10 @@ fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static
     Definition { id, statement: statement.into(), source: source(id), value, unit, provenance: origin(id) }
 }
 
-/// Number of bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).
+/// Number of bits of a pixel on the GPU: 4 channels of 8 bits (figure P6 of the SpatialGL paper).
 const GPU_PIXEL_BITS: f64 = 32.0;
 
-/// Number of bits of a pixel on the projector: 3 channels of 1 bit (published, P7).
+/// Number of bits of a pixel on the projector: 3 channels of 1 bit (figure P7 of the SpatialGL paper).
 const PROJECTOR_PIXEL_BITS: f64 = 3.0;
 
 fn inputs(config: &PerspectaConfig) -> Vec<Definition> {

@@ -27,8 +27,8 @@ impl Detection {
     }
 }
 
-/// A detector of the pendulum's low points in a sequence of reports. For a quarter of a swing after each detected low
-/// point, the detector detects no other low point.
+/// A detector of the pendulum's low points in a sequence of reports. After each low point, the detector ignores further
+/// crossings for a quarter of a swing, because noise could cause them.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,
