@@ -6,7 +6,6 @@ use crate::timing::ArpTiming;
 /// Intersection of a direction with a face of the cube, as components of the direction along the face's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FaceHit {
-    /// The face that the direction hits.
     pub(crate) face: CubeFace,
     /// Component of the direction along the forward axis of the face. The component is greater than zero.
     pub(crate) forward: i64,

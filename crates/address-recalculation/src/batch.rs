@@ -23,7 +23,6 @@ type Each<T> = [T; BATCH];
 /// position.
 #[derive(Clone, Debug)]
 pub(crate) struct Batch {
-    /// Number of pixels in the group.
     pub(crate) count: usize,
     /// Index of the upper left texel of each pixel. The index is 0 for a footprint with texels on other faces.
     pub(crate) index: Each<u32>,

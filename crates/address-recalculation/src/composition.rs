@@ -44,7 +44,6 @@ pub(crate) struct Gathered<'a> {
 }
 
 impl Composition {
-    /// Returns the colour of the pixel.
     pub(crate) fn pixel(&self, gathered: &Gathered<'_>) -> u32 {
         match self.order {
             CompositionOrder::DepthFirst => {

@@ -68,7 +68,6 @@ pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
     [MATRIX].into_iter().chain(components).collect()
 }
 
-/// A decoded message.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ArpMessage {
     /// Begins an update of a buffer with these regions.

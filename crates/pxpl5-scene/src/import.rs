@@ -44,7 +44,6 @@ impl Placement {
         }
     }
 
-    /// Returns the motion of a head for a model with this placement.
     fn motion(self) -> HeadMotion {
         match self {
             Self::Fitted => mesh::motion_for_fitted(),
@@ -182,7 +181,6 @@ pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Pl
     }
 }
 
-/// The content of a model file after reading.
 enum Content {
     /// A mesh that is not yet a scene. The file's bytes can be freed before the scene is made.
     Mesh(Model),

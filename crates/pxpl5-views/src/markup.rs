@@ -2,7 +2,6 @@
 
 use std::fmt::{self, Display, Write};
 
-/// An element with its name, attributes and content.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
     name: &'static str,
@@ -38,7 +37,6 @@ impl Element {
         self
     }
 
-    /// Appends a child element in place.
     pub(crate) fn add(&mut self, child: &Self) {
         let _ = write!(self.content(), "{child}");
     }

@@ -40,7 +40,6 @@ use tracking::view::HmdView;
 /// not change the mean.
 pub const POINTS: usize = 512;
 
-/// Picoseconds in a second.
 const PS_PER_S: f64 = 1e12;
 
 /// Errors of both displays at one instant, over all points and both eyes.

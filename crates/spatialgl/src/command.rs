@@ -23,7 +23,6 @@ impl Combine {
 
 pxpl5_sim::parameters::named!(Combine, "way to combine slices", Combine::ALL);
 
-/// The kind of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {
     Triangle,

@@ -76,7 +76,6 @@ impl BitPlanes {
     }
 }
 
-/// Returns the number of words of one slice.
 pub(crate) const fn words_of_slice(size: Size) -> usize {
     (size[0] / 8) as usize * size[1] as usize
 }

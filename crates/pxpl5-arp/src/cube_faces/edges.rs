@@ -32,7 +32,6 @@ impl Linear {
     }
 }
 
-/// The edge functions of a triangle on a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edges {
     /// Edge functions, positive inside the triangle. Function i belongs to the edge opposite to corner i.

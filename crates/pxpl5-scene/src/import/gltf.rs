@@ -87,10 +87,10 @@ const OF_INDICES: [ComponentType; 3] = [ComponentType::U8, ComponentType::U16, C
 
 struct Reader<'a> {
     document: &'a Document<'a>,
-    /// Number of bytes of the parsed JSON and of decoded buffers.
+    /// Number of bytes of memory that the parsed JSON and the decoded buffers take.
     held: usize,
     model: Model,
-    /// Number of primitives that consist of points or lines.
+    /// Number of glTF primitives that consist of points or lines, which are not read.
     skipped: usize,
     /// Number of nodes whose meshes are deformed by a skin.
     skinned: usize,
@@ -364,7 +364,7 @@ fn is_triangle([a, b, c]: [u32; 3]) -> bool {
     a != b && b != c && c != a
 }
 
-/// The vertices of a primitive, with the transform from its node to the world.
+/// The vertices of a glTF primitive (a part of a mesh), with the transform from its node to the world.
 struct PrimitiveVertices<'a> {
     positions: Numbers<'a>,
     normals: Option<Numbers<'a>>,

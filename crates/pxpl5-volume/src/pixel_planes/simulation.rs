@@ -85,7 +85,6 @@ pub fn simulate(
     Ok(Machine::new(traffic, renderers, processors)?.run(bounds))
 }
 
-/// The events of the simulation.
 #[derive(Debug)]
 enum Event {
     Ring(RingEvent),

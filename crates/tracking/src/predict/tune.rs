@@ -24,7 +24,7 @@ const MOST_REPORTS: usize = 12_000;
 /// uses the next seed.
 const TRAINING_SEED: u64 = 0x7475_6e65;
 
-/// Range of the decimal logarithm in which the search for the best white jerk begins.
+/// Range of the decimal logarithm of the jerk's strength that the search covers.
 const JERK_DECADES: (f64, f64) = (-6.0, 6.0);
 /// Number of values that each round of the search tries. In the last round, two neighbouring values differ by a factor
 /// of 10^0.2 or less. The time constant of a filter varies with the sixth root of the jerk, so this factor changes the

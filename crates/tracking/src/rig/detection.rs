@@ -28,7 +28,7 @@ impl Detection {
 }
 
 /// A detector of the pendulum's low points in a sequence of reports. After each low point, the detector ignores further
-/// crossings for a quarter of a swing, because noise could cause them.
+/// low points for a quarter of a swing, because noise could cause them.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,
