@@ -79,7 +79,7 @@ mod tests {
 
     const WEDGE: fn() -> HalfWedge = || HalfWedge::new(396, 384.0);
 
-    /// Checks case 27 of the specification, to its last digit.
+    /// Compares the coefficients and the values of a quadratic with known numbers, to their last digit.
     #[test]
     fn case_27_the_quadratic_of_a_plane() {
         let q = ClipQuadratic::of_plane([0.5, -0.25], -20.0, WEDGE(), 0.25);
