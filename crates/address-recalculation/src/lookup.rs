@@ -69,8 +69,8 @@ impl<'a> Addressing<'a> {
     /// Computes the footprints (the four texels and their weights) of up to [`BATCH`] pixels together, and returns
     /// true.
     ///
-    /// Returns false and computes nothing if the words are too wide. The same holds if there are so few pixels that a
-    /// computation pixel by pixel is faster.
+    /// Returns false and computes nothing if the words have too many bits for exact results in doubles. The same holds
+    /// if there are so few pixels that a computation pixel by pixel is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;
         if is_worth_it {

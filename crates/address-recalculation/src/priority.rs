@@ -40,7 +40,7 @@
 //!
 //! # Not here
 //!
-//! The pipeline that draws supplies the pixels of the faces and handles late updates.
+//! The program that draws the faces supplies their pixels and handles late updates.
 //!
 //! # Sources
 //!

@@ -81,7 +81,7 @@ fn threshold(text: &str) -> Result<ThresholdChoice, String> {
     texels.and_then(number).map(ThresholdChoice::Texels).ok_or_else(expected)
 }
 
-/// A table of parameters, and the first part of their paths.
+/// A table of parameters, with the first part of the paths of these parameters.
 type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
 impl WalkPlan {

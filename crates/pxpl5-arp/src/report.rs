@@ -116,7 +116,7 @@ pub struct TearsReport {
 pub struct WalkLatency {
     /// Sum of all parts in ms.
     pub total: Option<f64>,
-    /// Parts of the latency by name, in ms. Null for parts that were not simulated.
+    /// Parts of the latency in ms, each with its name. Null for parts that were not simulated.
     pub parts: BTreeMap<&'static str, Option<f64>>,
 }
 

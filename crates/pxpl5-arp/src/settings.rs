@@ -75,8 +75,8 @@ pub struct WalkSettings {
 }
 
 impl WalkSettings {
-    /// Settings with objects cut but not warped, cells of the size fitted to table 1 of the paper CPR05, and an ideal
-    /// renderer.
+    /// Settings with objects that are cut but not warped, and with an ideal renderer. The side of a cell is fitted to
+    /// table 1 of the paper CPR05.
     pub const CELLS: Self = Self {
         policy: PolicyKind::Cells,
         is_segmented: true,

@@ -81,7 +81,7 @@ pub struct VolumeComparison {
     pub pictures: Vec<RgbImage>,
 }
 
-/// The position of the eye in the pictures of a comparison.
+/// The viewpoint of the pictures in a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparePoint {
     /// Azimuth of the eye: angle around the axis from +z to +x, degrees.

@@ -186,9 +186,9 @@ pub struct ModelTimes {
 pub struct Override {
     /// Path of the number, as after `--set`.
     pub path: String,
-    /// Value of the number with which the volume was drawn.
+    /// Value of the setting with which the volume was drawn.
     pub value: Value,
-    /// Value or range that the SpatialGL paper gives.
+    /// Value or range of the setting that the SpatialGL paper gives.
     pub papers: Value,
 }
 

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Choice of the slices of a turn that are drawn. Slices that are not drawn are mirrored copies of drawn slices.
+/// Choice of the slices of a turn that are drawn. All other slices are mirrored copies of drawn slices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strobes {
@@ -147,7 +147,7 @@ impl Bins {
     }
 }
 
-/// The words of a slice, and of its mirror image if there is one. All pixels are dark at first.
+/// Memory for the packed pixels of a slice, and of its mirror image if there is one. All pixels are dark at first.
 struct SliceWords<'a> {
     own: &'a mut [u32],
     turned: Option<&'a mut [u32]>,

@@ -90,7 +90,7 @@ pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[
     }
 }
 
-/// Rule for rounding away the bits below the last bit of a word.
+/// Rule for rounding a number when its lowest bits are removed.
 #[derive(Clone, Copy)]
 enum Rounding {
     Nearest,

@@ -300,8 +300,8 @@ impl Model {
         if self.detail == Detail::Colour { self.places.len() } else { self.vertices() }
     }
 
-    /// Returns the number of groups whose mean normals are computed at a time. The sums are in double precision. The
-    /// sums of all groups together would need as much memory as the positions.
+    /// Returns the number of groups of vertices whose mean normals are computed in one pass. The sums of all groups at
+    /// once would need as much memory as the positions, because sums are in double precision.
     fn shadings_per_pass(&self) -> usize {
         (self.shaded() / 8).max(1 << 16)
     }

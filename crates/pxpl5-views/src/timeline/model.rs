@@ -79,7 +79,7 @@ pub struct Timeline {
     pub surfaces: Vec<Surface>,
     /// Picture whose dependencies are drawn.
     pub picture: Option<PictureNumber>,
-    /// Number of the SEND that supplied the head pose of the picture whose dependencies are drawn.
+    /// Number of the SEND whose head pose was used for the picture whose dependencies are drawn.
     pub update: Option<PictureNumber>,
     /// Dependencies of the picture in [`Timeline::picture`].
     pub arrows: Vec<Arrow>,

@@ -23,7 +23,7 @@ pub struct FigureDrawing {
     pub number: u32,
     /// Subject of the figure in the SpatialGL paper's caption, and meaning of the pixels.
     pub about: &'static str,
-    /// The drawing itself.
+    /// Pixels of the drawing.
     pub picture: RgbImage,
 }
 

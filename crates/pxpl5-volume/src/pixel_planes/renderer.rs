@@ -13,7 +13,7 @@ use spatialgl::{Combine, HalfWedge, SliceImage, SliceRenderer, SliceStats, Slice
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-/// The pixel array that draws.
+/// A model of the pixel array, with which slices are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayKind {
     /// The fast array, which computes with whole numbers instead of single bits, and only for the pixels that a command
@@ -34,7 +34,7 @@ pub struct RendererWork {
     /// Number of triangle commands. A triangle counts once for each region that the triangle touches in a slice.
     pub commands: u64,
     /// Number of omitted triangles. A triangle is omitted if it has no area on the sub-pixel grid, or if the
-    /// coefficients of its planes do not fit the words.
+    /// coefficients of its planes have too many bits for the machine.
     pub left_out: u64,
     /// Number of clocks for clears, triangles and halftones.
     pub clocks: u64,
@@ -207,8 +207,8 @@ impl PixelPlanesRenderer {
     }
 }
 
-/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so all commands are
-/// legal.
+/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so every command is
+/// valid.
 fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> (u64, std::sync::Arc<[Word]>) {
     let clocks = array.execute(words).expect("pxpl5-volume: commands of our own").clocks;
     (clocks, array.read_colour(width, height))
