@@ -98,8 +98,8 @@ impl FirstPass {
         self.decimator.surface.left
     }
 
-    /// Collapses edges until at most `pause` triangles remain or the pass ends. `wanted` is the number of triangles that
-    /// should remain in the end.
+    /// Collapses edges until at most `pause` triangles remain or the pass ends. `wanted` is the number of triangles
+    /// that should remain in the end.
     pub(super) fn until(&mut self, pause: usize, wanted: usize) {
         self.decimator.pass(&mut self.queue, pause, wanted, FIRST);
     }

@@ -186,8 +186,8 @@ impl Model {
         self.check_reading_bytes(source, more_triangles.saturating_mul(size_of::<[u32; 3]>()))
     }
 
-    /// Returns an error if the model needs too much memory for the size of its files. `more` is the number of bytes that
-    /// the reader needs in addition to the model.
+    /// Returns an error if the model needs too much memory for the size of its files. `more` is the number of bytes
+    /// that the reader needs in addition to the model.
     pub(super) fn check_reading_bytes(&self, source: &Source<'_>, more: usize) -> Result<(), FileError> {
         let of_files = source.bytes.len() + self.more_file_bytes;
         let found = of_files + self.lists_bytes() + self.corners.len() * TABLE_BYTES;
