@@ -33,9 +33,9 @@ pub struct ComparedRow {
     pub variant: &'static str,
     /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
-    /// Segments drawn per second.
+    /// Number of segments (parts of objects) drawn per second.
     pub draws_per_s: f64,
-    /// Triangles drawn per second.
+    /// Number of triangles drawn per second.
     pub triangles_per_s: f64,
     /// Percentage of draws saved, relative to drawing everything in every frame.
     pub saved_percent: f64,

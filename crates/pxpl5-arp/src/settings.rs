@@ -1,4 +1,4 @@
-//! Settings of an experiment.
+//! Settings of an experiment: the policy, the cells, warping, the renderer and the display.
 
 use crate::cube_faces::{CubeView, DepthRange};
 use address_recalculation::priority::{Falloff, PriorityTiming};

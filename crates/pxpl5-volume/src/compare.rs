@@ -64,7 +64,7 @@ pub struct VariantRow {
 /// The comparison of a scene's volumes for all combinations of clip, projection, samples and coverage.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeComparison {
-    /// Name and version of this record's layout.
+    /// Name and version of the JSON layout of this data.
     pub schema: &'static str,
     /// Name of the scene that all variants draw.
     pub scene: String,

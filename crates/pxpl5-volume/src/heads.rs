@@ -77,7 +77,7 @@ pub struct HeadSample {
 /// The errors of a volume and of a head-mounted display during a motion of the head.
 #[derive(Clone, Debug, Serialize)]
 pub struct HeadStudy {
-    /// Name and version of this record's layout.
+    /// Name and version of the JSON layout of this data.
     pub schema: &'static str,
     /// Name of the scene that both displays show.
     pub scene: String,

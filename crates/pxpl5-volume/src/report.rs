@@ -13,7 +13,7 @@ const RING_PX: u32 = 8;
 /// The report of one volume. All counts are exact. Each time comes from a model and is reported with its formula.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeReport {
-    /// Name and version of this record's layout.
+    /// Name and version of the JSON layout of this data.
     pub schema: &'static str,
     /// Name of the scene that was drawn.
     pub scene: String,

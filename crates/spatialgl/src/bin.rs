@@ -45,7 +45,7 @@ pub enum Binning {
 }
 
 impl Binning {
-    /// All choices with their names in options and files.
+    /// All methods of binning, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 3] =
         [("off", Self::Off), ("two-planes", Self::TwoPlanes), ("all-planes", Self::AllPlanes)];
 }
@@ -67,7 +67,7 @@ pub enum BinTolerance {
 }
 
 impl BinTolerance {
-    /// All choices with their names in options and files.
+    /// All tolerances except fixed distances, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("clip", Self::OfTheClip), ("codes", Self::Codes)];
 }
 

@@ -17,7 +17,7 @@ pub enum Combine {
 }
 
 impl Combine {
-    /// All choices with their names in options and files.
+    /// All rules for the colour, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 3] = [("last", Self::Last), ("max", Self::Max), ("add", Self::Add)];
 }
 

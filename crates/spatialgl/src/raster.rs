@@ -34,7 +34,7 @@ pub enum Coverage {
 }
 
 impl Coverage {
-    /// All choices with their names in options and files.
+    /// Both rules for covered pixels, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("sampled", Self::Sampled), ("connected", Self::Connected)];
 }
 
@@ -58,7 +58,7 @@ pub struct SliceStats {
 /// drawing.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceWork<'a> {
-    /// Draw calls whose primitives are drawn.
+    /// Recorded draw calls, which contain the primitives.
     pub commands: &'a CommandBuffer,
     pub bin: &'a Bin,
     pub coverage: Coverage,

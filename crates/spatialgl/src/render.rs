@@ -32,7 +32,7 @@ pub enum Strobes {
 }
 
 impl Strobes {
-    /// All choices with their names in options and files.
+    /// Both choices of drawn slices, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("each", Self::Each), ("mirror", Self::Mirror)];
 }
 

@@ -26,7 +26,7 @@ pub enum TieRule {
 }
 
 impl TieRule {
-    /// All choices with their names in options and files.
+    /// All rules for points on a boundary, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 4] = [
         ("half-open", Self::HalfOpen),
         ("product-positive", Self::ProductPositive),

@@ -15,7 +15,7 @@ fn definition(id: &'static str, statement: String, value: f64, unit: &'static st
     Definition { id, statement: statement.into(), source: "derived", value, unit, provenance: Provenance::Derived }
 }
 
-/// Returns all definitions.
+/// Returns all numbers that follow from printed numbers.
 #[must_use]
 pub fn definitions() -> Vec<Definition> {
     let mut all = Vec::new();

@@ -28,7 +28,7 @@ pub struct Bar {
     pub end: Time,
     /// Index of the bar's lane in its row, counted from the top. Lanes divide a row in which bars overlap.
     pub lane: usize,
-    /// For COPY: time spans in which the port received data.
+    /// Time spans in which the port received data. The list is empty for all stages except COPY.
     pub receiving: Vec<(Time, Time)>,
 }
 

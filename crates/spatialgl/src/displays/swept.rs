@@ -22,7 +22,7 @@ pub enum Rotation {
 }
 
 impl Rotation {
-    /// All choices with their names in options and files.
+    /// Both directions of the turn, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("x-to-z", Self::XToZ), ("z-to-x", Self::ZToX)];
 }
 
