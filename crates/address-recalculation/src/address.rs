@@ -40,7 +40,7 @@ pub struct Footprint {
     /// Horizontal and vertical distance from the upper left texel, as fractions from 0 to 1 inclusive. The unit is
     /// `2^-weight_bits`.
     pub fractions: [u32; 2],
-    /// True if one of the texels lies on another face.
+    /// True if at least one of the four texels lies beyond an edge of the face that the direction hits.
     pub is_split: bool,
 }
 

@@ -109,7 +109,7 @@ impl WalkPlan {
         ]
     }
 
-    /// Returns all paths that [`Self::set`] accepts.
+    /// Returns the names of all settings that [`Self::set`] accepts. A name is a path, such as `walk.route`.
     #[must_use]
     pub fn keys(&self) -> Vec<String> {
         let numbers = self.numbers().into_iter().map(|(path, _)| path);

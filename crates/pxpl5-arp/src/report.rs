@@ -130,7 +130,7 @@ pub struct ViewStatistics {
 }
 
 impl ArpReport {
-    /// Creates the report of a viewer's walk, optionally with the counts of a view at its end.
+    /// Creates the report of a viewer's walk. With `looked`, the report also has the counts of one displayed view.
     #[must_use]
     pub fn of(world: &World, settings: &WalkSettings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> Self {
         let timing = &settings.display.timing;

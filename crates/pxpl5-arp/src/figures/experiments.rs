@@ -212,7 +212,8 @@ pub struct SizeLimit {
     /// Name of the angle whose change is limited: the angle that the sphere's diameter covers, or the angle that the
     /// radius covers.
     pub angle: &'static str,
-    /// Allowed change of the angle that the radius covers, divided by the threshold for translation of the eye.
+    /// Allowed change of the angle that the sphere's radius covers, divided by the threshold for translation of the
+    /// eye. Both are angles.
     pub factor: f64,
     /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation, not growth, limits
     /// the validity period.

@@ -55,10 +55,10 @@ pub(super) fn rates_hz(
     updates.into_iter().map(|count| count as f64 * numbers.frame_hz / frames as f64).collect()
 }
 
-/// Returns the cell side for which the rate of memory [`RATE_FITTED`] is nearest to table 1 of the paper CPR05. The
-/// second value has the rates of all memories for this cell side.
+/// Returns the side of a cell, in metres, with which the update rate of memory [`RATE_FITTED`] is nearest to the rate
+/// in table 1 of the paper CPR05. The second value has the update rates of all memories with this side.
 ///
-/// The side is in metres, in steps of 0.1 m.
+/// The tested sides are multiples of 0.1 m.
 ///
 /// # Errors
 ///

@@ -77,7 +77,7 @@ impl Places {
 /// bytes, because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
-/// The meaning of the second number of a [`Corner`]. This number distinguishes vertices at one point.
+/// The meaning of the second number of a [`Corner`]: a normal or a colour.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
     /// The index of a normal, counted from 1: a normal of the file, or the computed normal of a flat face. A corner

@@ -382,7 +382,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Names of the three components of a colour.
+/// Names that files use for red, green and blue. Each entry is one convention.
 const COLOURS: [[&str; 3]; 3] =
     [["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
 

@@ -108,8 +108,9 @@ impl Recording {
         Self::read_as(input, &RecordingFormat::default())
     }
 
-    /// Reads a file of poses with the columns and axes of `format`. If the format maps columns, the file may have other
-    /// columns too, and time counts from the first line. Commas, semicolons, tabs or blanks separate the columns.
+    /// Reads a file of poses with the columns and axes of `format`. If [`RecordingFormat::columns`] is not empty, the
+    /// file may have other columns too, and time counts from the first line. Commas, semicolons, tabs or blanks
+    /// separate the columns.
     ///
     /// # Errors
     ///

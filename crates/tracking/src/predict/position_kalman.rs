@@ -14,8 +14,9 @@ pub(super) struct NoiseModel {
     pub(super) start: (f64, f64),
 }
 
-/// Returns the increase over `dt` seconds of the covariance of value, velocity and acceleration. The increase is caused
-/// by jerk that is white noise of spectral density 1. It is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T over s.
+/// Returns the covariance that is added over `dt` seconds for value, velocity and acceleration. The cause is jerk that
+/// is white noise of spectral density 1. The covariance is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T for s from 0 to
+/// `dt`.
 pub(super) fn white_jerk(dt: f64) -> DMat3 {
     let d2 = dt * dt;
     let d3 = dt * dt * dt;
