@@ -55,8 +55,8 @@ pub(super) fn rates_hz(
     updates.into_iter().map(|count| count as f64 * numbers.frame_hz / frames as f64).collect()
 }
 
-/// Returns the side of a cell, in metres, with which the update rate of memory [`RATE_FITTED`] is nearest to the rate
-/// in table 1 of the paper CPR05. The second value has the update rates of all memories with this side.
+/// Fits the side of a cell to table 1 of the paper CPR05: the update rate of memory [`RATE_FITTED`] comes nearest to
+/// the printed rate. Returns the side in metres, and the update rates of all memories with this side.
 ///
 /// The tested sides are multiples of 0.1 m.
 ///
