@@ -26,7 +26,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Creates an axis whose range contains all elements of `numbers`. NaN and numbers without a position are ignored.
+    /// Creates an axis whose range contains all elements of `numbers`, except NaN and numbers that the scale cannot
+    /// show.
     pub(super) fn reaching(scale: &AxisScale, numbers: impl Iterator<Item = f64>) -> Self {
         let blank = Self { scale: scale.clone(), ends: (0.0, 1.0) };
         let places = numbers.map(|number| blank.place(number)).filter(|place| place.is_finite());
