@@ -200,7 +200,8 @@ pub fn interpretations(all: &Interpretations) -> String {
     text
 }
 
-/// Returns two results as Markdown: the best single fit, and the prediction of each update rate from the other rates.
+/// Returns two results as Markdown. The first is the best fit of one set of rules to all update rates. The second is
+/// the prediction of each rate by a fit to the other rates.
 fn best_of_all(all: &Interpretations) -> String {
     let mut text = String::new();
     // The best fit of all combinations of rules, hall and path.
@@ -287,8 +288,8 @@ fn thresholds(text: &mut String, all: &Experiments) {
     );
 }
 
-/// Writes a consequence for table 2 of the paper CPR05 (sections in each memory). Cutting does not change the number of
-/// sections.
+/// Writes two constraints on table 2 of the paper CPR05, which prints the number of segments in each memory. Both
+/// follow because the same segments are drawn with and without cutting, only in different memories.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
@@ -403,8 +404,8 @@ fn sizes(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Writes the ratio of an object's size to its distance, above which the growth on the screen limits the validity
-/// period (statement A8 of the papers).
+/// Writes the ratios of size to distance that belong to statement A8 of the papers. For larger ratios, the growth of
+/// the object on the screen determines the validity period.
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
         "\nStatement A8, \"about ten times the distance\", leaves two questions open. One question is which angle describes the size\n\

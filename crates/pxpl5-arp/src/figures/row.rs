@@ -29,10 +29,10 @@ pub fn limit(id: &'static str, statement: &str, unit: &'static str, both: [f64; 
     FigureRow { is_met, ..row(id, statement, unit, both, Basis::Free) }
 }
 
-/// Returns the verdict on a row: `met`, `within`, `shape` or `**missed**`.
+/// Returns the outcome of a row's comparison: `met`, `within`, `shape` or `**missed**`.
 ///
 /// `within` means that the published number lies in the interval of all interpretations. `shape` means that the number
-/// cannot be reproduced, but the shape of its curve or table agrees with the print.
+/// cannot be reproduced, but the shape of its curve or table agrees with the paper.
 #[must_use]
 pub const fn verdict(row: &FigureRow) -> &'static str {
     match (row.is_met, row.basis) {
