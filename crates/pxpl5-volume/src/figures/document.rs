@@ -101,8 +101,8 @@ fn definitions(text: &mut String, all: &[Definition]) {
     let _ = write!(
         text,
         "\n## Definitions\n\n\
-         The table lists the inputs that the paper prints, and the numbers that follow from these inputs by arithmetic. No\n\
-         simulation could change these numbers.\n\n{}",
+         The following table lists the inputs that the paper prints, and the numbers that follow from these inputs by arithmetic.\n\
+         No simulation could change the numbers in the table of definitions.\n\n{}",
         table(&columns, all)
     );
 }
@@ -152,9 +152,9 @@ fn pictures(text: &mut String) {
          sliver. The third row shows bin planes, outcodes and a tile query.\n\n\
          ![Clips and projections](pictures/volumetric-variants.png)\n\n\
          The picture shows the Mig for a viewer 40 degrees to the right and 25 degrees above. All views have the same exposure.\n\
-         The command `pxpl5 volume compare --scene mig --out DIR` makes the picture. From top to bottom, the rows are prism,\n\
-         user planes, exact, tapered, parallel and hyperbola. The columns are a projection along the normal of each slice, a\n\
-         projection for one eye position in all slices, and a jittered projection.\n",
+         The command `pxpl5 volume compare --scene mig --out DIR` makes the picture. From top to bottom, the rows of the picture\n\
+         are prism, user planes, exact, tapered, parallel and hyperbola. The columns of the picture are a projection along the\n\
+         normal of each slice, a projection for one eye position in all slices, and a jittered projection.\n",
     );
 }
 
