@@ -423,8 +423,8 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!(
         "\nThe rules of the compiled kernel (kernels/compiled_rules.md) were written before the kernel was compared with the \
-         published limits of Slats. The table has the results of the first comparison. The limit of triangles does not depend on \
-         the size of the triangles, because no triangle is clipped and Slats sends each triangle to all regions."
+         published limits of Slats. The table of limits has the results of the first comparison. The limit of triangles does not \
+         depend on the size of the triangles, because no triangle is clipped and Slats sends each triangle to all regions."
     );
     Ok(())
 }
@@ -434,9 +434,9 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## The timing table from the code\n");
     println!(
         "The following table gives the mean time of the code over the three application scenes, and the smallest and largest \
-         time of a scene (pxpl5_lab::code_times). The provenance of these times is \"derived from code\". With `machine.times = \
-         \"code\"`, the timing table has the mean times of the code. Without `machine.times = \"code\"`, the timing table has \
-         the published or fitted times.\n"
+         time of a scene (pxpl5_lab::code_times). The provenance of times from the code is \"derived from code\". With \
+         `machine.times = \"code\"`, the timing table has the mean times of the code. Without `machine.times = \"code\"`, the \
+         timing table has the published or fitted times.\n"
     );
     head(&[
         "code",
@@ -582,9 +582,9 @@ The three kernels differ in their code:
 - *straight* is code without optimisation. Each statement reads and writes its variables in memory (stack frame), and
   all functions are inlined.
 
-- *compiled* is like the output of a good compiler of about 1990 for a plain C program. The code has functions, loops,
-  local variables in registers, and scalar floating-point operations. The rules for compiled code were written before
-  the first measurement (compiled_rules.md).
+- *compiled* is like the output of a good compiler of about 1990 for a plain C program. Compiled code has functions,
+  loops, local variables in registers, and scalar floating-point operations. The rules for compiled code were written
+  before the first measurement (compiled_rules.md).
 
 - *dual* is code whose instructions the module `i860::linear` arranged in pairs for dual-instruction mode. The dual
   kernel processes a batch of 26 triangles in two loops. Each loop fits the instruction cache of 4 KB.

@@ -30,7 +30,7 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
     size_limits(&mut text, &all.size_limits);
     let _ = writeln!(
         text,
-        "\n## E9: a straight edge through the lens\n\nThe experiment shows a vertical edge, 20 degrees to the right, through a radial lens with k1 = 0.32. The display chooses\n\
+        "\n## E9: a straight edge through the lens\n\nExperiment E9 shows a vertical edge, 20 degrees to the right, through a radial lens with k1 = 0.32. The display chooses\n\
          the texels for the radial lens. The edge bends by {:.1} pixels on the screen. Seen through the lens, the edge bends by\n\
          {:.2} pixels. The edge counts as straight if it bends by less than a pixel.",
         all.lens_px[0], all.lens_px[1]
@@ -117,7 +117,7 @@ pub fn missed(rows: &[FigureRow]) -> String {
         let both = [row.published, row.simulated].map(four);
         let _ = writeln!(
             text,
-            "- Row **{}** (\"{}\") is missed. The papers print {} {}, and the model gives {}. {}\n",
+            "- Row **{}** (\"{}\") is missed: the papers print {} {}, and the model gives {}. {}\n",
             row.id,
             row.statement,
             both[0],
@@ -172,8 +172,8 @@ fn fits(text: &mut String, all: &Experiments) {
 #[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
-         The paper does not print the widths of the rings of cells, how distances are measured, the path or the hall. The table\n\
-         of rules combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
+         The paper CPR05 does not print the widths of the rings of cells, how distances are measured, the path or the hall. The\n\
+         table of rules combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
          fitted to the rates of memories 1 to 3. The error of a fit is the root mean square over memories 1 to 3. For the column\n\
          *left out*, each rate is predicted with the side of a cell that fits the other two rates best. The rules are ranked by\n\
          their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
@@ -310,7 +310,7 @@ fn conservation(text: &mut String, all: &Experiments) {
          number of sections. Without segmentation, each section is in the same memory as with segmentation, or in a faster\n\
          memory. Two constraints follow:\n\n\
          1. The columns with and without segmentation have the same sum. The paper prints the sums {} and {}, so there are {:.0}\n   \
-            more sections without segmentation. The model has the sums {:.0} and {:.0}.\n\n\
+            more sections without segmentation. In the model, the sums are {:.0} and {:.0}.\n\n\
          2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. The\n   \
             printed numbers and the numbers of the model both satisfy the second constraint:\n\n\
          | memories | printed, cut | printed, uncut | ours, cut | ours, uncut |\n|---|---|---|---|---|\n",
@@ -379,9 +379,9 @@ fn texels(width: f64) -> String {
 fn slowed(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E8: a renderer that is too slow\n\nThe experiment uses the walk \"cut, torn\" for 1,800 frames. The renderer draws due memories in the order of their\n\
-         numbers. The display chooses the texel of each pixel at scan-out, so the speed of the renderer does not affect the\n\
-         error for a rotation of the head.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
+        "\n## E8: a renderer that is too slow\n\nExperiment E8 uses the walk \"cut, torn\" for 1,800 frames. The renderer of experiment E8 draws due memories in the order\n\
+         of their numbers. The display chooses the texel of each pixel at scan-out, so the speed of the renderer does not affect\n\
+         the error for a rotation of the head.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
     );
     for SlowRendererResult { triangles_per_s: rate, rates_hz, missed } in &all.slowed {
         let rates: Vec<String> = rates_hz.iter().map(|rate| format!("{rate:.1}")).collect();

@@ -107,8 +107,9 @@ fn of_readings(text: &mut String, readings: &Readings) {
          In the table of interpretations, the columns *mean* and *worst* give the mean and the largest error of the figures in\n\
          percent. The column *log L* is the logarithm of the likelihood of the printed means and standard deviations. The\n\
          likelihood allows an error of 2 % for the conditions that the papers do not print.\n\n\
-         The paper TR94 derives figures 3 and 5 from its rules and did not measure these figures. The table therefore compares\n\
-         figures 3 and 5 with the rules alone. Figures 3, 4b, 5 and 17 do not distinguish one interpretation from another.\n\n\
+         The paper TR94 derives figures 3 and 5 from its rules and did not measure these figures. The table of interpretations\n\
+         therefore compares figures 3 and 5 with the rules alone. Figures 3, 4b, 5 and 17 do not distinguish one interpretation\n\
+         from another.\n\n\
          | mean | worst | log L | {} | reading |\n|---|---|---|{}---|\n",
         fits.len(),
         readings::FIGURES.join(" | "),
@@ -123,13 +124,13 @@ fn of_readings(text: &mut String, readings: &Readings) {
          The number of interpretations that equal the best interpretation within the printed digits ({:.2} % of a mean error) is {}.\n\n\
          The following reasons decide the choice of the interpretation:\n\n\
          - *each eye, whole fields*: The papers print the latencies of application scenes in fields. Equal numbers of latencies\n  \
-           of 4 and 5 fields give a mean of 4.5 and a standard deviation of 0.5. The paper prints a mean of 4.47 and a deviation\n  \
-           of 0.502. The other printed mean and deviation, 4.61 and 0.589, also need a few latencies of 6 fields. The latencies\n  \
-           of the first eyes alone have a deviation of 0.1.\n\n\
+           of 4 and 5 fields give a mean of 4.5 and a standard deviation of 0.5. The paper TR94 prints a mean of 4.47 and a\n  \
+           deviation of 0.502. The other printed mean and deviation, 4.61 and 0.589, also need a few latencies of 6 fields. The\n  \
+           latencies of the first eyes alone have a deviation of 0.1.\n\n\
          - *room for all*: The 4,096 bits of a pixel hold 128 regions of 32 bits. A renderer could keep fewer regions only if a\n  \
            rule of the software limited the number of regions.\n\n\
          - *wait*: With room for all regions, the latency of figure 4 is 6 % too long with the rule `store`, and 1 to 2 % too\n  \
-           long with the rule `wait`. The text of the paper allows both rules.\n\n\
+           long with the rule `wait`. The text of the paper allows the rules `store` and `wait`.\n\n\
          - *large, culled*: The scene `head` takes twice the printed time on the small machine. The scene `head` also takes\n  \
            twice the printed time if back faces are drawn.\n\n\
          - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed 293\n  \

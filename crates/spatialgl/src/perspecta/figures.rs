@@ -51,7 +51,7 @@ fn source(id: &str) -> &'static str {
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {
-            "The paper says \"most scenes\" and does not name these scenes. The interval from 5 to 20 is an assumption of the project. A slender \
+            "The SpatialGL paper says \"most scenes\" and does not name these scenes. The interval from 5 to 20 is an assumption of the project. A slender \
              object such as the Mig leaves most of the volume empty."
         }
         "section 6" => {
