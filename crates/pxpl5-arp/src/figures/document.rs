@@ -173,7 +173,7 @@ fn fits(text: &mut String, all: &Experiments) {
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
          The paper CPR05 does not print the widths of the rings of cells, how distances are measured, the path or the hall. The\n\
-         table of rules combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
+         side of a cell also determines the update rates of the other memories. For each combination, the side of a cell is\n\
          fitted to the rates of memories 1 to 3. The error of a fit is the root mean square over memories 1 to 3. For the column\n\
          *left out*, each rate is predicted with the side of a cell that fits the other two rates best. The rules are ranked by\n\
          their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
