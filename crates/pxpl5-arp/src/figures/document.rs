@@ -158,7 +158,7 @@ fn fits(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
         "\n## E5: table 1\n\nThe scene is `gallery`. The side of a cell (its length in metres) was fitted so that the update rate of memory 1 is as\n\
-         near as possible to 39.25 Hz. The side of a cell then also determines the rates of the other memories.\n\n\
+         near as possible to 39.25 Hz. The side of a cell also determines the update rates of the other memories.\n\n\
          | rules | side | rates of memories 0 to 3, Hz | errors of 1 (fitted), 2 and 3 |\n|---|---|---|---|\n\
          | published | | {} | |\n",
         rates(&RATES_HZ)
@@ -173,7 +173,7 @@ fn fits(text: &mut String, all: &Experiments) {
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
          The paper CPR05 does not print the widths of the rings of cells, how distances are measured, the path or the hall. The\n\
-         side of a cell also determines the update rates of the other memories. For each combination, the side of a cell is\n\
+         table of rules combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
          fitted to the rates of memories 1 to 3. The error of a fit is the root mean square over memories 1 to 3. For the column\n\
          *left out*, each rate is predicted with the side of a cell that fits the other two rates best. The rules are ranked by\n\
          their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
@@ -218,8 +218,8 @@ fn best_of_all(all: &Interpretations) -> String {
         );
     }
     text.push_str(
-        "\nEach row of the next table leaves out one rate. The rules, the path, the hall and the side of a cell are chosen to fit\n\
-         the other two rates alone.\n\n\
+        "\nEach row of the next table leaves out one rate. For each rate that is left out, the rules, the path, the hall and the\n\
+         side of a cell are chosen to fit the other two rates.\n\n\
          | memory | predicted | error | the others' choice |\n|---|---|---|---|\n",
     );
     for LeftOutRate { memory, rules, situation, trial, error_percent } in &all.left_out {
@@ -268,9 +268,9 @@ fn thresholds(text: &mut String, all: &Experiments) {
          the papers limit the threshold. By statement A7, the threshold is the distance between neighbouring pixels of the\n\
          display memory or of the display. By statement A15, tears are a few pixels wide, which the project interprets as 2 to 5\n\
          pixels.\n\n\
-         If each memory is shown as soon as it is due, a tear is as wide as the threshold. If the slower memory is shown one\n\
-         frame late, the tear is wider by the movement of the content in one frame. A pixel is 60 degrees / 640, and a texel is\n\
-         90 degrees / 512.\n\n\
+         If each memory is shown as soon as it is due, a tear is as wide as the threshold. If the memory with the lower update\n\
+         rate is shown one frame late, the tear is wider by the movement of the content in one frame. A pixel is 60 degrees /\n\
+         640, and a texel is 90 degrees / 512.\n\n\
          | threshold | degrees | side | hall of 8 cells | tear, shown at once | tear, a frame late |\n|---|---|---|---|---|---|\n",
         all.fits[0].cell_m * address_recalculation::priority::PriorityTiming::PAPERS.theta_deg
     );
@@ -311,8 +311,8 @@ fn conservation(text: &mut String, all: &Experiments) {
          memory. Two constraints follow:\n\n\
          1. The columns with and without segmentation have the same sum. The paper prints the sums {} and {}, so there are {:.0}\n   \
             more sections without segmentation. In the model, the sums are {:.0} and {:.0}.\n\n\
-         2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. The\n   \
-            printed numbers and the numbers of the model both satisfy the second constraint:\n\n\
+         2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. Both\n   \
+            the printed numbers and the numbers of the model satisfy the constraint for memories 0 to k:\n\n\
          | memories | printed, cut | printed, uncut | ours, cut | ours, uncut |\n|---|---|---|---|---|\n",
         cut.iter().sum::<f64>(),
         uncut.iter().sum::<f64>(),
@@ -328,9 +328,9 @@ fn conservation(text: &mut String, all: &Experiments) {
     }
     let _ = write!(
         text,
-        "\nThe printed numbers violate the first constraint, so the two columns do not describe the same set of sections. The\n\
-         printed saving of draws is 31.3 %. One part of the saving of draws comes from {:.0} missing sections. The other part of the\n\
-         saving of draws is the saving for each section. With segmentation, a section needs {with:.1} draws per second. Without\n\
+        "\nThe printed numbers violate the constraint of equal sums, so the two columns do not describe the same set of sections.\n\
+         The printed saving of draws is 31.3 %. One part of the saving of draws comes from {:.0} missing sections. The other part of\n\
+         the saving of draws is the saving for each section. With segmentation, a section needs {with:.1} draws per second. Without\n\
          segmentation, a section needs {without:.1}, so the saving is {:.1} %. Three of the four numbers of a column are independent,\n\
          because the sum of the column determines the fourth number.\n",
         uncut.iter().sum::<f64>() - cut.iter().sum::<f64>(),

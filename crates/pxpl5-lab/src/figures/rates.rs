@@ -128,8 +128,9 @@ fn of_boards() -> Vec<Measurement> {
                 "triangles a second of a processor: 1 M over 32",
                 (31_250.0, "triangles/s", None),
                 "typical:2000 mono on small-hmd with one slave: the result is the number of triangles divided by the time of TRANSFORM",
-                "The published figure is the design rate of the whole machine divided by its number of processors. The optimised code from 1991 is \
-                 faster. The parameter `gp.triangle_ns` has its own source, which describes the optimised code.",
+                "The published figure is the design rate of the whole machine divided by its number of processors. The optimised \
+                 code from 1991 is faster than the design rate. The parameter `gp.triangle_ns` has its own source, which \
+                 describes the optimised code.",
             ),
             measure: processor_rate,
             moved_by: &["gp.triangle_ns", "gp.bin_entry_ns"],
