@@ -176,7 +176,8 @@ fn freeze_sensitivity() {
     println!("\n## Sensitivity to each freeze row\n");
     println!(
         "The freeze table lists the causes for which the processor waits (freezes). Each line of the following table gives the\n\
-         change of clocks per triangle if one row of the freeze table is disabled. Rows without effect are left out.\n"
+         change of clocks per triangle if one row of the freeze table is disabled. The following table leaves out rows of the\n\
+         freeze table without effect.\n"
     );
     head(&["row", "condition", "straight", "compiled", "dual"]);
     let base = both(|k| clocks(k, Config::cycle()));

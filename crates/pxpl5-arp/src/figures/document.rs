@@ -250,8 +250,8 @@ fn chosen(all: &Interpretations) -> String {
            distance of the cells of the previous memory.\n\n\
          - *No cascade*: The cascade is a derived rule for warping, and the paper gives table 1 before it introduces warping.\n\n\
          - *To the block's border*: If distances are measured to occupied cells instead, the rates fit better for rings of equal\n  \
-           width, and worse for rings whose widths double. The parameter `priority.to_held_cells` selects one of the two rules\n  \
-           for distances.\n\n\
+           width. For rings whose widths double, the rates fit worse. The parameter `priority.to_held_cells` selects one of the\n  \
+           two rules for distances.\n\n\
          - *Reliability*: Three rates are little data. A rate is often 60 Hz divided by a whole number, so it stays constant over\n  \
            a range of sides of a cell. Two rates may therefore predict the third rate badly, as the table of left-out rates\n  \
            shows. If the rules are chosen by the rates of memories 2 and 3, the predicted rate of memory 1 equals the rate of\n  \

@@ -129,8 +129,8 @@ fn of_readings(text: &mut String, readings: &Readings) {
            latencies of the first eyes alone have a deviation of 0.1.\n\n\
          - *room for all*: The 4,096 bits of a pixel hold 128 regions of 32 bits. A renderer could keep fewer regions only if a\n  \
            rule of the software limited the number of regions.\n\n\
-         - *wait*: With room for all regions, the latency of figure 4 is 6 % too long with the rule `store`, and 1 to 2 % too\n  \
-           long with the rule `wait`. The text of the paper allows the rules `store` and `wait`.\n\n\
+         - *wait*: With room for all regions and the rule `store`, the latency of figure 4 is 6 % too long. With the rule `wait`,\n  \
+           the latency of figure 4 is 1 to 2 % too long. The text of the paper allows the rules `store` and `wait`.\n\n\
          - *large, culled*: The scene `head` takes twice the printed time on the small machine. The scene `head` also takes\n  \
            twice the printed time if back faces are drawn.\n\n\
          - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed 293\n  \

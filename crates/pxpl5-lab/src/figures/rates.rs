@@ -97,8 +97,8 @@ fn of_machine() -> Vec<Measurement> {
 
 fn of_boards() -> Vec<Measurement> {
     let of_renderer = "typical:20000 mono on small-hmd with one renderer: the result is the number of commands divided by the working time of the array. Of 1,000 commands, 997 are triangles.";
-    let of_array = "The published rate is a round number, and its source states neither the shading nor the state of the machine. The rate of the model \
-                    follows from the bit-serial program of the array.";
+    let of_array = "The published rate is a round number, and its source states neither the shading nor the state of the \
+                    machine. The rate of the model follows from the bit-serial program of the pixel array.";
     vec![
         Measurement {
             figure: free(
