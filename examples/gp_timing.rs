@@ -224,8 +224,8 @@ fn dram_sensitivity() {
         row(&[vec![name.to_owned(), entry.value.to_string(), format!("{low} to {high}")], cells].concat());
     }
     println!(
-        "\nFor `dma_interval`, the columns \"most\" use the value 8 clocks, at which DMA moves half of the data rate of one ring channel.\n\
-         The value 0 means that no other device uses the bus."
+        "\nFor `dma_interval`, the columns \"most\" use the value 8 clocks, at which DMA moves half of the data rate of one ring\n\
+         channel. The value 0 of `dma_interval` means that no other device uses the bus."
     );
 }
 
@@ -387,11 +387,11 @@ fn on_board_us(preset: &str, level: Level) -> Result<f64, Box<dyn std::error::Er
 fn board() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## On the board: the cycle level\n");
     println!(
-        "The first table compares two levels of detail for Slats: the transaction level with its timing table, and the cycle level. At \
-         the cycle level, the kernels run on the boards of the machine. Slats draws fields without bins, and the caches keep their \
-         contents during the run. The triangles are small and touch 1.3 regions each on average. The presets of 1994 and 1995 run the \
-         *compiled* kernel, because their code did not fit the instruction cache. The preset `slats-optimised` runs the *dual* kernel. \
-         No number is fitted at the cycle level.\n"
+        "The first table compares two levels of detail for Slats: the transaction level with its timing table, and the cycle \
+         level. At the cycle level, the kernels run on the boards of the machine. Slats draws fields without bins, and the \
+         caches keep their contents during the run. The triangles are small and touch 1.3 regions each on average. The presets \
+         of 1994 and 1995 run the *compiled* kernel, because the code of these years did not fit the instruction cache. The \
+         preset `slats-optimised` runs the *dual* kernel. No number is fitted at the cycle level.\n"
     );
     head(&["preset", "kernel", "us per triangle and eye: table", "cycle level", "published"]);
     for (preset, kernel, published) in [
@@ -424,8 +424,9 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!(
         "\nThe rules of the compiled kernel (kernels/compiled_rules.md) were written before the kernel was compared with the \
-         published limits of Slats. The table of limits has the results of the first comparison. The limit of triangles does not \
-         depend on the size of the triangles, because no triangle is clipped and Slats sends each triangle to all regions."
+         published limits of Slats. The table of limits has the results of the first comparison with the published limits. The \
+         limit of triangles does not depend on the size of the triangles, because no triangle is clipped and Slats sends each \
+         triangle to all regions."
     );
     Ok(())
 }

@@ -310,7 +310,7 @@ fn conservation(text: &mut String, all: &Experiments) {
          number of sections. Without segmentation, each section is in the same memory as with segmentation, or in a faster\n\
          memory. Two constraints follow:\n\n\
          1. The columns with and without segmentation have the same sum. The paper prints the sums {} and {}, so there are {:.0}\n   \
-            more sections without segmentation. In the model, the sums are {:.0} and {:.0}.\n\n\
+            more sections without segmentation. In the model, the sums of sections are {:.0} and {:.0}.\n\n\
          2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. Both\n   \
             the printed numbers and the numbers of the model satisfy the constraint for memories 0 to k:\n\n\
          | memories | printed, cut | printed, uncut | ours, cut | ours, uncut |\n|---|---|---|---|---|\n",

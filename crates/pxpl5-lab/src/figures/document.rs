@@ -40,11 +40,12 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,
         "\n## Times of primitives from the code instead\n\n\
-         The timing table takes 21.7 us for a triangle of optimised PPHIGS, which is the published rate. For a triangle of\n\
-         Slats, the table takes 30.0 us in 1994 and 55.8 us in 1995. The two times of Slats were fitted to figures 12 and 14.\n\n\
-         With `machine.times = \"code\"`, the simulator uses the times that the project's own i860 code needs. Each time is a mean\n\
-         over the application scenes, and no time is fitted. The page docs/gp-timing.md describes how the times of the code were\n\
-         measured. The following table lists the figures that change with the times of the code, at the transaction level.\n\n\
+         The timing table takes 21.7 us for a triangle of optimised PPHIGS, which is the published rate. For a triangle of Slats,\n\
+         the timing table takes 30.0 us in 1994 and 55.8 us in 1995. The two times of Slats were fitted to figures 12 and 14.\n\n\
+         With `machine.times = \"code\"`, the simulator uses the times that the project's own i860 code needs. Each time from the\n\
+         code is a mean over the application scenes, and no time is fitted. The page docs/gp-timing.md describes how the times of\n\
+         the code were measured. The following table lists the figures that change with the times of the code, at the transaction\n\
+         level.\n\n\
          | # | figure | published | table | error | code | error |\n|---|---|---|---|---|---|---|\n"
     );
     // Figures that do not depend on the times are left out.
@@ -66,9 +67,9 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     }
     let _ = write!(
         text,
-        "\nThe mean error of the free checks is {:.1} % with the timing table and {:.1} % with the times of the code. A figure that the\n\
-         run with the code cannot compute counts with an error of 100 %. The limits of Slats change most, because the times of\n\
-         the project's code differ from the fitted times. No triangle of the figures in the table is clipped.\n\n\
+        "\nThe mean error of the free checks is {:.1} % with the timing table and {:.1} % with the times of the code. A figure that\n\
+         cannot be computed with the times of the code counts with an error of 100 %. The limits of Slats change most, because\n\
+         the times of the project's code differ from the fitted times. No triangle of the figures in this table is clipped.\n\n\
          The timing table with published and fitted times stays the default. Two of the three times in the timing table follow\n\
          from the limits of triangles in the papers. The published limits depend on the code of the papers, which is not\n\
          available. The project's code is different code for the same processor, and some rules for waits of the i860 (freezes)\n\
