@@ -197,7 +197,9 @@ fn freeze_sensitivity() {
 
 fn dram_sensitivity() {
     println!("\n## Sensitivity to the memory\n");
-    println!("The following table gives the change of clocks per triangle at both ends of each parameter's allowed range.\n");
+    println!(
+        "The following table gives the change of clocks per triangle at both ends of each parameter's allowed range.\n"
+    );
     head(&[
         "parameter",
         "default",
