@@ -9,7 +9,8 @@ pub fn row(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2]
     let cause = match id {
         "A8" => "No interpretation of size and distance gives such a large factor.",
         "A12" => {
-            "The paper does not print its scene, path, rings of cells and threshold. Only the rate of memory 1 was fitted."
+            "The paper CPR05 does not print its scene, path, rings of cells and threshold. Of the update rates, only the rate of \
+             memory 1 was fitted."
         }
         _ => "",
     };
