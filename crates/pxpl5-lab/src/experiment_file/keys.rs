@@ -32,13 +32,16 @@ const COMMON: &[(&str, &str)] = &[
         "move and scale a model file so that both eyes see all of it: true (default) or false (its coordinates are metres)",
     ),
     ("cull", "drop triangles that face away from the eye, in all structures of the scene: true or false (default)"),
-    ("motion.path", "scene (the scene's own), still, look, pan or orbit"),
-    ("motion.sway", "0 to 10: scale of the head's sway"),
-    ("motion.distance", "metres from the scene's centre: still, look, orbit"),
-    ("motion.deg_per_s", "rate of turn: pan, orbit"),
+    ("head.path", "motion in front of the scene: scene (the scene's own; default), still, look, pan or orbit"),
+    (
+        "head.sway",
+        "scale of the head's sway on this path, 0 to 10; default 1 for look, that of the scene for scene, else 0",
+    ),
+    ("head.distance", "metres from the scene's centre: still, look, orbit; default: the scene fills the view"),
+    ("head.deg_per_s", "degrees a second: pan, orbit; default: the mean of recorded head motion"),
     (
         "head.motion",
-        "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, \
+        "scene (the motion of head.path), still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, \
          or a recording (.csv, .txt, .tum, .jsonl), relative to the experiment file, seen through a tracker",
     ),
     ("head.end", "behaviour after the end of a recording: error (a longer run is refused), hold or loop"),
@@ -99,9 +102,21 @@ const COMMON: &[(&str, &str)] = &[
     ("published.value", "published value of the quantity"),
 ];
 
-/// Former names of keys, each with the current name.
-const RENAMED: [(&str, &str); 3] =
-    [("head.display", "head.raster"), ("head.evaluate_at", "head.evaluate_at"), ("display.preset", "display")];
+/// Former names of keys, each with the current name. The next version accepts the current names only.
+const RENAMED: [(&str, &str); 7] = [
+    ("head.display", "head.raster"),
+    ("head.judge_at", "head.evaluate_at"),
+    ("display.preset", "display"),
+    ("motion.path", "head.path"),
+    ("motion.sway", "head.sway"),
+    ("motion.distance", "head.distance"),
+    ("motion.deg_per_s", "head.deg_per_s"),
+];
+
+/// Returns the current name of a key.
+pub(super) fn renamed(path: &str) -> &str {
+    RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now)
+}
 
 /// Returns all keys except the keys of the machine's parameters. A parameter's key is `machine.` followed by a path of
 /// [`MachineConfig::set`].
@@ -141,7 +156,7 @@ fn common(path: &str, about: &str) -> FileKey {
 /// the machine.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     // Former names of keys are still accepted.
-    let path = RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now);
+    let path = renamed(path);
     if is_key(registry, path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
         return Some(path.to_owned());
     }

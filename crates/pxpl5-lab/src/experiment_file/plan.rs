@@ -95,6 +95,8 @@ pub struct Plan {
     pub output: Outputs,
     /// Published figure to compare with, if any.
     pub published: Option<Published>,
+    /// Sentences about settings that have former names in the file.
+    pub notes: Vec<String>,
 }
 
 /// Largest seed that TOML can represent.
@@ -132,6 +134,7 @@ impl ExperimentFile {
                 csv: self.flag("output.csv")?.unwrap_or(true),
             },
             published: Published::read(self)?,
+            notes: self.notes.clone(),
         })
     }
 
@@ -301,12 +304,14 @@ impl Plan {
     }
 
     /// Returns warnings about settings that do not represent the real machine. The warnings concern parameters out of
-    /// range, times from a table although executed code was requested, and the recording of the head motion.
+    /// range, times from a table although executed code was requested, the recording of the head motion, and former
+    /// names of keys.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());
         let of_head = self.head.iter().flat_map(HeadChoice::warnings);
-        self.out_of_range().iter().map(Parameter::warning).chain(of_table).chain(of_head).collect()
+        let of_machine = self.out_of_range().into_iter().map(|parameter| parameter.warning());
+        self.notes.iter().cloned().chain(of_machine).chain(of_table).chain(of_head).collect()
     }
 
     /// Returns the name of the experiment's level of modelling.

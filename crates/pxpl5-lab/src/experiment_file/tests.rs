@@ -55,7 +55,7 @@ fn errors_name_the_line_and_what_was_expected() {
             "pipeline = \"slats\"\nscene = \"mig\"\nmeasure = [\"latency_ms.maen\"]",
             "line 3: measure: there is no quantity `latency_ms.maen`; did you mean `latency_ms.mean`?",
         ),
-        ("pipeline = \"slats\"\nscene = \"mig\"\nmotion.distance = 1", "this motion.path does not take it"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nmotion.distance = 1", "this head.path does not take it"),
         ("pipeline = \"slats\"\nscene = \"mig\"\npublished.value = 1", "published.quantity is missing"),
         ("pipeline = \"jitp-scanline\"\nscene = \"mig\"\nblock = 8", "does not apply to the pipeline jitp-scanline"),
         (
@@ -99,7 +99,7 @@ fn errors_name_the_line_and_what_was_expected() {
 fn what_is_shown_is_a_file_that_means_the_same() {
     let texts = [
         RC.to_owned(),
-        format!("{RC}mono = true\nshading = \"gouraud\"\ntriangles = 9\nseed = 5\n[motion]\npath = \"orbit\"\ndistance = 2\nsway = 0.5\n"),
+        format!("{RC}mono = true\nshading = \"gouraud\"\ntriangles = 9\nseed = 5\n[head]\npath = \"orbit\"\ndistance = 2\nsway = 0.5\n[hmd]\nnear = 0.1\n"),
         "title = \"a \\\"b\\\"\"\npipeline = \"slats\"\nscene = \"mig\"\ncode = 1995\npublished = {figure = 3, source = \"x\", quantity = \"copies_ms\", value = 2}\n".to_owned(),
     ];
     let registry = crate::registry();
@@ -126,7 +126,7 @@ fn the_fingerprint_is_of_what_changes_the_result() {
         "fields = 121",
         "mono = true",
         "triangles = 5",
-        "motion.sway = 2",
+        "head.sway = 2",
         "machine.ring.hop_ns = 51",
     ] {
         assert_ne!(plan(&format!("{RC}{other}")).fingerprint(), base, "{other}");
@@ -135,13 +135,35 @@ fn the_fingerprint_is_of_what_changes_the_result() {
 
 #[test]
 fn a_motion_is_round_the_scene() {
-    let scene = plan(&format!("{RC}motion.path = \"orbit\"\nmotion.distance = 3")).load_scene().expect("built in");
+    let scene = plan(&format!("{RC}head.path = \"orbit\"\nhead.distance = 3")).load_scene().expect("built in");
     let (centre, _) = scene.bounding_sphere();
     for time_ps in [0, 1_000_000_000_000, 2_500_000_000_000] {
         let eye = scene.motion().pose(time_ps).position;
         assert!(((eye - centre.as_dvec3()).length() - 3.0).abs() < 1e-3);
     }
     assert_ne!(scene.motion().pose(0).position, scene.motion().pose(1_000_000_000_000).position);
+}
+
+#[test]
+fn former_names_of_keys_mean_the_same_and_are_noted() {
+    let former = plan(&format!("{RC}[motion]\npath = \"orbit\"\nsway = 0.5\n"));
+    assert_eq!(former, plan(&format!("{RC}[head]\npath = \"orbit\"\nsway = 0.5\n")));
+    let notes = former.warnings();
+    assert!(
+        notes[0].ends_with("motion.path is now head.path; the next version does not accept motion.path"),
+        "{notes:?}"
+    );
+    assert_eq!(notes.len(), 2);
+}
+
+#[test]
+fn a_tracked_head_can_follow_the_motion_in_front_of_the_scene() {
+    let plan = plan(&format!("{RC}seed = 5\nhead.path = \"orbit\"\nhead.sway = 1\nhead.motion = \"scene\"\n"));
+    let own = plan.load_scene().expect("built in").motion().with_seed(5);
+    let head = plan.head.as_ref().expect("a head").head();
+    for time_ps in [0, 700_000_000_000] {
+        assert_eq!(head.motion().pose(time_ps), own.pose(time_ps));
+    }
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! Converts a plan (checked experiment) to the text of a complete experiment file.
 
 use super::hmd;
-use super::motion::PathChoice;
 use super::plan::{PIXELS, Plan};
 use super::scene::is_file;
 use crate::compare::is_recording;
@@ -108,21 +107,7 @@ impl Plan {
         if let Some(triangles) = self.scene.triangles {
             all.put("triangles", triangles as i64);
         }
-        let motion = &self.scene.motion;
-        let (path, distance, deg_per_s) = match motion.path {
-            None => ("scene", None, None),
-            Some(PathChoice::Still { distance }) => ("still", distance, None),
-            Some(PathChoice::Look { distance }) => ("look", distance, None),
-            Some(PathChoice::Orbit { distance, deg_per_s }) => ("orbit", distance, Some(deg_per_s)),
-            Some(PathChoice::Pan { deg_per_s }) => ("pan", None, Some(deg_per_s)),
-        };
-        all.put("motion.path", path);
-        let numbers = [("distance", distance), ("deg_per_s", deg_per_s), ("sway", motion.sway)];
-        for (key, value) in numbers {
-            if let Some(value) = value {
-                all.put(&format!("motion.{key}"), value);
-            }
-        }
+        self.scene.motion.settings().into_iter().for_each(|(path, value)| all.put(path, value));
     }
 
     fn published_settings(&self, all: &mut Settings) {
@@ -192,7 +177,7 @@ fn toml_number(value: Number) -> Value {
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.lines(f, None)?;
-        for table in ["motion", "head", "tracking", "machine", "output", "published"] {
+        for table in ["head", "hmd", "tracking", "machine", "output", "published"] {
             if self.values.keys().any(|path| path.split_once('.').is_some_and(|(of, _)| of == table)) {
                 writeln!(f, "\n[{table}]")?;
                 self.lines(f, Some(table))?;

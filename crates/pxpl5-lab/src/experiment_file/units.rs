@@ -23,8 +23,8 @@ const KINDS: [Kind; 8] = [TIMES, LENGTHS, ANGLES, RATES, TURNS, SPEEDS, SIZES, P
 
 /// Units of the keys that are not machine or tracking parameters.
 const UNITS: [(&str, &str); 8] = [
-    ("motion.distance", "m"),
-    ("motion.deg_per_s", "deg/s"),
+    ("head.distance", "m"),
+    ("head.deg_per_s", "deg/s"),
     ("head.evaluate_at", "m"),
     ("hmd.field_of_view", "deg"),
     ("hmd.eye_distance", "mm"),
@@ -115,7 +115,7 @@ mod tests {
             ("machine.renderer.clock_hz", "40MHz", Value::Integer(40_000_000)),
             ("hmd.field_of_view", "60deg", Value::Integer(60)),
             ("hmd.eye_distance", "6.4cm", Value::Integer(64)),
-            ("motion.distance", "250mm", Value::Float(0.25)),
+            ("head.distance", "250mm", Value::Float(0.25)),
             ("tracking.optical.latency", "0.02s", Value::Integer(20)),
         ] {
             assert_eq!(read(key, text), Ok(Some(expected)), "{key} = {text}");
