@@ -8,14 +8,14 @@ use super::{ExperimentFile, Setting, display};
 use crate::Workstation;
 use crate::levels::summarise;
 use pxpl5_gp::CodeVersion;
-use pxpl5_machine::{MachineConfig, Parameter};
+use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, Host, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
     PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
-use pxpl5_sim::parameters::{SettingError, Value as Number};
+use pxpl5_sim::parameters::{Parameter, SettingError, Value as Number};
 use std::sync::Arc;
 
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];

@@ -3,7 +3,7 @@
 
 use super::{ExperimentFile, Setting};
 use crate::compare::tracker_by;
-use pxpl5_machine::Parameter;
+use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use tracking::config::{FACTS, Tables};
 use tracking::tracker::{SerialRead, TrackerConfig};

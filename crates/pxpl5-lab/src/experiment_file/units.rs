@@ -4,8 +4,9 @@
 //! of the key.
 
 use super::tracking_numbers::tracking_parameters;
-use pxpl5_machine::{MachineConfig, Parameter};
+use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
+use pxpl5_sim::parameters::Parameter;
 use toml::Value;
 
 type Kind = &'static [(&'static str, f64)];
