@@ -215,7 +215,7 @@ impl ExperimentFile {
     ///
     /// Returns a [`SettingError`] when the seed is not a whole number from 0 to 2^63 - 1.
     pub fn seed(&self) -> Result<u64, SettingError> {
-        Ok(self.integer("seed", 0..=plan::MAX_SEED)?.unwrap_or(1))
+        Ok(self.whole("seed")?.unwrap_or(1))
     }
 
     /// Returns the checked experiment for one seed. If `head.motion` is `synthetic`, the motion has the same seed.

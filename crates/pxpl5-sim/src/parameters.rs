@@ -45,6 +45,7 @@ mod by_path;
 mod error;
 mod file_error;
 mod info;
+mod key;
 mod macros;
 mod name;
 mod nearest;
@@ -57,6 +58,7 @@ pub use by_path::{Choice, Parameter, PathSettings, PathTable, PathTableMut, assi
 pub use error::{SettingError, SettingErrorKind};
 pub use file_error::{FileError, FileErrorKind, text_of};
 pub use info::{ParameterInfo, Provenance, unknown_parameter};
+pub use key::{Key, KeyValue, KeyValues, names};
 pub use name::{find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};

@@ -265,7 +265,7 @@ fn what_is_said_of_a_head_is_checked() {
         ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect_err("refused").to_string()
     };
     let at = refusal("head.motion = \"pan:1\"\nhead.evaluate_at = 0");
-    assert!(at.contains("distance at which errors are evaluated, m: expected 0.001 to 1000000, found 0"), "{at}");
+    assert!(at.contains("line 4: head.evaluate_at: expected a number from 0.001 to 1000000 m, found 0"), "{at}");
     let end = refusal("head.motion = \"pan:1\"\nhead.end = \"hold\"");
     assert!(end.contains("line 4: head.end: expected nothing: head.motion is no recording"), "{end}");
     let sine = refusal("head.motion = \"sine:20\"");
@@ -283,4 +283,37 @@ fn moved_to(x: f64, folder: &Path) -> Plan {
 
 fn config_hash(plan: &Plan) -> Fingerprint {
     plan.experiment(plan.load_scene().expect("built in")).config_hash()
+}
+
+#[test]
+fn the_keys_of_the_head_mounted_display_have_the_limits_and_defaults_of_its_table() {
+    use pxpl5_sim::parameters::KeyValues;
+    use tracking::config::HeadMountedView;
+    for (name, parameter, per_unit) in [
+        ("hmd.field_of_view", "horizontal_fov_deg", 1.0),
+        ("hmd.eye_distance", "eye_separation_m", 1e3),
+        ("hmd.near", "near_m", 1.0),
+        ("hmd.far", "far_m", 1.0),
+    ] {
+        let key = super::keys::common(name).expect("a key");
+        let info = HeadMountedView::INFOS.iter().find(|info| info.name == parameter).expect("a parameter");
+        let KeyValues::Real(low, high) = key.values else { panic!("{name} is a number") };
+        assert_eq!((low, high), (info.limits.0.real() * per_unit, info.limits.1.real() * per_unit), "{name}");
+        let default = (info.papers.real() * per_unit).to_string();
+        assert_eq!(key.default.split(' ').next(), Some(default.as_str()), "{name}");
+    }
+}
+
+#[test]
+fn every_key_has_one_description_and_its_values_are_in_it() {
+    let keys = ExperimentFile::keys_of(&crate::registry());
+    let about = |path: &str| &keys.iter().find(|key| key.path == path).expect(path).about;
+    assert!(about("fields").ends_with("; 1 to 10000000; default 120"), "{}", about("fields"));
+    assert!(about("hmd.near").contains("; 0.000001 to 1000000 m; default 0.05"), "{}", about("hmd.near"));
+    assert!(about("display.hz").ends_with("; 1 to 1000 Hz"), "{}", about("display.hz"));
+    assert!(about("strip_rows").ends_with("; 1 to 128"), "{}", about("strip_rows"));
+    assert!(about("level").contains("transaction or cycle; default transaction"), "{}", about("level"));
+    let mut paths: Vec<&str> = keys.iter().map(|key| key.path.as_str()).collect();
+    paths.sort_unstable();
+    assert!(paths.windows(2).all(|pair| pair[0] != pair[1]), "a path appears twice: {paths:?}");
 }

@@ -1,7 +1,7 @@
 //! Converts a plan (checked experiment) to the text of a complete experiment file.
 
 use super::hmd;
-use super::plan::{PIXELS, Plan};
+use super::plan::Plan;
 use super::scene::is_file;
 use crate::compare::is_recording;
 use pxpl5_machine::MachineConfig;
@@ -22,11 +22,6 @@ pub struct Settings {
     remarks: BTreeMap<String, String>,
 }
 
-/// Returns the name of `value` in a list of names and values.
-fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> &'static str {
-    choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name)
-}
-
 impl Plan {
     /// Returns every setting with its value in the checked experiment, including defaults.
     #[must_use]
@@ -45,7 +40,7 @@ impl Plan {
         hmd::settings(&self.hmd).for_each(|(path, value)| all.put(path, value));
         all.put("fields", self.fields as i64);
         all.put("seed", self.seed as i64);
-        all.put("pixels", name(&PIXELS, &self.pixels));
+        all.put("pixels", self.pixels.to_string());
         all.put("level", self.level_name());
         all.put("measure", self.measure.iter().map(|m| Value::from(m.name())).collect::<Vec<_>>());
         all.put("output.pictures", self.output.pictures);
@@ -89,6 +84,7 @@ impl Plan {
             match value {
                 KeyValue::Flag(flag) => all.put(key, flag),
                 KeyValue::Whole(number) => all.put(key, number.cast_signed()),
+                KeyValue::Real(number) => all.put(key, number),
                 KeyValue::Name(name) => all.put(key, name),
                 KeyValue::Text(text) => all.put(key, text.to_string()),
             }
