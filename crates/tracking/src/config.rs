@@ -86,7 +86,6 @@ impl Tables {
 
 /// Tables of numbers that an experiment cannot change, with the names of the tables. The tables have head speeds, the
 /// pendulum rig that measures latency, NTSC video, and the head-mounted display.
-
 pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
     ("head", &HeadSpeeds::PAPERS),
     ("rig", &RigNumbers::PAPERS),
