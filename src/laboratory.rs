@@ -109,10 +109,10 @@ pub mod lab {
     /// // All keys of an experiment file.
     /// let keys: Vec<FileKey> = ExperimentFile::keys_of(&registry());
     /// assert!(!keys.is_empty());
-    /// // The key `motion.path` selects the path of the head.
-    /// let text = "pipeline = \"slats\"\nscene = \"mig\"\nmotion.path = \"still\"\n";
-    /// let path: Option<PathChoice> = ExperimentFile::parse(text, "an experiment")?.resolve()?.scene.motion.path;
-    /// assert!(path.is_some());
+    /// // The key `head.path` selects the path of the head.
+    /// let text = "pipeline = \"slats\"\nscene = \"mig\"\nhead.path = \"still\"\n";
+    /// let path: PathChoice = ExperimentFile::parse(text, "an experiment")?.resolve()?.scene.motion.path;
+    /// assert_eq!(path, PathChoice::Still);
     /// # Ok::<(), pxpl5::SettingError>(())
     /// ```
     pub use pxpl5_lab::{FileKey, PathChoice};

@@ -137,7 +137,8 @@ pub use pxpl5_sim::parameters::{SettingError, SettingErrorKind};
 /// ```
 pub use pxpl5_sim::parameters::{FileError, FileErrorKind};
 
-pub use pxpl5_machine::{PRESETS, Parameter};
+pub use pxpl5_machine::PRESETS;
+pub use pxpl5_sim::parameters::{Parameter, PathSettings};
 
 /// ```
 /// use pxpl5::{CodeVersion, PRESETS, Preset};

@@ -226,13 +226,13 @@ pub use pxpl5_measure::RasterOffsets;
 
 /// ```
 /// use pxpl5::image::RgbImage;
-/// use pxpl5::tracking::view::HmdView;
+/// use pxpl5::tracking::view::Hmd;
 /// use pxpl5::{DepthPicture, prelude::*, reproject_with_depth};
 ///
 /// // A wall two metres ahead, and a head that moves five centimetres to the right.
 /// let depths = DepthPicture::from_fn(640, 480, |_, _| 2.0);
 /// let now = Pose { position: DVec3::new(0.05, 0.0, 0.0), ..Pose::IDENTITY };
-/// let moved = reproject_with_depth(&RgbImage::new(640, 480), &depths, &HmdView::ntsc(), &Pose::IDENTITY, &now);
+/// let moved = reproject_with_depth(&RgbImage::new(640, 480), &depths, &Hmd::unc(), &Pose::IDENTITY, &now);
 /// // The picture moves to the left, so its right edge has no content.
 /// let (_, black) = moved.ok_or("three pictures of one size")?;
 /// assert!(black > 0);

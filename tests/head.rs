@@ -9,7 +9,7 @@ use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
-use pxpl5::tracking::view::HmdView;
+use pxpl5::tracking::view::Hmd;
 use pxpl5::views::{Film, FilmSurfaces};
 use pxpl5::{
     Aim, Experiment, ExperimentFile, Eye, Head, HeadPlace, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan,
@@ -111,7 +111,7 @@ fn is_wall(picture: &image::RgbImage, x: u32, y: u32) -> bool {
 fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
     const FIELD: PeriodNumber = PeriodNumber(20);
     let pan = Pan::at(30.0);
-    let view = HmdView::ntsc();
+    let view = Hmd::unc();
     let [plain, vdrt] = [Raster::Plain, Raster::Vdrt].map(|raster| {
         let outcome = panned(30.0, raster, FIELD.0 + 2).run().expect("the scene is small");
         let video = *video(&outcome);

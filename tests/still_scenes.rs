@@ -53,7 +53,7 @@ fn load(pipeline: &str, (gps, renderers): (usize, usize), covers_the_screen: boo
 }
 
 /// Returns the scene at time zero with at most `most` of its primitives, evenly spread. The head stands still at the
-/// position of `motion.path = "still"`.
+/// position of `head.path = "still"`.
 fn still(scene: &Scene, most: usize) -> Scene {
     let all = scene.triangles().len() + scene.spheres().len();
     let mut parts = scene.posed(&scene.edits_at(0)).into_parts();

@@ -10,7 +10,7 @@ use pphigs::{
     Share,
 };
 use pxpl5::ViewNumber;
-use pxpl5::scene::{Hmd, HmdConfig, Scene, View};
+use pxpl5::scene::{Hmd, Scene, View};
 use pxpl5_geometry::{Culling, Viewport};
 use pxpl5_renderer::{Layout, PixelArray};
 use pxpl5_wire::{RegionId, Word};
@@ -29,7 +29,7 @@ const HEIGHT: usize = 480;
 const VIEWS: u64 = 8;
 
 pub(crate) fn views(head: &Scene) -> Vec<EyeView> {
-    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
+    let hmd = Hmd::unc();
     let views = (0..VIEWS).map(|i| hmd.mono(&head.motion().pose(i * 100_000_000_000)));
     views
         .map(|View { world_to_eye, head_to_eye, projection, .. }| EyeView { world_to_eye, head_to_eye, projection })

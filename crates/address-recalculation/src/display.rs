@@ -228,7 +228,7 @@ impl Display for AddressRecalculationPipeline {
     }
 
     fn lights(&self, _surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time> {
-        self.optics.scan.lights(x, y, period)
+        self.optics.scan.when(x, y, period)
     }
 
     fn shown(&self, surface: usize) -> Option<RgbImage> {

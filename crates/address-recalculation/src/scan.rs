@@ -5,6 +5,7 @@ use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, Video};
 use serde::{Deserialize, Serialize};
+use std::ops::Deref;
 
 /// Event before which the display reads (latches) the newest orientation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -26,13 +27,20 @@ impl Latch {
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 
-/// Times of retraces, of displayed pixels and of reading the orientation. Field `n` scans the even lines if `n` is
-/// even.
+/// The times of a [`Video`] signal, and the times at which texels and the orientation for each pixel are read.
 #[derive(Clone, Copy, Debug)]
 pub struct FaceScan {
     video: Video,
     depth: Span,
     read_ahead: Span,
+}
+
+impl Deref for FaceScan {
+    type Target = Video;
+
+    fn deref(&self) -> &Video {
+        &self.video
+    }
 }
 
 impl FaceScan {
@@ -46,42 +54,10 @@ impl FaceScan {
         Ok(Self { video: timing.video()?, depth: arp.depth(), read_ahead: arp.read_ahead() })
     }
 
-    /// Returns the number of visible pixels in a line.
-    #[must_use]
-    pub const fn width(&self) -> u32 {
-        self.video.width()
-    }
-
-    /// Returns the number of visible lines in a frame of two fields.
-    #[must_use]
-    pub const fn height(&self) -> u32 {
-        self.video.height()
-    }
-
-    /// Returns the time of the retrace at which a field starts.
-    #[must_use]
-    pub const fn retrace(&self, field: PeriodNumber) -> Time {
-        self.video.retrace(field)
-    }
-
-    /// Returns the number of the field that is scanned at an instant. At a retrace, the result is the field that
-    /// begins.
-    #[must_use]
-    pub const fn field_at(&self, time: Time) -> PeriodNumber {
-        self.video.field_at(time)
-    }
-
-    /// Returns the time at which a field displays a pixel of the frame. Returns `None` if the field does not scan the
-    /// pixel.
-    #[must_use]
-    pub fn lights(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
-        self.video.when(x, y, field)
-    }
-
     /// Returns the time at which the texels of a pixel are read. Returns `None` if the field does not scan the pixel.
     #[must_use]
     pub fn reads(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
-        Some(Time(self.lights(x, y, field)?.0.saturating_sub(self.read_ahead.0)))
+        Some(Time(self.video.when(x, y, field)?.0.saturating_sub(self.read_ahead.0)))
     }
 
     /// Returns the time at which the orientation for a pixel is read.
@@ -90,10 +66,10 @@ impl FaceScan {
     /// [`Latch::Pixel`], and otherwise the first visible pixel of the same line or field.
     #[must_use]
     pub fn latches(&self, latch: Latch, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
-        let lit = self.lights(x, y, field)?;
+        let lit = self.video.when(x, y, field)?;
         let first = match latch {
-            Latch::Field => self.lights(0, y % 2, field)?,
-            Latch::Line => self.lights(0, y, field)?,
+            Latch::Field => self.video.when(0, y % 2, field)?,
+            Latch::Line => self.video.when(0, y, field)?,
             Latch::Pixel => lit,
         };
         Some(Time(first.0.saturating_sub(self.depth.0)))

@@ -236,10 +236,10 @@ fn case_30_when_a_pixel_lights_and_what_happened_before() {
     let scan = ArpConfig::IDEAL.scan().expect("valid");
     let field = PeriodNumber(0);
     assert_eq!(ArpConfig::IDEAL.timing.stages(), 26);
-    assert_eq!(scan.lights(320, 240, field).map(|time| time.0), Some(9_062_370_370));
+    assert_eq!(scan.when(320, 240, field).map(|time| time.0), Some(9_062_370_370));
     assert_eq!(scan.reads(320, 240, field).map(|time| time.0), Some(9_062_270_370));
     assert_eq!(scan.latches(Latch::Pixel, 320, 240, field).map(|time| time.0), Some(9_061_720_370));
-    assert_eq!(scan.lights(320, 241, field), None, "an odd line");
+    assert_eq!(scan.when(320, 241, field), None, "an odd line");
 }
 
 /// Checks the error with an ideal tracker. It is the head's rotation from reading the orientation to displaying the
@@ -248,7 +248,7 @@ fn case_30_when_a_pixel_lights_and_what_happened_before() {
 fn case_31_a_pan_of_200_degrees_a_second() {
     let scan = ArpConfig::IDEAL.scan().expect("valid");
     let focal = 320.0 / 30_f64.to_radians().tan();
-    let lit = scan.lights(320, 240, PeriodNumber(0)).expect("an even line");
+    let lit = scan.when(320, 240, PeriodNumber(0)).expect("an even line");
     for (latch, printed, tolerance) in
         [(Latch::Field, 14.81, 0.005), (Latch::Line, 0.0517, 5e-5), (Latch::Pixel, 0.00126, 5e-6)]
     {
@@ -284,7 +284,7 @@ fn the_scan_is_that_of_the_frame_buffer() {
         assert_eq!(scan.retrace(field), video.retrace(field));
         assert_eq!(scan.field_at(scan.retrace(field)), field);
         for (x, y) in [(0, 0), (0, 1), (639, 479), (320, 240), (17, 478), (640, 0), (0, 480)] {
-            assert_eq!(scan.lights(x, y, field), video.when(x, y, field), "field {n}: {x}, {y}");
+            assert_eq!(scan.when(x, y, field), video.when(x, y, field), "field {n}: {x}, {y}");
         }
     }
 }

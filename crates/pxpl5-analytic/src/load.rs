@@ -4,7 +4,6 @@ use pphigs::{Picture, PrimitiveCounts, RegionBinning, Shading, Share, TransformC
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{Experiment, ExperimentError, display_list, views};
-use pxpl5_scene::Hmd;
 use pxpl5_sim::Time;
 use pxpl5_wire::{RegionId, ViewNumber};
 use std::sync::Arc;
@@ -65,8 +64,7 @@ impl Load {
     ) -> Result<Vec<Self>, ExperimentError> {
         // All GPs together hold the whole scene, so a single share suffices.
         let list = Arc::new(display_list(experiment.scene())?);
-        let hmd = Hmd::new(*experiment.hmd()).expect("it was checked");
-        let (views, _) = views(experiment.scene(), experiment.motion_seed(), hmd, 2);
+        let (views, _) = views(experiment.scene(), experiment.motion_seed(), *experiment.hmd(), 2);
         let share = Share::new(list, 0, 1);
         let layout = Layout::rendering_control_phong();
         let picture = Picture { viewport, shading: Shading::Phong, binning, layout, pixels: false };

@@ -23,7 +23,6 @@ use pxpl5_geometry::Viewport;
 use pxpl5_gp::Work;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{Experiment, ExperimentError, display_list, views};
-use pxpl5_scene::Hmd;
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, MAX_MESSAGE_WORDS, RegionId, ViewNumber};
 use slats::CLUMP;
@@ -87,8 +86,7 @@ impl Clumps {
     ) -> Result<Self, ExperimentError> {
         // Transform the scene for the first view.
         let list = Arc::new(display_list(experiment.scene())?);
-        let hmd = Hmd::new(*experiment.hmd()).expect("it was checked");
-        let (views, _) = views(experiment.scene(), experiment.motion_seed(), hmd, 2);
+        let (views, _) = views(experiment.scene(), experiment.motion_seed(), *experiment.hmd(), 2);
         let view = views(ViewNumber::FIRST, Time(0));
         let viewport = Viewport::field(FieldParity::Even);
         let picture = Picture { viewport, shading: Shading::Gouraud, binning, layout: Layout::slats(), pixels: false };

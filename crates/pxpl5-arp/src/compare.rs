@@ -5,6 +5,7 @@ use crate::plan::WalkPlan;
 use crate::report::ArpReport;
 use crate::tears::TearWidths;
 use pxpl5_scene::Scene;
+use pxpl5_sim::parameters::PathSettings;
 use serde::Serialize;
 
 /// Variants of a comparison. Each has a name, and the settings in which it differs from the plan of the comparison.

@@ -4,7 +4,7 @@ use crate::hall::Route;
 use crate::settings::{PolicyKind, SourceKind, WalkSettings};
 use address_recalculation::priority::Falloff;
 use address_recalculation::{ArpConfig, CompositionOrder, Latch, Lens, LensPicture};
-use pxpl5_sim::parameters::{Entry, ParameterInfo, ParameterTable, SettingError, Value};
+use pxpl5_sim::parameters::{Choice, PathSettings, SettingError, choose, tables_at};
 use std::collections::BTreeMap;
 
 pxpl5_sim::parameters::parameter_table! {
@@ -18,20 +18,6 @@ pxpl5_sim::parameters::parameter_table! {
         hall_scale: f64 = 1.0, "1", Assumed, 0.25..=4.0 in 0.01..=100.0, "not printed; 0.5 makes the gallery 20 m wide, eight cells of 2.5 m";
     }
 }
-
-/// Paths of the settings that are choices, not numbers.
-const CHOICES: [&str; 10] = [
-    "policy",
-    "segment",
-    "warp",
-    "priority.cascade",
-    "priority.threshold",
-    "source",
-    "walk.route",
-    "arp.latch",
-    "arp.lens",
-    "arp.order",
-];
 
 /// Settings of a walk by path. Some defaults depend on other settings.
 ///
@@ -71,8 +57,8 @@ impl ThresholdChoice {
 }
 
 /// Parses a threshold such as `2px` or `2texels`.
-fn threshold(text: &str) -> Result<ThresholdChoice, String> {
-    let expected = || "pixels of the display as 2px, or texels of a face as 2texels".to_owned();
+fn threshold(text: &str) -> Result<ThresholdChoice, SettingError> {
+    let expected = || SettingError::text("pixels of the display as 2px, or texels of a face as 2texels", text);
     let number = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
     if let Some(pixels) = text.strip_suffix("px") {
         return number(pixels).map(ThresholdChoice::Pixels).ok_or_else(expected);
@@ -81,8 +67,43 @@ fn threshold(text: &str) -> Result<ThresholdChoice, String> {
     texels.and_then(number).map(ThresholdChoice::Texels).ok_or_else(expected)
 }
 
-/// A table of parameters, with the first part of the paths of these parameters.
-type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
+impl PathSettings for WalkPlan {
+    const CHOICES: &'static [Choice<Self>] = &[
+        Choice { path: "policy", set: |all, text| choose(&mut all.chosen.policy, &PolicyKind::ALL, text) },
+        Choice { path: "segment", set: |all, text| is_on(&mut all.is_segmented, text) },
+        Choice { path: "warp", set: |all, text| choose(&mut all.chosen.falloff, &Falloff::ALL, text) },
+        Choice { path: "priority.cascade", set: |all, text| is_on(&mut all.has_cascade, text) },
+        Choice { path: "priority.threshold", set: |all, text| threshold(text).map(|it| all.threshold = Some(it)) },
+        Choice { path: "source", set: |all, text| source(text).map(|it| all.chosen.source = it) },
+        Choice { path: "walk.route", set: |all, text| choose(&mut all.route, &Route::ALL, text) },
+        Choice { path: "arp.latch", set: |all, text| choose(&mut all.chosen.display.latch, &Latch::ALL, text) },
+        Choice { path: "arp.lens", set: |all, text| text.parse().map(|it| all.chosen.display.lens = it) },
+        Choice {
+            path: "arp.order",
+            set: |all, text| choose(&mut all.chosen.display.order, &CompositionOrder::ALL, text),
+        },
+    ];
+
+    tables_at! {
+        "walk": walk,
+        "priority": chosen.numbers,
+        "arp": chosen.display.timing,
+        "arp_scan": chosen.display.scan,
+    }
+
+    /// Records the setting for the report. The policy and the display have the same number of memories.
+    fn was_set(&mut self, path: &str, text: &str) {
+        let memories = match path {
+            "priority.memories" => Some(self.chosen.numbers.memories),
+            "arp.display_memories" => Some(self.chosen.display.timing.display_memories),
+            _ => None,
+        };
+        if let Some(memories) = memories {
+            self.chosen = self.chosen.clone().with_memories(memories);
+        }
+        self.given.insert(path.to_owned(), text.to_owned());
+    }
+}
 
 impl WalkPlan {
     /// Returns the default plan: objects cut at the borders of cells and warped, an ideal renderer, half a minute at 1
@@ -100,71 +121,10 @@ impl WalkPlan {
         }
     }
 
-    fn tables(&self) -> [NamedTable<'_>; 4] {
-        [
-            ("walk", &self.walk),
-            ("priority", &self.chosen.numbers),
-            ("arp", &self.chosen.display.timing),
-            ("arp_scan", &self.chosen.display.scan),
-        ]
-    }
-
-    /// Returns the names of all settings that [`Self::set`] accepts. A name is a path, such as `walk.route`.
-    #[must_use]
-    pub fn keys(&self) -> Vec<String> {
-        let numbers = self.numbers().into_iter().map(|(path, _)| path);
-        CHOICES.iter().map(|key| (*key).to_owned()).chain(numbers).collect()
-    }
-
-    /// Returns all numeric settings by path, with their current values.
-    #[must_use]
-    pub fn numbers(&self) -> Vec<(String, Entry)> {
-        let tables = self.tables().into_iter();
-        let all = tables.flat_map(|(prefix, table)| table.entries().into_iter().map(move |entry| (prefix, entry)));
-        all.map(|(prefix, entry)| (format!("{prefix}.{}", entry.info.name), entry)).collect()
-    }
-
     /// Returns the settings that the user gave explicitly, by path.
     #[must_use]
     pub const fn given(&self) -> &BTreeMap<String, String> {
         &self.given
-    }
-
-    /// Sets the setting at a path. `place` names the source of the value in errors, such as `--set`.
-    ///
-    /// # Errors
-    ///
-    /// [`SettingError`] with the most similar path, or with the allowed values.
-    pub fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), SettingError> {
-        let done = match path {
-            "policy" => choose(&mut self.chosen.policy, &PolicyKind::ALL, text),
-            "warp" => choose(&mut self.chosen.falloff, &Falloff::ALL, text),
-            "arp.latch" => choose(&mut self.chosen.display.latch, &Latch::ALL, text),
-            "arp.order" => choose(&mut self.chosen.display.order, &CompositionOrder::ALL, text),
-            "segment" => is_on(text).map(|is_on| self.is_segmented = Some(is_on)),
-            "walk.route" => choose(&mut self.route, &Route::ALL, text),
-            "priority.threshold" => threshold(text).map(|threshold| self.threshold = Some(threshold)),
-            "priority.cascade" => is_on(text).map(|is_on| self.has_cascade = Some(is_on)),
-            "source" => source(text).map(|source| self.chosen.source = source),
-            "arp.lens" => text.parse().map_err(|_| Lens::FORMS.to_owned()).map(|lens| self.chosen.display.lens = lens),
-            _ => self.set_number(path, text, place)?,
-        };
-        done.map_err(|expected| wrong(path, text, place, expected))?;
-        // Record the setting for the report.
-        self.given.insert(path.to_owned(), text.to_owned());
-        Ok(())
-    }
-
-    /// Sets a setting from text of the form `path=value`, as after `--set`.
-    ///
-    /// # Errors
-    ///
-    /// Fails in the same cases as [`Self::set`]. Also an error if the text has no equals sign.
-    pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), SettingError> {
-        match assignment.split_once('=') {
-            Some((path, text)) => self.set(path.trim(), text.trim(), place),
-            None => Err(wrong("PATH=VALUE", assignment, place, "an equals sign".to_owned())),
-        }
     }
 
     /// Returns the plan with a lens. `name` is the file from which the lens was read.
@@ -207,70 +167,18 @@ impl WalkPlan {
         settings.check()?;
         Ok(settings)
     }
-
-    /// Sets a number in the table of parameters that has this path.
-    ///
-    /// # Errors
-    ///
-    /// The outer error reports an unknown path. The inner error describes the valid values.
-    fn set_number(&mut self, path: &str, text: &str, place: &str) -> Result<Result<(), String>, SettingError> {
-        let Some((_, Entry { info, value: now })) = self.numbers().into_iter().find(|(key, _)| key == path) else {
-            return Err(SettingError::unknown_path("key", path, self.keys()).at(place));
-        };
-        // Parse the value as the type of the parameter.
-        let is_real = matches!(now, Value::Real(_));
-        let value = if is_real { text.parse().map(Value::Real).ok() } else { text.parse().map(Value::Whole).ok() };
-        let Some(value) = value.filter(|value| Entry { info, value: *value }.is_within_limits()) else {
-            return Ok(Err(expected_of(info)));
-        };
-        let name = info.name;
-        let prefix = path.split('.').next().unwrap_or_default();
-        let table: &mut dyn ParameterTable = match prefix {
-            "walk" => &mut self.walk,
-            "priority" => &mut self.chosen.numbers,
-            "arp" => &mut self.chosen.display.timing,
-            _ => &mut self.chosen.display.scan,
-        };
-        let done = table.set(name, value).map_err(|_| expected_of(info));
-        // The policy and the display must have the same number of memories.
-        if let ("priority.memories" | "arp.display_memories", Value::Whole(memories)) = (path, value) {
-            self.chosen = self.chosen.clone().with_memories(memories);
-        }
-        Ok(done)
-    }
 }
 
-fn expected_of(info: &ParameterInfo) -> String {
-    let (least, most) = info.limits;
-    let kind = if matches!(info.papers, Value::Whole(_)) { "a whole number" } else { "a number" };
-    format!("{kind} of {least} to {most} {}", info.unit)
-}
-
-fn choose<T: Copy>(choice: &mut T, all: &[(&'static str, T)], text: &str) -> Result<(), String> {
-    let found = all.iter().find(|(name, _)| *name == text);
-    let names = || all.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-    *choice = found.ok_or_else(names)?.1;
-    Ok(())
-}
-
-fn is_on(text: &str) -> Result<bool, String> {
-    match text {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err("on or off".to_owned()),
-    }
+fn is_on(flag: &mut Option<bool>, text: &str) -> Result<(), SettingError> {
+    choose(flag, &[("on", Some(true)), ("off", Some(false))], text)
 }
 
 /// Parses the speed of the renderer: `ideal`, or a number of triangles per second.
-fn source(text: &str) -> Result<SourceKind, String> {
+fn source(text: &str) -> Result<SourceKind, SettingError> {
     if text == "ideal" {
         return Ok(SourceKind::Ideal);
     }
     let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
     let timed = rate.map(|triangles_per_s| SourceKind::Timed { triangles_per_s });
-    timed.ok_or_else(|| "ideal, or triangles a second".to_owned())
-}
-
-fn wrong(key: &str, found: &str, place: &str, expected: String) -> SettingError {
-    SettingError::value(key, expected, found).at(place)
+    timed.ok_or_else(|| SettingError::text("ideal, or triangles a second", text))
 }

@@ -197,7 +197,7 @@ fn scan_ms(display: &ArpConfig, from: Latch) -> Option<f64> {
         // All pixels of a line have equal distances, so the first and the last pixel give the mean.
         for x in [0, scan.width() - 1] {
             let latched = scan.latches(from, x, y, field)?;
-            sum += ms(scan.lights(x, y, field)?.since(latched)) - ms(display.timing.depth());
+            sum += ms(scan.when(x, y, field)?.since(latched)) - ms(display.timing.depth());
         }
     }
     Some(sum / 2.0 / f64::from(scan.height()))

@@ -155,12 +155,7 @@ const ONE_AT_A_TIME: PipelineEntry = PipelineEntry {
     family: "one-at-a-time",
     about: "one processor, one frame at a time",
     preset: "small-hmd",
-    keys: &[Key {
-        name: "shading",
-        about: "phong or gouraud",
-        values: KeyValues::Names(&["phong", "gouraud"]),
-        sets: &[],
-    }],
+    keys: &[Key::new("shading", "method of shading", KeyValues::Names(&["phong", "gouraud"]))],
     build: |settings| {
         let gouraud = settings.name("shading") == Some("gouraud");
         Arc::new(OneAtATime { shading: if gouraud { Shading::Gouraud } else { Shading::Phong } })

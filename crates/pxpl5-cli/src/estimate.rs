@@ -19,6 +19,7 @@
 //!
 //! The constants come from measured runs, which the tests below repeat: peak memory and processor time, rounded up.
 
+use pxpl5::PathSettings;
 use pxpl5::arp::WalkPlan;
 pub(crate) use pxpl5::lab::estimate::{Estimate, RunWork, Study};
 use pxpl5::scene::Scene;
@@ -128,7 +129,7 @@ impl VolumeWork {
 impl WalkWork {
     pub(crate) fn of(plan: &WalkPlan, scene: &Scene) -> Self {
         let texels =
-            plan.numbers().into_iter().find(|(path, _)| path == "arp.face_texels").map(|(_, entry)| entry.value);
+            plan.numbers().into_iter().find(|number| number.path == "arp.face_texels").map(|number| number.value);
         let face_texels = texels.and_then(|texels| texels.to_string().parse().ok()).unwrap_or(0);
         Self { frames: plan.walk.frames, primitives: primitives(scene), face_texels }
     }

@@ -39,13 +39,14 @@ impl clap::Args for PipelineOptions {
         const HEADING: &str = "Settings of single pipelines";
         // Each key of a registered pipeline becomes an option whose syntax depends on the type of its values.
         registry.keys().into_iter().fold(command.arg(pipeline), |command, (key, families)| {
-            let help = format!("{}: {}", families.join(", "), key.about);
+            let help = format!("{}: {}", families.join(", "), key.help());
             let arg = Arg::new(key.name).long(option_of(key.name)).help(help).help_heading(HEADING);
             command.arg(match key.values {
                 KeyValues::Flag => arg.num_args(0..=1).default_missing_value("true").require_equals(true),
-                KeyValues::Whole(..) => arg.value_name("N").allow_negative_numbers(true),
-                KeyValues::Lens => arg.value_name("LENS").allow_negative_numbers(true),
-                KeyValues::Names(_) => arg.value_name(key.name.to_uppercase()),
+                KeyValues::Whole(..) | KeyValues::Real(..) => arg.value_name("N").allow_negative_numbers(true),
+                KeyValues::Names(_) | KeyValues::Text(..) => {
+                    arg.value_name(key.name.to_uppercase()).allow_negative_numbers(true)
+                }
             })
         })
     }

@@ -53,6 +53,9 @@ const FIELDS_OF_PASS: u64 = 60;
 const KEYS_SET_BY_RIG: [&str; 9] =
     ["scene", "triangles", "head.motion", "head.place", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
 
+/// Keys of the motion in front of the scene, which the rig does not have.
+const KEYS_OF_PATH: [&str; 4] = ["head.path", "head.sway", "head.distance", "head.deg_per_s"];
+
 /// Runs the command `pxpl5 rig`.
 ///
 /// # Errors
@@ -76,7 +79,7 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
 /// Returns the checked experiment of the measurement. The user chooses pipeline, machine, tracker and seed. The command
 /// sets scene and motion.
 fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
-    if let Some(key) = file.keys().find(|key| KEYS_SET_BY_RIG.contains(key) || key.starts_with("motion.")) {
+    if let Some(key) = file.keys().find(|key| KEYS_SET_BY_RIG.contains(key) || KEYS_OF_PATH.contains(key)) {
         return Err(CliError::usage(format!(
             "{key}: does not apply to the rig, which has its own scene, motion and length"
         )));

@@ -639,7 +639,7 @@ fn the_terminal_says_what_json_says() {
 #[test]
 fn a_scene_that_is_drawn_once_has_no_rate_and_no_limit_by_rate_and_is_shown() {
     let folder = Folder::new("drawn-once");
-    let still = ["--scene", "sphere:1000", "--set", "motion.path=still", "--set", "motion.sway=0"];
+    let still = ["--scene", "sphere:1000", "--set", "head.path=still", "--set", "head.sway=0"];
     for pipeline in ["arp-priority", "arp-cells"] {
         for fields in ["60", "200"] {
             let run = ["run", "--pipeline", pipeline, "--fields", fields, "--pixels", "off", "--json"];

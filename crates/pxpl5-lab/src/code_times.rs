@@ -52,7 +52,7 @@ use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{ExperimentError, Views, display_list, views};
-use pxpl5_scene::{Hmd, HmdConfig, builtin};
+use pxpl5_scene::{Hmd, builtin};
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber};
 use std::sync::Arc;
@@ -289,8 +289,7 @@ impl Rig {
     ) -> Result<Self, ExperimentError> {
         let scene = Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
         let list = Arc::new(part(display_list(&scene)?));
-        let hmd = Hmd::new(HmdConfig::unc()).map_err(|error| ExperimentError::Scene(error.to_string()))?;
-        let (views, _) = views(&scene, 1, hmd, 2);
+        let (views, _) = views(&scene, 1, Hmd::unc(), 2);
         let share = Share::new(list, 0, boards);
         // The board holds its share of the display list in memory, as in a run.
         let mut processor = Processor::new(NodeId(1), MEMORY, version, MachineConfig::small_hmd().i860);

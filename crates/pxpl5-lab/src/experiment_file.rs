@@ -74,6 +74,8 @@ const SYNTHETIC: &str = "synthetic";
 pub struct ExperimentFile {
     registry: Arc<Registry>,
     pub(crate) settings: BTreeMap<String, Setting>,
+    /// Sentences about settings whose keys have former names.
+    pub(crate) notes: Vec<String>,
     pub(crate) sweep: Option<Setting>,
     /// File and line of each key in the table `sweep`, by the path of the key.
     pub(crate) sweep_places: BTreeMap<String, String>,
@@ -91,8 +93,14 @@ impl ExperimentFile {
     /// Creates an experiment file without settings. The settings can name the pipelines and displays of a registry.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
-        let contents = BTreeMap::new();
-        Self { registry, settings: BTreeMap::new(), sweep: None, sweep_places: BTreeMap::new(), contents }
+        Self {
+            registry,
+            settings: BTreeMap::new(),
+            notes: Vec::new(),
+            sweep: None,
+            sweep_places: BTreeMap::new(),
+            contents: BTreeMap::new(),
+        }
     }
 
     /// Returns the registry of the pipelines and displays that the file can name.
@@ -207,7 +215,7 @@ impl ExperimentFile {
     ///
     /// Returns a [`SettingError`] when the seed is not a whole number from 0 to 2^63 - 1.
     pub fn seed(&self) -> Result<u64, SettingError> {
-        Ok(self.integer("seed", 0..=plan::MAX_SEED)?.unwrap_or(1))
+        Ok(self.whole("seed")?.unwrap_or(1))
     }
 
     /// Returns the checked experiment for one seed. If `head.motion` is `synthetic`, the motion has the same seed.
@@ -252,6 +260,9 @@ impl ExperimentFile {
     /// Stores a value under the full path of its key.
     pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), SettingError> {
         let canonical = self.canonical_key(path, &place)?;
+        if keys::renamed(path) != path {
+            self.notes.push(format!("{place}: {path} is now {canonical}; the next version does not accept {path}"));
+        }
         let setting = Setting { value, place, folder: folder.to_owned() };
         // A number with a unit is kept as a number in the key's own unit.
         let converted = match setting.value.as_str().map(|text| units::converted(&self.registry, &canonical, text)) {
@@ -285,6 +296,7 @@ impl ExperimentFile {
             self.sweep_places = other.sweep_places;
         }
         self.settings.extend(other.settings);
+        self.notes.extend(other.notes);
     }
 
     /// Returns true if the file describes a sweep (one experiment at many points of a parameter space).

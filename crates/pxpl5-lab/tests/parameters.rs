@@ -1,10 +1,10 @@
 //! Tests that every listed parameter can be set by its path, within its limits, and has an effect.
 
 use pxpl5_lab::{ExperimentFile, Plan, tracking_parameters};
-use pxpl5_machine::{MachineConfig, Parameter};
+use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Measured;
 use pxpl5_run::{Pixels, Registry};
-use pxpl5_sim::parameters::Value;
+use pxpl5_sim::parameters::{Parameter, Value};
 
 const TRACKERS: [&str; 8] =
     ["optical", "fastrak", "fastrak-polled", "flock", "flock-patched", "3space", "3space-patched", "ideal"];

@@ -62,12 +62,9 @@ fn numbers_stand_on_a_preset_that_is_named() {
 #[test]
 fn numbers_of_a_display_that_cannot_be_are_refused_with_the_key_and_the_range() {
     for (text, expected) in [
-        ("display = { width = 0 }", "display.width: expected a number from 1 to 16384, found 0"),
-        ("display = { hz = 5000 }", "display.hz: expected a number from 1 to 1000, found 5000"),
-        (
-            "display = { persistence_ms = -1 }",
-            "display.persistence_ms: expected a number from 0 on in steps of 0.001, found -1",
-        ),
+        ("display = { width = 0 }", "display.width: expected a number from 1 to 16384 px, found 0"),
+        ("display = { hz = 5000 }", "display.hz: expected a number from 1 to 1000 Hz, found 5000"),
+        ("display = { persistence_ms = -1 }", "display.persistence_ms: expected a number from 0 to 1000 ms, found -1"),
         (
             "display = { hz = 90, persistence_ms = 12 }",
             "display.persistence_ms: panel.persistence_us: expected 0 to 11111, a period of 90 Hz, found 12000",
@@ -112,17 +109,17 @@ fn numbers_of_a_display_are_valid_up_to_their_limits_and_refused_beyond_with_key
         }
         for value in [below, above] {
             let found = refusal(&format!("{RC}display = {{ {others}{key} = {value} }}\n"));
-            // A negative number is refused before its range is looked up.
-            let range = if value.starts_with('-') { "a number from 0 on" } else { &expected };
+            // A negative number is refused before the period is looked up.
+            let range = if value.starts_with('-') { "a number from 0 to 1000" } else { &expected };
             assert!(found.contains(&format!("display.{key}: ")), "{key} = {value}: {found}");
             assert!(found.contains(&format!("expected {range}")), "{key} = {value}: {found}");
         }
     }
     for (text, expected) in [
         ("bits = 4", "panel.bits: expected a multiple of 3"),
-        ("hz = nan", "display.hz: expected a whole number from 0 on, found nan"),
-        ("hz = 59.94", "display.hz: expected a whole number from 0 on, found 59.94"),
-        ("persistence_ms = inf", "display.persistence_ms: expected a number from 0 on in steps of 0.001, found inf"),
+        ("hz = nan", "display.hz: expected a number from 1 to 1000 Hz, found nan"),
+        ("hz = 59.94", "display.hz: expected a number from 1 to 1000 Hz in steps of 1, found 59.94"),
+        ("persistence_ms = inf", "display.persistence_ms: expected a number from 0 to 1000 ms, found inf"),
         ("interlace = true, height = 481", "panel.height: expected an even number of interlaced lines, found 481"),
         ("interlace = true, scan = \"global\"", "panel.interlace: expected 0: an interlaced scan is rolling"),
         // 128 columns of regions are allowed only with one row of regions.
@@ -138,7 +135,7 @@ fn numbers_of_a_display_are_valid_up_to_their_limits_and_refused_beyond_with_key
     for latency in [-1, 100_001] {
         let found = refusal(&format!("{RC}{head}{latency}\n"));
         let expected =
-            format!("head.reprojection.latency_us: expected a whole number from 0 to 100000, found {latency}");
+            format!("head.reprojection.latency_us: expected a whole number from 0 to 100000 us, found {latency}");
         assert!(found.contains(&expected), "{found}");
     }
 }
@@ -210,7 +207,7 @@ fn numbers_of_a_device_without_one_and_depth_of_faces_are_refused() {
         "{found}"
     );
     let found = refusal(&format!("{head}head.raster = \"rotation\"\nhead.reprojection.latency_us = 200000\n"));
-    assert!(found.contains("expected a whole number from 0 to 100000, found 200000"), "{found}");
+    assert!(found.contains("expected a whole number from 0 to 100000 us, found 200000"), "{found}");
     let faces = "pipeline = \"arp-full\"\nscene = \"gallery\"\nhead.motion = \"pan:10\"\nhead.raster = \"depth\"\n";
     let found = refusal(faces);
     assert!(found.contains("head.raster = depth does not apply to the pipeline arp-full"), "{found}");

@@ -3,11 +3,10 @@
 use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
-use pxpl5_sim::parameters::{self, Entry, ParameterInfo, ParameterTable, SettingError, Value};
+use pxpl5_sim::parameters::{self, Parameter, ParameterTable, SettingError, Value, table_at};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::DisplayConfig;
 use pxpl5_wire::{NodeId, PeriodNumber};
-use serde::Serialize;
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -72,52 +71,6 @@ impl PartialEq for MachineConfig {
             && self.displays.len() == other.displays.len()
             && self.displays.iter().zip(&other.displays).all(|(own, other)| own.equals(other.as_ref()))
             && self.identifying_parameters() == other.identifying_parameters()
-    }
-}
-
-/// A parameter of a machine: path, metadata and value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Parameter {
-    /// Prefix of the table and name of the field, such as `ring.word_ns`.
-    pub path: String,
-    /// Unit, provenance, range and source.
-    #[serde(flatten)]
-    pub info: ParameterInfo,
-    /// Value in this machine, in the unit that the table states.
-    pub value: Value,
-    /// True if the parameter is a fixed property of a chip, which [`MachineConfig::set`] refuses to change.
-    pub read_only: bool,
-}
-
-impl Parameter {
-    /// Returns the parameters of one table. Paths begin with `prefix`, and `read_only` states if all these parameters
-    /// are fixed properties of a chip.
-    pub fn of_table(prefix: &str, table: &dyn ParameterTable, read_only: bool) -> impl Iterator<Item = Self> {
-        table.entries().into_iter().map(move |Entry { info, value }| {
-            let path = format!("{prefix}.{}", info.name);
-            Self { path, info: *info, value, read_only }
-        })
-    }
-}
-
-impl Parameter {
-    /// Returns true if the value lies within the range that the parameter's table derives from sources.
-    #[must_use]
-    pub fn is_in_range(&self) -> bool {
-        let (low, high) = self.info.range;
-        (low..=high).contains(&self.value)
-    }
-
-    /// Returns a warning that the value is out of range. The text contains the range and its source.
-    #[must_use]
-    pub fn warning(&self) -> String {
-        let Self { path, info, value, .. } = self;
-        let (low, high) = info.range;
-        let unit = info.unit;
-        format!(
-            "{path} = {value} {unit} is outside its range, {low} to {high} {unit} ({}: {})",
-            info.provenance, info.source
-        )
     }
 }
 
@@ -252,14 +205,10 @@ impl MachineConfig {
     }
 
     fn set_parameter(&mut self, path: &str, value: Value) -> Result<(), SettingError> {
-        // The last part of the path is the parameter's name. The prefix may itself contain a dot (`i860.chip`).
-        let Some((board, name)) = path.rsplit_once('.') else { return Err(self.unknown(path)) };
-        for (prefix, table) in self.tables_mut() {
-            if prefix == board && table.infos().iter().any(|info| info.name == name) {
-                return table.set(name, value).map_err(|error| error.in_table(board));
-            }
+        match table_at(self.tables_mut(), path) {
+            Some((prefix, table, name)) => table.set(name, value).map_err(|error| error.in_table(prefix)),
+            None => Err(self.not_settable(path)),
         }
-        Err(self.not_settable(path))
     }
 
     /// Returns the error for a path that is not in any changeable table: the parameter is read-only or unknown.

@@ -31,7 +31,7 @@ mod run_error;
 mod traffic;
 
 pub use board::{Board, EventDescription};
-pub use config::{FirmwareTable, MachineConfig, NamedTable, Parameter};
+pub use config::{FirmwareTable, MachineConfig, NamedTable};
 pub use host_line::HostLine;
 pub use machine::{DEADLOCK_TICKS, Machine};
 pub use observation::{Arrival, LateRegion, Observation, Shown, StageSpan, Swap};

@@ -10,7 +10,7 @@ use image::{Rgb, RgbImage};
 use pxpl5_measure::{DepthPicture, reproject, reproject_with_depth};
 use pxpl5_run::Warp;
 use std::hint::black_box;
-use tracking::view::HmdView;
+use tracking::view::Hmd;
 use tracking::{Pose, rotation};
 
 /// Sizes of a picture: NTSC and the rolling OLED.
@@ -37,7 +37,7 @@ fn fields(criterion: &mut Criterion) {
     };
     let mut group = criterion.benchmark_group("reprojection");
     for (width, height) in SIZES {
-        let view = HmdView::new(width, height, 60.0).expect("in range");
+        let view = Hmd::unc().with_pixels(width, height);
         let (picture, depths) = (picture(width, height), depths(width, height));
         let name = format!("{width} x {height}");
         group.throughput(Throughput::Elements(u64::from(width) * u64::from(height)));

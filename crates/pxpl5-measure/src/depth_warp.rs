@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use image::RgbImage;
 use std::ops::Range;
 use tracking::Pose;
-use tracking::view::HmdView;
+use tracking::view::Hmd;
 
 /// Depths of a picture's pixels, seen from the pose for which the picture was drawn.
 #[derive(Clone, Debug)]
@@ -110,7 +110,7 @@ fn larger<T: PartialOrd + Copy>(out: &mut Vec<T>, a: &[T], b: &[T]) {
 pub(crate) struct Drawing<'a> {
     pub(crate) picture: &'a RgbImage,
     pub(crate) depths: &'a DepthPicture,
-    pub(crate) view: &'a HmdView,
+    pub(crate) view: &'a Hmd,
     /// Rows of the screen that the picture contains: all rows, or the rows of one field.
     pub(crate) rows: Rows,
     pub(crate) drawn_for: &'a Pose,
@@ -366,7 +366,7 @@ fn next(position: f32, least: f32, greatest: f32) -> i32 {
 pub fn reproject_with_depth(
     picture: &RgbImage,
     depths: &DepthPicture,
-    view: &HmdView,
+    view: &Hmd,
     drawn_for: &Pose,
     now: &Pose,
 ) -> Option<(RgbImage, u64)> {
@@ -402,7 +402,7 @@ mod tests {
 
     fn moved(depth: impl Fn(u32, u32) -> f32, now: &Pose) -> (RgbImage, u64) {
         let depths = DepthPicture::from_fn(SIZE[0], SIZE[1], depth);
-        reproject_with_depth(&places(), &depths, &HmdView::ntsc(), &Pose::IDENTITY, now).expect("the size of the view")
+        reproject_with_depth(&places(), &depths, &Hmd::unc(), &Pose::IDENTITY, now).expect("the size of the view")
     }
 
     /// A head that has passed a wall two metres ahead sees nothing of it.
@@ -425,9 +425,9 @@ mod tests {
     fn pictures_depths_and_views_of_different_sizes_are_not_moved() {
         let depths = DepthPicture::from_fn(640, 479, |_, _| 1.0);
         let [pose, view] = [Pose::IDENTITY, Pose::IDENTITY];
-        assert!(reproject_with_depth(&places(), &depths, &HmdView::ntsc(), &pose, &view).is_none());
+        assert!(reproject_with_depth(&places(), &depths, &Hmd::unc(), &pose, &view).is_none());
         let depths = DepthPicture::from_fn(320, 480, |_, _| 1.0);
-        assert!(reproject_with_depth(&RgbImage::new(320, 480), &depths, &HmdView::ntsc(), &pose, &view).is_none());
+        assert!(reproject_with_depth(&RgbImage::new(320, 480), &depths, &Hmd::unc(), &pose, &view).is_none());
     }
 
     #[test]
@@ -442,7 +442,7 @@ mod tests {
     fn a_turn_gives_the_picture_of_the_homography() {
         let now = Pose::facing(rotation::from_yaw_pitch_roll(0.05, -0.02, 0.01));
         let (expected, beyond) =
-            reproject(&places(), &HmdView::ntsc(), Warp::Rotation, &Pose::IDENTITY, &now).expect("the size");
+            reproject(&places(), &Hmd::unc(), Warp::Rotation, &Pose::IDENTITY, &now).expect("the size");
         for depth in [0.5, 2.0, 50.0] {
             let (found, empty) = moved(|_, _| depth, &now);
             assert!(empty.abs_diff(beyond) <= 2 * (640 + 480), "{depth}: {empty} {beyond}");
@@ -460,7 +460,7 @@ mod tests {
     /// of a far plane hides f t (1 / near - 1 / far) columns.
     #[test]
     fn a_step_moves_planes_by_f_t_by_z_and_opens_the_difference() {
-        let focal = HmdView::ntsc().focal_px();
+        let focal = Hmd::unc().focal_px();
         let (near, far) = (1.0_f32, 4.0_f32);
         for step in [0.004_f64, 0.01, 0.03] {
             let is_near = |x: u32, y: u32| (200..400).contains(&x) && (100..300).contains(&y);
@@ -482,7 +482,7 @@ mod tests {
     /// picture may have cracks.
     #[test]
     fn surfaces_that_grow_or_lean_have_no_cracks() {
-        let floor = |_: u32, y: u32| 1.6 * HmdView::ntsc().focal_px() as f32 / (y as f32 + 60.0);
+        let floor = |_: u32, y: u32| 1.6 * Hmd::unc().focal_px() as f32 / (y as f32 + 60.0);
         for now in [Pose::at(DVec3::NEG_Z * 0.1), Pose::at(DVec3::new(0.0, 0.03, -0.05))] {
             let (found, _) = moved(floor, &now);
             let inner = found.enumerate_pixels().filter(|(x, y, _)| (40..600).contains(x) && (60..420).contains(y));
@@ -499,7 +499,7 @@ mod tests {
             position: DVec3::new(0.02, -0.03, -0.04),
             orientation: rotation::from_yaw_pitch_roll(0.03, 0.04, -0.05),
         };
-        let view = HmdView::ntsc();
+        let view = Hmd::unc();
         let picture = places();
         for rows in [Rows::ALL, Rows { first: 0, distance: 2 }, Rows { first: 1, distance: 2 }] {
             let depths = DepthPicture::of_field(SIZE, rows, |x, y| if (x / 50 + y / 60) % 2 == 0 { 1.0 } else { 3.0 });

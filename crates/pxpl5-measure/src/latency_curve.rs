@@ -2,7 +2,7 @@
 
 use tracking::motion::Motion;
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S};
-use tracking::view::HmdView;
+use tracking::view::Hmd;
 
 /// Error over time in the middle of the picture, caused by a constant latency. The curve has one point per NTSC field.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ impl LatencyCurve {
     /// The error is the displacement on the screen of a point `distance_m` metres ahead of the head.
     #[must_use]
     pub fn of(motion: &dyn Motion, latency_ms: u64, seconds: u64, distance_m: f64) -> Self {
-        let view = HmdView::ntsc();
+        let view = Hmd::unc();
         let latency_ps = latency_ms * PS_PER_MS;
         let times = (0..).map(|n| latency_ps + n * NTSC_FIELD_PS).take_while(|t| *t < seconds * PS_PER_S);
         let points = times.filter_map(|t| {

@@ -11,7 +11,7 @@ use pxpl5_run::{FinalResults, Warp};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use tracking::Pose;
-use tracking::view::HmdView;
+use tracking::view::Hmd;
 
 /// Content of a pixel of the screen after a device has moved the picture.
 #[derive(Clone, Debug)]
@@ -93,7 +93,7 @@ fn source(
 }
 
 /// Returns the pixel at the position `place`, in the nearest row that the field lights.
-fn pixel_at(view: &HmdView, place: DVec2, rows: Rows) -> [u32; 2] {
+fn pixel_at(view: &Hmd, place: DVec2, rows: Rows) -> [u32; 2] {
     let last = view.centre_px() * 2.0 - DVec2::ONE;
     let inside = place.floor().clamp(DVec2::ZERO, last);
     [inside.x as u32, rows.beside(inside.y as u32)]

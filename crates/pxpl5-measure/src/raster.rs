@@ -3,15 +3,15 @@
 
 use crate::picture_mover::PictureMover;
 use crate::rows::Rows;
-use crate::shown::{Drawn, Shown, view_of};
+use crate::shown::{Drawn, Shown};
 use glam::DVec2;
 use image::{Rgb, RgbImage};
-use pxpl5_run::{Estimator, FinalResults, Outcome, Raster};
+use pxpl5_run::{Estimator, FinalResults, Outcome, Raster, hmd_on};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
 use std::rc::Rc;
-use tracking::view::{HmdView, RasterOffset};
+use tracking::view::{Hmd, RasterOffset};
 use tracking::{Pose, rotation};
 
 /// A raster that the display shifts during scan-out (Breglia 1981).
@@ -71,7 +71,7 @@ pub(crate) fn offset(
 #[derive(Clone, Debug)]
 pub struct RasterOffsets<'a> {
     display: &'a dyn Display,
-    view: HmdView,
+    view: Hmd,
     moved_by: MovedBy<'a>,
 }
 
@@ -92,7 +92,7 @@ impl<'a> RasterOffsets<'a> {
         let head = outcome.head()?;
         let run = outcome.final_results();
         let display = outcome.record().display();
-        let view = view_of(display, &run.hmd);
+        let view = hmd_on(display, &run.hmd);
         match head.head().raster() {
             Raster::Plain => return None,
             Raster::Reprojected(setting) => {

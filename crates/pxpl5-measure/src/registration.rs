@@ -2,19 +2,19 @@
 
 use crate::content::{Content, Contents};
 use crate::reproject::direction;
-use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown, view_of};
+use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown};
 use glam::{DVec2, DVec3};
-use pxpl5_run::{FinalResults, HeadViews, Outcome};
+use pxpl5_run::{FinalResults, HeadViews, Outcome, hmd_on};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
 use tracking::Pose;
-use tracking::view::{HmdView, Misregistration, dual_list};
+use tracking::view::{Hmd, Misregistration, dual_list};
 
 /// An evaluator of pixel errors, which casts rays into the scene and projects the hit points onto the screen.
 #[derive(Debug)]
 pub(crate) struct Evaluator {
-    pub(crate) view: HmdView,
+    pub(crate) view: Hmd,
     head: Arc<HeadViews>,
     /// The scene's primitives. Empty if the experiment evaluates errors at a fixed distance.
     contents: Contents,
@@ -24,7 +24,7 @@ pub(crate) struct Evaluator {
 
 impl Evaluator {
     pub(crate) fn new(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
-        let view = view_of(run.record.display(), &run.hmd);
+        let view = hmd_on(run.record.display(), &run.hmd);
         let at_content = head.head().evaluate_at_m().is_none();
         let contents = if at_content { Contents::of(head.scene()) } else { Contents::default() };
         Self { view, head: Arc::clone(head), contents, distance_m: head.distance_m() }

@@ -11,7 +11,7 @@ use crate::program;
 use crate::too_heavy::TooHeavy;
 use crate::utilisation::Utilisation;
 use pxpl5_machine::{LateRegion, Record};
-use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster, ResultWindow};
+use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster, ResultWindow, hmd_on};
 use pxpl5_scene::HmdConfig;
 use pxpl5_sim::parameters::Value;
 use pxpl5_sim::{Time, TraceHash, mix};
@@ -180,13 +180,6 @@ impl HeadReport {
     }
 }
 
-/// Returns the head-mounted display, with the resolution of the first surface.
-fn hmd_of(outcome: &Outcome) -> HmdConfig {
-    let hmd = *outcome.experiment().hmd();
-    let surface = outcome.record().display().surfaces().first();
-    surface.map_or(hmd, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..hmd })
-}
-
 impl Report {
     /// Returns the number of lines of regions that were overwritten before the display showed these lines. `None` if
     /// the display does not count such lines.
@@ -269,7 +262,7 @@ impl Report {
             head,
             eye: eye.flatten(),
             arp: FacesReport::of(outcome),
-            hmd: hmd_of(outcome),
+            hmd: *hmd_on(outcome.record().display(), outcome.experiment().hmd()).config(),
             utilisation: Utilisation::of(record),
             critical_path: CriticalPath::of(outcome),
             trace_hash: String::new(),

@@ -6,10 +6,10 @@ use image::{Rgb, RgbImage};
 use pxpl5_run::Warp;
 use std::ops::Range;
 use tracking::Pose;
-use tracking::view::{HmdView, RasterOffset};
+use tracking::view::{Hmd, RasterOffset};
 
 /// Returns the direction of a picture position in head coordinates, scaled to a depth of 1 m.
-pub(crate) fn direction(view: &HmdView, place: DVec2) -> DVec3 {
+pub(crate) fn direction(view: &Hmd, place: DVec2) -> DVec3 {
     let from_centre = (place - view.centre_px()) / view.focal_px();
     DVec3::new(from_centre.x, -from_centre.y, -1.0)
 }
@@ -29,7 +29,7 @@ impl Move {
     ///
     /// This mapping ignores depth, so [`Warp::Depth`] gives only the rotation. Callers that have depths must correct
     /// for depth separately.
-    pub(crate) fn between(by: Warp, view: &HmdView, drawn_for: &Pose, now: &Pose) -> Self {
+    pub(crate) fn between(by: Warp, view: &Hmd, drawn_for: &Pose, now: &Pose) -> Self {
         match by {
             Warp::Shift => Self::Shift(RasterOffset::between(drawn_for, now, 0).shift_px(view, 0)),
             Warp::Rotation | Warp::Depth => Self::Turn(drawn_for.orientation.conjugate() * now.orientation),
@@ -38,7 +38,7 @@ impl Move {
 
     /// Returns the position in the drawn picture that is seen at the screen position `place`. Returns `None` if the
     /// position lies behind the eye for which the picture was drawn.
-    pub(crate) fn source(&self, view: &HmdView, place: DVec2) -> Option<DVec2> {
+    pub(crate) fn source(&self, view: &Hmd, place: DVec2) -> Option<DVec2> {
         match self {
             Self::Shift(shift) => Some(place - *shift),
             Self::Turn(turn) => view.project(*turn * direction(view, place)),
@@ -82,7 +82,7 @@ pub(crate) fn move_row(
     source: &RgbImage,
     rows: Rows,
     (y, xs): (u32, Range<u32>),
-    (view, moved): (&HmdView, &Move),
+    (view, moved): (&Hmd, &Move),
     out: &mut RgbImage,
 ) -> u64 {
     let begin = DVec2::new(0.5, f64::from(y) + 0.5);
@@ -112,13 +112,7 @@ pub(crate) fn move_row(
 /// and the number of these black pixels, or `None` if the picture and the view differ in size. [`Warp::Depth`] is
 /// treated as a rotation, because the function receives no depths.
 #[must_use]
-pub fn reproject(
-    picture: &RgbImage,
-    view: &HmdView,
-    by: Warp,
-    drawn_for: &Pose,
-    now: &Pose,
-) -> Option<(RgbImage, u64)> {
+pub fn reproject(picture: &RgbImage, view: &Hmd, by: Warp, drawn_for: &Pose, now: &Pose) -> Option<(RgbImage, u64)> {
     let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
     if size / 2.0 != view.centre_px() {
         return None;
@@ -143,7 +137,7 @@ mod tests {
     #[test]
     fn a_picture_of_another_size_than_the_view_is_not_moved() {
         let pose = Pose::IDENTITY;
-        assert_eq!(reproject(&places(320, 480), &HmdView::ntsc(), Warp::Rotation, &pose, &pose), None);
+        assert_eq!(reproject(&places(320, 480), &Hmd::unc(), Warp::Rotation, &pose, &pose), None);
     }
 
     #[test]
@@ -151,7 +145,7 @@ mod tests {
         let picture = places(640, 480);
         for by in [Warp::Shift, Warp::Rotation] {
             let pose = Pose::facing(rotation::from_yaw_pitch_roll(0.4, -0.2, 0.1));
-            assert_eq!(reproject(&picture, &HmdView::ntsc(), by, &pose, &pose), Some((picture.clone(), 0)));
+            assert_eq!(reproject(&picture, &Hmd::unc(), by, &pose, &pose), Some((picture.clone(), 0)));
         }
     }
 
@@ -159,7 +153,7 @@ mod tests {
     /// f) - a)`.
     #[test]
     fn under_a_turn_columns_come_from_where_the_tangents_say() {
-        let view = HmdView::ntsc();
+        let view = Hmd::unc();
         let (f, angle) = (view.focal_px(), 0.05_f64);
         let now = Pose::facing(rotation::about_y(angle));
         let moved = reproject(&places(640, 480), &view, Warp::Rotation, &Pose::IDENTITY, &now);

@@ -4,13 +4,10 @@ pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
 use crate::turned::LatchedFaces;
 use pxpl5_run::{Cause, Estimator, FinalResults, HeadViews, ResultWindow, SampledPose, Source, WARM_UP_PICTURES};
-use pxpl5_scene::HmdConfig;
 use pxpl5_sim::Time;
-use pxpl5_wire::display::{Display, Surface};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use tracking::view::HmdView;
 
 /// The picture at a pixel, classified for the evaluation of pixel errors.
 #[derive(Clone, Debug)]
@@ -212,10 +209,4 @@ fn views_of(source: Source) -> Vec<ViewNumber> {
 fn viewed(sampled: &SampledPose) -> Viewed {
     let moment = Moment { pose: sampled.pose, objects_at: sampled.objects_at, measured_at: sampled.measured_at };
     Viewed { known: sampled.known, moment }
-}
-
-/// Returns the projection of a head-mounted display onto the first surface of a display.
-pub(crate) fn view_of(display: &dyn Display, hmd: &HmdConfig) -> HmdView {
-    let sized = |surface: &Surface| HmdView::new(surface.width, surface.height, hmd.horizontal_fov_deg);
-    display.surfaces().first().and_then(|surface| sized(surface).ok()).unwrap_or_else(HmdView::ntsc)
 }

@@ -78,7 +78,7 @@ impl OfMemory {
         };
         self.begin = Some((shown.from, begin));
         // An interlaced display shows one of two neighbouring lines in each period.
-        let mut middle = [0, 1].into_iter().map(|line| scan.lights(scan.width() / 2, scan.height() / 2 + line, field));
+        let mut middle = [0, 1].into_iter().map(|line| scan.when(scan.width() / 2, scan.height() / 2 + line, field));
         let Some(light) = middle.find_map(|light| light) else { return };
         let instants = [begin, due, scan.retrace(shown.from), scan.retrace(field), light];
         for (sum, pair) in self.parts.iter_mut().zip(instants.windows(2)) {

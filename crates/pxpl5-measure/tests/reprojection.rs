@@ -20,7 +20,7 @@ use std::sync::Arc;
 use tracking::motion::{Motion, Slide};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
-use tracking::view::HmdView;
+use tracking::view::Hmd;
 use tracking::{Pose, SettingSink};
 
 const FIELDS: u64 = 30;
@@ -305,7 +305,7 @@ fn an_ideal_picture_that_is_turned_is_the_ideal_picture_of_the_turned_head() {
     let views = outcome.head().expect("a head");
     let [before, now] = [Time(300_000_000_000), Time(350_000_000_000)];
     let [drawn, expected] = [before, now].map(|at| outcome.ideal_picture(SurfaceId(0), at).expect("an eye"));
-    let moved = reproject(drawn.image(), &HmdView::ntsc(), Warp::Rotation, &views.truth(before), &views.truth(now));
+    let moved = reproject(drawn.image(), &Hmd::unc(), Warp::Rotation, &views.truth(before), &views.truth(now));
     let (moved, empty) = moved.expect("the size of the view");
     let flat = |(x, y, _): &(u32, u32, &image::Rgb<u8>)| {
         moved.get_pixel(*x, *y).0 != [0; 3] && is_flat(expected.image(), *x, *y) && is_flat(&moved, *x, *y)

@@ -8,6 +8,7 @@ use crate::picture::Picture;
 use crate::scene::Scene;
 use numpy::PyArray3;
 use numpy::ndarray::Array3;
+use pxpl5::PathSettings;
 use pxpl5::volume::pictures::{Look, coloured, halftoned, sheet};
 use pxpl5::volume::spatialgl::Threads;
 use pxpl5::volume::{Volume as Native, VolumeSettings, figures};

@@ -11,7 +11,7 @@ use crate::pipeline::{Pipeline, Setup};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::pipelines::faces::segments::moves;
 use crate::preparation::Preparation;
-use crate::scene_views::{hmd_before, poses, views};
+use crate::scene_views::{hmd_on, poses, views};
 use crate::views::{FrameStarts, ReportTimes};
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Machine, MachineConfig};
@@ -65,8 +65,7 @@ impl Experiment {
         preparation: Preparation,
     ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
         // Functions for a viewer who follows the scene's own motion without any delay.
-        let surface = machine.record().display().surfaces().first().cloned();
-        let hmd = hmd_before(surface.as_ref(), self.hmd);
+        let hmd = hmd_on(machine.record().display(), &self.hmd);
         let eyes = self.pipeline.eyes();
         let period = config.host.view_period_ns * 1_000;
         let cut = self.pipeline.cut(&self.scene, config)?;

@@ -11,8 +11,9 @@ use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::raster::Raster;
-use pxpl5_machine::{MachineConfig, Optimization, Parameter, Record};
+use pxpl5_machine::{MachineConfig, Optimization, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
+use pxpl5_sim::parameters::Parameter;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Aim;
 use std::collections::BTreeSet;
@@ -82,7 +83,7 @@ pub struct Experiment {
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
     pub(crate) results_from: Option<PeriodNumber>,
-    pub(crate) hmd: HmdConfig,
+    pub(crate) hmd: Hmd,
     pub(crate) estimates: Option<Estimates>,
     pub(crate) sums: Option<ObserverFactory>,
     pub(crate) dry_run: Option<Arc<DryRun>>,
@@ -129,7 +130,7 @@ impl Experiment {
             head: None,
             on_demand: false,
             results_from: None,
-            hmd: HmdConfig::unc(),
+            hmd: Hmd::unc(),
             estimates: None,
             sums: None,
             dry_run: None,
@@ -285,14 +286,14 @@ impl Experiment {
     /// from the machine's display.
     #[must_use]
     pub const fn with_hmd(mut self, hmd: Hmd) -> Self {
-        self.hmd = *hmd.config();
+        self.hmd = hmd;
         self
     }
 
     /// Returns the head-mounted display with the resolution of the papers' display. A run uses the resolution of the
     /// machine's display instead.
     #[must_use]
-    pub const fn hmd(&self) -> &HmdConfig {
+    pub const fn hmd(&self) -> &Hmd {
         &self.hmd
     }
 
@@ -367,8 +368,9 @@ impl Experiment {
         if self.on_demand {
             hash.setting("on_demand", true);
         }
-        if self.hmd != HmdConfig::unc() {
-            let HmdConfig { eye_separation_m, horizontal_fov_deg, near_m, far_m, convergence_m, .. } = self.hmd;
+        if self.hmd != Hmd::unc() {
+            let HmdConfig { eye_separation_m, horizontal_fov_deg, near_m, far_m, convergence_m, .. } =
+                *self.hmd.config();
             hash.setting("hmd", format!("{eye_separation_m} {horizontal_fov_deg} {near_m} {far_m}"));
             if let Some(metres) = convergence_m {
                 hash.setting("hmd.convergence", metres);

@@ -4,7 +4,7 @@ use crate::display_list::display_list_for;
 use crate::experiment::Experiment;
 use crate::head_views::HeadViews;
 use crate::outcome::Outcome;
-use crate::scene_views::{hmd_before, view, views};
+use crate::scene_views::{hmd_on, view, views};
 use pphigs::oracle::IdealPicture;
 use pphigs::{Picture, RegionBinning};
 use pxpl5_geometry::Viewport;
@@ -43,7 +43,7 @@ pub(crate) fn ideal_picture(
     // The pipeline may draw fewer eyes than the display has surfaces.
     let size = surfaces.get(surface).filter(|_| surface < eyes)?;
     let list = display_list_for(scene, pipeline.shading()).ok()?;
-    let hmd = hmd_before(surfaces.first(), *experiment.hmd());
+    let hmd = hmd_on(record.display(), experiment.hmd());
     // A tracked head is at its true pose, not at the predicted one.
     let view = match head {
         Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),

@@ -1,88 +1,11 @@
-//! Keys: the settings of pipelines that experiment files and the command line can change.
+//! Values of the settings of pipelines.
 
 use address_recalculation::Lens;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::KeyValue;
 use std::collections::BTreeMap;
-use std::fmt;
-use std::sync::Arc;
 
-/// The value of a pipeline's setting (key).
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum KeyValue {
-    /// A choice between true and false.
-    Flag(bool),
-    /// A whole number within the range that the key allows.
-    Whole(u64),
-    /// One of the names that the key allows.
-    Name(&'static str),
-    /// A text in the format that the key requires.
-    Text(Arc<str>),
-}
-
-impl fmt::Display for KeyValue {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flag(flag) => flag.fmt(f),
-            Self::Whole(number) => number.fmt(f),
-            Self::Name(name) => name.fmt(f),
-            Self::Text(text) => text.fmt(f),
-        }
-    }
-}
-
-/// The values that a key (setting of a pipeline) allows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KeyValues {
-    /// The key allows true and false.
-    Flag,
-    /// The key allows whole numbers from the first number to the second number, inclusive.
-    Whole(u64, u64),
-    /// The key allows one of these names.
-    Names(&'static [&'static str]),
-    /// The key allows the text of a [`Lens`].
-    Lens,
-}
-
-impl KeyValues {
-    /// Checks that `text` describes a lens, and returns the lens as the value of a key.
-    ///
-    /// # Errors
-    ///
-    /// [`SettingError`] with the allowed texts.
-    pub fn lens(text: &str) -> Result<KeyValue, SettingError> {
-        text.parse::<Lens>()?;
-        Ok(KeyValue::Text(text.into()))
-    }
-}
-
-impl fmt::Display for KeyValues {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flag => f.write_str("true or false"),
-            Self::Whole(low, high) => write!(f, "{low} to {high}"),
-            Self::Lens => f.write_str(Lens::FORMS),
-            Self::Names([]) => Ok(()),
-            Self::Names([name]) => f.write_str(name),
-            Self::Names([first @ .., last]) => write!(f, "{} or {last}", first.join(", ")),
-        }
-    }
-}
-
-/// A setting of a pipeline: `name = value` in experiment files, `--name value` on the command line.
-#[derive(Clone, Copy, Debug)]
-pub struct Key {
-    /// Name in experiment files. On the command line, `-` replaces `_`.
-    pub name: &'static str,
-    /// Help text of the key, in one line.
-    pub about: &'static str,
-    /// Values that the key allows.
-    pub values: KeyValues,
-    /// Paths of machine parameters that the key sets too. A user must not set both the key and one of these parameters.
-    pub sets: &'static [&'static str],
-}
-
-/// Values of the keys that the user has set. Each value must have been checked against its [`Key`].
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// Values of the keys that the user has set. Each value must have been checked against its [`Key`](pxpl5_sim::parameters::Key).
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PipelineSettings {
     values: BTreeMap<&'static str, KeyValue>,
 }

@@ -72,7 +72,7 @@ pub use head::{Head, HeadPlace};
 pub use head_views::{HeadViews, SampledPose};
 pub use host::{BareHost, Host};
 pub use keep::Keep;
-pub use keys::{Key, KeyValue, KeyValues, PipelineSettings};
+pub use keys::PipelineSettings;
 pub use latency::{LATENCY_PARTS, LatencyParts, PartDefinition};
 pub use level::Level;
 pub use observers::{FinalResults, ObserverFactory, StreamingObserver};
@@ -87,6 +87,7 @@ pub use pipelines::{
     Code, FinishedRegions, Frameless, Interpolation, Jitp, PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy,
     RenderingControl, Slats, SlatsLighting, Viewpoint, region_at,
 };
+pub use pxpl5_sim::parameters::{Key, KeyValue, KeyValues};
 pub use pxpl5_sim::{DefinedStatistics, KEPT_SAMPLES, Samples, Statistics, number_or_nan};
 pub use pxpl5_wire::display::{Aim, LightTimes};
 pub use raster::Raster;
@@ -94,7 +95,7 @@ pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry
 pub use reprojection::{Every, Reprojection, Warp};
 pub use result_window::{ResultWindow, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use says::{PixelField, bit_of, in_ms, in_us};
-pub use scene_views::views;
+pub use scene_views::{hmd_on, views};
 pub use so_far::SoFar;
 pub use stepper::{Pause, Stepper};
 pub use summary::{Summary, retraces};

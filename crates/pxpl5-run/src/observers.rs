@@ -5,7 +5,7 @@ use crate::pipeline::{PictureTimes, Pipeline};
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::ResultWindow;
 use pxpl5_machine::{Arrival, Record};
-use pxpl5_scene::HmdConfig;
+use pxpl5_scene::Hmd;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Aim;
 use std::any::Any;
@@ -29,7 +29,7 @@ pub struct FinalResults<'a> {
     /// Views of the tracked head that remain in memory. `None` without a head.
     pub head: Option<&'a Arc<HeadViews>>,
     /// Optics of the head-mounted display.
-    pub hmd: HmdConfig,
+    pub hmd: Hmd,
     /// Records of the requested updates of display memories, as far as the records are still in memory.
     pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.

@@ -1,6 +1,5 @@
 //! Interface between pipelines and experiments.
 
-use crate::keys::KeyValue;
 use crate::picture_ends::PictureResult;
 use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::pipelines::faces::segments::SegmentedScene;
@@ -13,6 +12,7 @@ use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::KeyValue;
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::{Aim, LightTimes};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};

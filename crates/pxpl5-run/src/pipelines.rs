@@ -14,7 +14,7 @@ pub use region_policy::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPol
 pub use rendering_control::{FinishedRegions, RenderingControl};
 pub use slats::{Code, Slats, SlatsLighting};
 
-use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;
 use crate::pipeline::PictureTimes;
 use crate::registry::PipelineEntry;
@@ -23,7 +23,7 @@ use pxpl5_framebuffer::{NtscDisplay, Video};
 use pxpl5_gp::{Mark, Stage};
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
 use pxpl5_sim::Time;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
 use pxpl5_wire::{PictureNumber, RegionGrid, ViewNumber};
 use std::any::Any;
 
@@ -74,12 +74,7 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Setti
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
 /// The key `shading` of pipelines that support both Phong and Gouraud shading.
-const SHADING: Key = Key {
-    name: "shading",
-    about: "phong or gouraud",
-    values: KeyValues::Names(&[SHADINGS[0].0, SHADINGS[1].0]),
-    sets: &[],
-};
+const SHADING: Key = Key::new("shading", "method of shading", KeyValues::Names(&const { names(&SHADINGS) }));
 
 /// Returns the value of the setting [`SHADING`] for a method of shading.
 fn shading_value(shading: Shading) -> KeyValue {

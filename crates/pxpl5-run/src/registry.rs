@@ -2,10 +2,11 @@
 
 use crate::error::ExperimentError;
 use crate::experiment::{Estimates, Experiment};
-use crate::keys::{Key, PipelineSettings};
+use crate::keys::PipelineSettings;
 use crate::pipeline::Pipeline;
 use crate::summary::Summary;
 use pxpl5_machine::{MachineConfig, NamedTable};
+use pxpl5_sim::parameters::Key;
 use pxpl5_sim::parameters::{SettingError, find_named};
 use pxpl5_wire::display::DisplayConfig;
 use serde::Serialize;

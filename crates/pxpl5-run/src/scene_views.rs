@@ -2,10 +2,10 @@
 
 use crate::views::{Poses, Views, ViewsWanted};
 use pphigs::{EyeView, FrameView, ModelEdit};
-use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
+use pxpl5_scene::{HeadMotion, Hmd, Pose, Scene};
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
-use pxpl5_wire::display::Surface;
+use pxpl5_wire::display::Display;
 use std::sync::Arc;
 
 /// Returns the view of a scene at a time, seen from a pose through the papers' head-mounted display.
@@ -24,14 +24,10 @@ pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, ti
     }
 }
 
-/// Returns a head-mounted display with the resolution of a surface.
-///
-/// # Panics
-///
-/// Never panics, because every display has surfaces with a width and height of 1 to 65,536 pixels.
-pub(crate) fn hmd_before(surface: Option<&Surface>, hmd: HmdConfig) -> Hmd {
-    let config = surface.map_or(hmd, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..hmd });
-    Hmd::new(config).expect("a surface has pixels")
+/// Returns a head-mounted display with the resolution of the first surface of the machine's display.
+#[must_use]
+pub fn hmd_on(display: &dyn Display, hmd: &Hmd) -> Hmd {
+    display.surfaces().first().map_or(*hmd, |surface| hmd.with_pixels(surface.width, surface.height))
 }
 
 /// Returns the poses of the scene's own head motion. The host follows this motion without any delay.

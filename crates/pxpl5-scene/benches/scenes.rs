@@ -3,14 +3,14 @@
 use std::hint::black_box;
 
 use criterion::Criterion;
-use pxpl5_scene::{Format, Hmd, HmdConfig, builtin, from_bytes};
+use pxpl5_scene::{Format, Hmd, builtin, from_bytes};
 
 fn scenes(c: &mut Criterion) {
     for name in ["mig", "molecules", "head", "full-screen:12"] {
         c.bench_function(name, |b| b.iter(|| builtin(black_box(name))));
     }
     let motion = *builtin("mig").expect("a built-in scene").motion();
-    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
+    let hmd = Hmd::unc();
     let mut time_ps = 0;
     c.bench_function("pose and stereo views", |b| {
         b.iter(|| {

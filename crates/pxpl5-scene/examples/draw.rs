@@ -7,7 +7,7 @@ use std::error::Error;
 
 use glam::{Mat4, Vec3};
 use image::{Rgb, RgbImage};
-use pxpl5_scene::{HeadMotion, HeadPath, Hmd, HmdConfig, Scene, Sway, View, builtin, load};
+use pxpl5_scene::{HeadMotion, HeadPath, Hmd, Scene, Sway, View, builtin, load};
 
 const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let columns = if motions.len() == 8 { 4 } else { motions.len() as u32 };
     let rows = (motions.len() as u32).div_ceil(columns);
     let mut sheet = RgbImage::new(WIDTH * columns, HEIGHT * rows);
-    let hmd = Hmd::new(HmdConfig::unc())?;
+    let hmd = Hmd::unc();
     for (i, (motion, time_ps)) in motions.iter().enumerate() {
         let view = hmd.mono(&motion.pose(*time_ps));
         let picture = draw(&scene.posed(&scene.edits_at(*time_ps)), &view);
@@ -66,7 +66,7 @@ fn draw(scene: &Scene, view: &View) -> RgbImage {
         depth: vec![f32::INFINITY; (WIDTH * HEIGHT) as usize],
     };
     for structure in scene.structures() {
-        let to_eye = view.to_eye(structure.frame);
+        let to_eye = structure.frame.to_eye(view);
         for triangle in &scene.triangles()[structure.triangles.clone()] {
             canvas.triangle(scene, view, to_eye, *triangle);
         }

@@ -70,7 +70,6 @@ mod motion;
 mod scene;
 mod sway;
 mod trig;
-mod view;
 
 pub use builtin::{builtin, names};
 pub use decimate::Decimation;
@@ -82,7 +81,7 @@ pub use motion::{HeadMotion, HeadPath};
 pub use scene::{Frame, Lighting, Scene, SceneParts, Sphere, Structure, Vertex};
 pub use sway::Sway;
 pub use tracking::Pose;
-pub use view::{EyePoint, Hmd, HmdConfig, View};
+pub use tracking::view::{EyePoint, Hmd, HmdConfig, View};
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

@@ -7,6 +7,7 @@ use glam::{DMat4, DVec3, Mat4, Vec3};
 
 use crate::edit::{Edit, Hinge};
 use crate::motion::HeadMotion;
+use tracking::view::View;
 
 /// A corner of one or more triangles, with position, normal and colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +38,17 @@ pub enum Frame {
     World,
     /// The head of the viewer. The structure always appears at the same position in the view.
     Head,
+}
+
+impl Frame {
+    /// Returns the matrix from the coordinates of this frame to eye coordinates.
+    #[must_use]
+    pub const fn to_eye(self, view: &View) -> Mat4 {
+        match self {
+            Self::World => view.world_to_eye,
+            Self::Head => view.head_to_eye,
+        }
+    }
 }
 
 /// A part of a scene with a name and one model matrix: successive triangles and spheres.

@@ -2,14 +2,14 @@
 //! view.
 
 use glam::{DVec3, Vec3};
-use pxpl5_scene::{Format, Hmd, HmdConfig, Placement, Scene, builtin, from_bytes, placed_from_bytes};
+use pxpl5_scene::{Format, Hmd, Placement, Scene, builtin, from_bytes, placed_from_bytes};
 
 const SECOND: u64 = 1_000_000_000_000;
 
 /// Returns the angle between the bounding sphere and the nearest side of a view, degrees. A negative angle means that
 /// the sphere is cut off.
 fn margin_deg(scene: &Scene, time_ps: u64) -> f64 {
-    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
+    let hmd = Hmd::unc();
     let (centre, radius) = scene.bounding_sphere();
     let half_width = 30f64.to_radians().tan();
     let margins = hmd.stereo(&scene.motion().pose(time_ps)).map(|view| {

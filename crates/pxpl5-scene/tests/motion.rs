@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use pxpl5_scene::config::{MAX_HEAD_SPEED_DEG_PER_S, MEAN_HEAD_SPEED_DEG_PER_S};
-use pxpl5_scene::{HeadMotion, HeadPath, Hmd, HmdConfig, Pose, Scene, Sway, builtin};
+use pxpl5_scene::{HeadMotion, HeadPath, Hmd, Pose, Scene, Sway, builtin};
 
 const SECOND: u64 = 1_000_000_000_000;
 /// Time between the two poses from which a speed is computed, ps. Ten speeds per second resolve every sine below 2 Hz.
@@ -140,7 +140,7 @@ fn a_still_head_stays_upright_even_when_it_looks_straight_down() {
 
 #[test]
 fn the_default_motion_of_every_scene_keeps_the_centre_of_the_model_in_view_for_hours() {
-    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
+    let hmd = Hmd::unc();
     for name in ["mig", "molecules", "head"] {
         let scene = builtin(name).expect("a built-in scene");
         let (centre, _) = scene.bounding_sphere();
@@ -154,7 +154,7 @@ fn the_default_motion_of_every_scene_keeps_the_centre_of_the_model_in_view_for_h
 
 /// Returns the fraction of the picture that the bounding rectangle of the model's vertices covers.
 fn boxed_share(scene: &Scene, time_ps: u64) -> f32 {
-    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
+    let hmd = Hmd::unc();
     let view = hmd.mono(&scene.motion().pose(time_ps));
     let to_clip = view.projection * view.world_to_eye;
     let points = scene.vertices().iter().map(|v| to_clip * v.position.extend(1.0));

@@ -4,7 +4,7 @@ use pxpl5_sim::parameters::SettingErrorKind;
 use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
-use pxpl5_scene::{Frame, Hmd, HmdConfig, Pose, Scene, builtin, names};
+use pxpl5_scene::{Frame, Hmd, Pose, Scene, builtin, names};
 
 fn scene(name: &str) -> Scene {
     builtin(name).unwrap_or_else(|error| panic!("{error}"))
@@ -186,11 +186,11 @@ fn the_ailerons_of_mig_deflect_oppositely() {
 #[test]
 fn full_screen_triangles_cover_every_corner_of_both_screens_however_the_head_turns() {
     let scene = scene("full-screen:12");
-    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
+    let hmd = Hmd::unc();
     let pose = Pose { position: DVec3::new(3.0, -2.0, 9.0), orientation: glam::DQuat::from_xyzw(0.5, 0.5, -0.5, 0.5) };
     assert!(scene.structures().iter().all(|s| s.frame == Frame::Head));
     for view in hmd.stereo(&pose) {
-        let to_clip = view.projection * view.to_eye(Frame::Head);
+        let to_clip = view.projection * Frame::Head.to_eye(&view);
         for triangle in scene.triangles() {
             let p = triangle.map(|c| to_clip.project_point3(scene.vertices()[c as usize].position));
             assert!(p.iter().all(|p| (0.0..1.0).contains(&p.z)));

@@ -41,9 +41,11 @@
 //! **Not here:** rules that relate several parameters, such as "at most the length of a line". The crate that owns the
 //! table checks these rules.
 
+mod by_path;
 mod error;
 mod file_error;
 mod info;
+mod key;
 mod macros;
 mod name;
 mod nearest;
@@ -51,10 +53,12 @@ mod number;
 mod table;
 mod value;
 
-pub use crate::{named, parameter_table};
+pub use crate::{named, parameter_table, tables_at};
+pub use by_path::{Choice, Parameter, PathSettings, PathTable, PathTableMut, assignment_of, choose, table_at};
 pub use error::{SettingError, SettingErrorKind};
 pub use file_error::{FileError, FileErrorKind, text_of};
 pub use info::{ParameterInfo, Provenance, unknown_parameter};
+pub use key::{Key, KeyValue, KeyValues, names};
 pub use name::{find_named, write_name};
 pub use nearest::nearest;
 pub use number::{Number, check, check_value};

@@ -59,14 +59,6 @@ pub(crate) trait Named: Copy + PartialEq + 'static {
     fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, choice)| *choice == self).map_or("", |(name, _)| name)
     }
-
-    fn named(text: &str) -> Result<Self, String> {
-        let found = Self::NAMES.iter().find(|(name, _)| *name == text).map(|(_, choice)| *choice);
-        found.ok_or_else(|| {
-            let names: Vec<&str> = Self::NAMES.iter().map(|(name, _)| *name).collect();
-            names.join(", ")
-        })
-    }
 }
 
 pxpl5_sim::parameters::named!(ClipKind, "clip", ClipKind::NAMES.iter().copied());

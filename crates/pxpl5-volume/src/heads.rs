@@ -34,7 +34,7 @@ use spatialgl::{
 };
 use tracking::Pose;
 use tracking::motion::Motion;
-use tracking::view::HmdView;
+use tracking::view::{Hmd, HmdConfig};
 
 /// Number of scene vertices at which errors are evaluated. The number is assumed to be large enough: more points would
 /// not change the mean.
@@ -154,9 +154,10 @@ impl<'a> HeadComparison<'a> {
         Ok(Self { volume, motion, viewer, into_volume: placed(&motion.pose(0), volume, &viewer), latency_ps, points })
     }
 
-    fn view(&self) -> Result<HmdView, SettingError> {
+    fn view(&self) -> Result<Hmd, SettingError> {
         let width = self.viewer.hmd_width_px as u32;
-        HmdView::new(width, width * 3 / 4, self.viewer.hmd_angle_deg)
+        let (width_px, height_px, horizontal_fov_deg) = (width, width * 3 / 4, self.viewer.hmd_angle_deg);
+        Hmd::new(HmdConfig { width_px, height_px, horizontal_fov_deg, ..HmdConfig::unc() })
             .map_err(|error| SettingError::value("viewer", "a head-mounted display that can be", error))
     }
 
@@ -210,7 +211,7 @@ impl<'a> HeadComparison<'a> {
         Ok((0..instants).map(|i| self.latency_ps + (f64::from(i) * step) as u64).collect())
     }
 
-    fn sample(&self, time_ps: u64, view: &HmdView) -> HeadSample {
+    fn sample(&self, time_ps: u64, view: &Hmd) -> HeadSample {
         let mut hmd = Mean::default();
         let mut hmd_px = Mean::default();
         let mut hmd_mm = Mean::default();

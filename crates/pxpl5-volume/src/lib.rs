@@ -12,7 +12,7 @@
 //!
 //! # Settings
 //!
-//! Every number and choice has a path, such as `clip.bias_px2` or `gpu.readback_mb_s` ([`VolumeSettings::set`]). Tables
+//! Every number and choice has a path, such as `clip.bias_px2` or `gpu.readback_mb_s` ([`PathSettings::set`]). Tables
 //! hold the numbers with unit, provenance, range and source.
 //!
 //! # Beyond the paper
@@ -38,7 +38,7 @@ mod workers;
 pub use choices::{ClipKind, ProjectionKind, RendererKind};
 pub use experiment::Volume;
 pub use numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers, ViewerNumbers};
-pub use pxpl5_sim::parameters::SettingError;
+pub use pxpl5_sim::parameters::{PathSettings, SettingError};
 pub use report::{Brightness, DisplayReport, ModelPart, ModelTimes, Override, PixelPlanesReport, VolumeReport};
 pub use settings::VolumeSettings;
 pub use spatialgl;

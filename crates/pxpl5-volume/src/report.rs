@@ -3,7 +3,7 @@
 use crate::experiment::Volume;
 use crate::pixel_planes::{BoundRow, SimulatedRow, SliceBounds, SliceTraffic, simulate};
 use crate::settings::VolumeSettings;
-use pxpl5_sim::parameters::Value;
+use pxpl5_sim::parameters::{Parameter, PathSettings, Value};
 use serde::Serialize;
 use spatialgl::{SpatialDisplay, VolumeTime, brightness_by_radius, connected, dead_zone_radius, innermost_lit_radius};
 
@@ -310,7 +310,7 @@ impl VolumeSettings {
     /// Returns the settings whose numbers differ from the SpatialGL paper's values.
     #[must_use]
     pub fn overrides(&self) -> Vec<Override> {
-        let changed = self.numbers().into_iter().filter(|(_, entry)| entry.value != entry.info.papers);
-        changed.map(|(path, entry)| Override { path, value: entry.value, papers: entry.info.papers }).collect()
+        let changed = self.numbers().into_iter().filter(|number| number.value != number.info.papers);
+        changed.map(|Parameter { path, value, info, .. }| Override { path, value, papers: info.papers }).collect()
     }
 }

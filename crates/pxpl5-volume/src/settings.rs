@@ -2,8 +2,7 @@
 
 use crate::choices::{ClipKind, Named, ProjectionKind, RendererKind};
 use crate::numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers, ViewerNumbers};
-use pxpl5_sim::parameters::ParameterTable;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{PathSettings, SettingError};
 use spatialgl::perspecta::PerspectaConfig;
 use spatialgl::{
     BinTolerance, Binning, Combine, Coverage, GpuTiming, Halftone, Jitter, Projection, Rotation, SliceClip, Strobes,
@@ -60,9 +59,6 @@ pub struct VolumeSettings {
     pub viewer: ViewerNumbers,
 }
 
-/// A table of parameters, with the first part of the paths of these parameters.
-pub(crate) type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
-
 impl VolumeSettings {
     /// Returns the settings of the SpatialGL paper: its display, the hyperbolic clip and jittered eyes.
     #[must_use]
@@ -90,21 +86,6 @@ impl VolumeSettings {
             gpu: GpuTiming::PAPERS,
             viewer: ViewerNumbers::PAPERS,
         }
-    }
-
-    /// Returns all tables of parameters, each with the first part of the paths of its parameters.
-    pub(crate) fn tables(&self) -> [NamedTable<'_>; 9] {
-        [
-            ("display", &self.display),
-            ("display", &self.sweep),
-            ("clip", &self.clip_numbers),
-            ("jitter", &self.jitter),
-            ("eye", &self.eye),
-            ("tile", &self.tile),
-            ("draw", &self.draw),
-            ("gpu", &self.gpu),
-            ("viewer", &self.viewer),
-        ]
     }
 
     /// Returns the clip, with its offset or bias.
@@ -240,20 +221,13 @@ impl VolumeSettings {
     /// Checks every number against the limits of its table, and the number of samples against the allowed values.
     fn check_tables(&self) -> Result<(), SettingError> {
         for (prefix, table) in self.tables() {
-            if let Some(entry) = table.entries().into_iter().find(|entry| !entry.is_within_limits()) {
-                let (least, most) = entry.info.limits;
-                return Err(Self::wrong(prefix, entry.info.name, &format!("{least} to {most}"), entry.value));
-            }
+            table.check().map_err(|error| error.in_table(prefix).at("settings"))?;
         }
         // A range cannot express the allowed numbers of samples.
         let DrawNumbers { samples, .. } = self.draw;
         if ![1, 4, 16].contains(&samples) {
-            return Err(Self::wrong("draw", "samples", "1, 4 or 16", samples));
+            return Err(SettingError::value("draw.samples", "1, 4 or 16", samples).at("settings"));
         }
         Ok(())
-    }
-
-    fn wrong(prefix: &str, name: &str, expected: &str, found: impl std::fmt::Display) -> SettingError {
-        SettingError::value(name, expected, found).in_table(prefix).at("settings")
     }
 }

@@ -1,6 +1,7 @@
 //! Tests of a moving head before the volume: errors of a late head-mounted display, and errors of voxels.
 
 use pxpl5_scene::builtin;
+use pxpl5_sim::parameters::PathSettings;
 use pxpl5_volume::heads::{HeadComparison, HeadStudyConfig};
 use pxpl5_volume::spatialgl::OneThread;
 use pxpl5_volume::{ProjectionKind, Volume, VolumeSettings};

@@ -3,6 +3,7 @@
 
 use pxpl5_renderer::isa::Operand;
 use pxpl5_renderer::{BitSerial, CommandKind, EMPTY_PLANE, Lanes, Layout, PixelArray};
+use pxpl5_sim::parameters::PathSettings;
 use pxpl5_volume::pixel_planes::{
     ArrayKind, PixelPlanesRenderer, RendererWork, SliceBounds, SliceCorner, SliceTraffic, SliceTriangle,
     halftone_clocks, halftone_words, lit_field, simulate, threshold_field,

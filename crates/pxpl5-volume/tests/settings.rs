@@ -1,5 +1,6 @@
 //! Tests of settings by path: accepted values, and errors for other values.
 
+use pxpl5_sim::parameters::{Parameter, PathSettings};
 use pxpl5_volume::spatialgl::{BinTolerance, SliceClip};
 use pxpl5_volume::{SettingError, VolumeSettings};
 
@@ -34,8 +35,8 @@ fn every_path_of_the_specification_is_known() {
 
 #[test]
 fn every_number_can_be_set_to_the_papers_value_and_changes_nothing() {
-    for (path, entry) in VolumeSettings::paper().numbers() {
-        let settings = set(&format!("{path}={}", entry.value)).expect("the value that it has");
+    for Parameter { path, value, .. } in VolumeSettings::paper().numbers() {
+        let settings = set(&format!("{path}={value}")).expect("the value that it has");
         assert_eq!(settings, VolumeSettings::paper(), "{path}");
         assert!(settings.overrides().is_empty());
     }
@@ -90,7 +91,7 @@ fn bad_input_says_what_was_expected_and_what_was_found() {
         ("jitter.eye_distance=0.001", ["jitter.eye_distance", "more than 3.0", "0.384"]),
         ("draw.matrix=6", ["halftone.matrix", "2, 4, 8 or 16", "6"]),
         ("draw.samples=9", ["draw.samples", "1, 4 or 16", "9"]),
-        ("draw.coverage=all", ["draw.coverage", "sampled, connected", "all"]),
+        ("draw.coverage=all", ["draw.coverage", "sampled or connected", "all"]),
         ("seed=-1", ["seed", "a whole number", "-1"]),
         ("display.slices=many", ["display.slices", "a whole number", "many"]),
         ("clip.variant=exact:1", ["clip.variant", "exact without a number", "exact:1"]),

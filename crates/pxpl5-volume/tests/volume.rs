@@ -1,6 +1,7 @@
 //! Tests of volumes and their reports on small displays: counts from formulas, and pixels of pictures.
 
 use pxpl5_scene::{Scene, builtin};
+use pxpl5_sim::parameters::PathSettings;
 use pxpl5_volume::compare::{ComparePoint, compare, variant_count};
 use pxpl5_volume::pictures::{before_and_after, coloured, halftoned, sheet, tile_map};
 use pxpl5_volume::spatialgl::{OneThread, Strobes, Threads};

@@ -85,7 +85,7 @@ impl Tables {
 }
 
 /// Tables of numbers that an experiment cannot change, with the names of the tables. The tables have head speeds, the
-/// pendulum rig that measures latency, NTSC video, and the picture size of the head-mounted display.
+/// pendulum rig that measures latency, NTSC video, and the head-mounted display.
 pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
     ("head", &HeadSpeeds::PAPERS),
     ("rig", &RigNumbers::PAPERS),
@@ -264,14 +264,21 @@ parameter_table! {
 }
 
 parameter_table! {
-    /// The picture of the papers' head-mounted display.
+    /// The pictures and the eyes of the papers' head-mounted display. An experiment changes these numbers with its keys
+    /// `hmd` and `display`.
     pub struct HeadMountedView {
-        /// Width of the head-mounted display's picture.
-        width: 640, "px", Published, 1..=16384, "TR94";
-        /// Height of the head-mounted display's picture.
-        height: 480, "px", Published, 1..=16384, "TR94";
-        /// Horizontal angle of view of the head-mounted display.
-        horizontal_angle: f64 = 60.0, "deg", Published, 1.0..=170.0, "JITP";
+        /// Distance between the viewer's eyes.
+        eye_separation_m: f64 = 0.064, "m", Assumed, 0.054..=0.074 in 0.0..=1.0, "mean of adults";
+        /// Angle between the left and the right edge of an eye's picture.
+        horizontal_fov_deg: f64 = 60.0, "deg", Assumed, 30.0..=100.0 in 1.0..=170.0, "published in JITP's example";
+        /// Number of pixels across a picture. Pixels are square.
+        width_px: 640, "px", Published, 640..=640 in 1..=65536, "TR94";
+        /// Number of pixels from the top to the bottom of a picture.
+        height_px: 480, "px", Published, 480..=480 in 1..=65536, "TR94";
+        /// Distance from the eye to the plane in front of which nothing is drawn.
+        near_m: f64 = 0.05, "m", Assumed, 0.000001..=1000000.0, "nearer than a hand";
+        /// Distance from the eye to the plane behind which nothing is drawn.
+        far_m: f64 = 50.0, "m", Assumed, 0.000001..=1000000000.0, "24 bits of depth give steps of 1.2 um at 1 m";
     }
 }
 

@@ -14,8 +14,8 @@ use pxpl5::arp::pictures::ArpPicture;
 use pxpl5::scene::{Placement, Scene};
 use pxpl5::sweep::leaves;
 use pxpl5::views::png_bytes;
-use pxpl5::{MotionChoice, Parameter, SceneChoice};
-use pxpl5_sim::parameters::text_of;
+use pxpl5::{MotionChoice, PathSettings, SceneChoice};
+use pxpl5_sim::parameters::{assignment_of, text_of};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -92,7 +92,7 @@ impl WalkArgs {
         }
         // Check all settings together before the scene is loaded.
         plan.settings()?;
-        warn(&warnings(&plan), self.quiet);
+        warn(&plan.warnings(), self.quiet);
         let scene = load(self.scene.as_deref().unwrap_or(&scene))?;
         scenes::print_warnings(&scene, self.quiet);
         Ok((scene, plan))
@@ -157,10 +157,8 @@ impl WalkArgs {
         }
         // `--set` comes last and overrides everything else.
         for assignment in &self.sets {
-            let (path, value) = assignment
-                .split_once('=')
-                .ok_or_else(|| CliError::usage(format!("--set: expected PATH=VALUE, found {assignment}")))?;
-            given.push((path.trim().to_owned(), value.trim().to_owned(), "--set".to_owned()));
+            let (path, value) = assignment_of(assignment, "--set")?;
+            given.push((path.to_owned(), value.to_owned(), "--set".to_owned()));
         }
         Ok((scene, given))
     }
@@ -170,13 +168,6 @@ fn read_lens(path: &Path, plan: &WalkPlan) -> Result<Lens, CliError> {
     let failed = |error: &dyn std::fmt::Display| CliError::failure(format!("{}: {error}", path.display()));
     let file = File::open(path).map_err(|error| failed(&error))?;
     Lens::read(BufReader::new(file), &plan.picture()).map_err(|error| failed(&error))
-}
-
-fn warnings(plan: &WalkPlan) -> Vec<String> {
-    let numbers = plan.numbers().into_iter().filter(|(_, entry)| !entry.is_in_range());
-    let parameters =
-        numbers.map(|(path, entry)| Parameter { path, info: *entry.info, value: entry.value, read_only: false });
-    parameters.map(|parameter| parameter.warning()).collect()
 }
 
 fn load(name: &str) -> Result<Arc<Scene>, CliError> {

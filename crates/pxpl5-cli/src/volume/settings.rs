@@ -15,7 +15,7 @@ use pxpl5::views::png_bytes;
 use pxpl5::volume::pixel_planes::supported;
 use pxpl5::volume::spatialgl::Threads;
 use pxpl5::volume::{Counted, RendererKind, Volume, VolumeSettings};
-use pxpl5::{MotionChoice, Parameter, SceneChoice};
+use pxpl5::{MotionChoice, PathSettings, SceneChoice};
 use std::num::NonZero;
 use std::sync::Arc;
 
@@ -119,7 +119,7 @@ impl SettingOptions {
         if settings.renderer == RendererKind::PixelPlanes {
             supported(&settings)?;
         }
-        warn(&warnings(&settings), self.quiet);
+        warn(&settings.warnings(), self.quiet);
         Ok(settings)
     }
 
@@ -127,13 +127,6 @@ impl SettingOptions {
         let asked = self.threads.and_then(|threads| NonZero::new(threads as usize));
         asked.map_or_else(Threads::all, Threads)
     }
-}
-
-fn warnings(settings: &VolumeSettings) -> Vec<String> {
-    let numbers = settings.numbers().into_iter().filter(|(_, entry)| !entry.is_in_range());
-    let parameters =
-        numbers.map(|(path, entry)| Parameter { path, info: *entry.info, value: entry.value, read_only: false });
-    parameters.map(|parameter| parameter.warning()).collect()
 }
 
 impl VolumeSettingArgs {

@@ -13,7 +13,7 @@ use pxpl5::sweep::{Header, PointResults, SceneCache, SweepSpace, Swept, leaves};
 use pxpl5::volume::spatialgl::{CommandBuffer, OneThread, Threads};
 use pxpl5::volume::{Volume, VolumeSettings};
 use pxpl5::{Fingerprint, SettingError};
-use pxpl5_sim::parameters::text_of;
+use pxpl5_sim::parameters::{PathSettings, assignment_of, text_of};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -96,10 +96,8 @@ impl VolumeSweep {
         let mut settings: BTreeMap<String, toml::Value> = leaves(file).into_iter().collect();
         // Settings of the command line override the file.
         for assignment in sets {
-            let (path, value) = assignment
-                .split_once('=')
-                .ok_or_else(|| SettingError::value("PATH=VALUE", "an equals sign", assignment).at("--set"))?;
-            settings.insert(path.trim().to_owned(), toml::Value::from(value.trim()));
+            let (path, value) = assignment_of(assignment, "--set")?;
+            settings.insert(path.to_owned(), toml::Value::from(value));
         }
         // Every path must exist before any volume is drawn.
         let keys = VolumeSettings::paper().keys();

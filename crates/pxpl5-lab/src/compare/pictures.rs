@@ -13,7 +13,7 @@ use tracking::motion::{Motion, Pan};
 use tracking::predict::PredictorKind;
 use tracking::time::span_s;
 use tracking::tracker::TrackerConfig;
-use tracking::view::HmdView;
+use tracking::view::Hmd;
 
 /// The four pictures of one display field. Each has 640 x 240 pixels, with one row for each scanned line.
 #[derive(Clone, Debug)]
@@ -108,7 +108,7 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
 /// the field is lit. Pixels without content are black.
 #[must_use]
 pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &dyn Motion) -> RgbImage {
-    let view = HmdView::ntsc();
+    let view = Hmd::unc();
     let parity = FieldParity::of_field(field).first_line();
     let when = |x: u32, row: u32| video.when(x, 2 * row + parity, field).unwrap_or_default().0;
     let middle_ps = when(video.width() / 2, video.height() / 4);

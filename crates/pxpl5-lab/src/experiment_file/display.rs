@@ -1,71 +1,101 @@
 //! The display in an experiment file: a preset by name, and parameters that change the preset.
 
-use super::read::{plain, unknown, wrong};
+use super::read::wrong;
 use super::{ExperimentFile, Setting};
+use pxpl5_framebuffer::PanelConfig;
 use pxpl5_run::DisplayEntry;
-use pxpl5_sim::parameters::{ParameterTable, SettingError, Value as Number};
+use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, ParameterTable, SettingError, Value as Number};
 use pxpl5_wire::display::DisplayConfig;
-
-pub(super) const NUMBERS: &str = "display.";
 
 /// Name of the display that the experiment uses if the file sets display parameters but names no display.
 const OWN: &str = "panel";
 
-/// A display parameter in an experiment file. The parameter has one name in the file (`key`) and another name in the
-/// display's table of parameters (`parameter`).
+/// A display parameter in an experiment file. The parameter has one name in the file (the last part of the key) and
+/// another name in the display's table of parameters (`parameter`).
 struct NumberKey {
-    key: &'static str,
+    key: Key,
     parameter: &'static str,
+    /// Value in the display's table for a value of 1 in the file.
     per_unit: f64,
-    about: &'static str,
-    /// Words that the file must use instead of numbers, each with the number that the word stands for. Empty for a
-    /// parameter with a number.
-    words: &'static [(&'static str, u64)],
 }
 
-const fn whole(key: &'static str, about: &'static str) -> NumberKey {
-    NumberKey { key, parameter: key, per_unit: 1.0, about, words: &[] }
+/// Creates a key with a number. The display's table gives the range of the number.
+const fn number(name: &'static str, unit: &'static str, about: &'static str, parameter: &'static str) -> NumberKey {
+    NumberKey { key: Key { unit, ..Key::new(name, about, KeyValues::NUMBER) }, parameter, per_unit: 1.0 }
+}
+
+/// Creates a key with names. The first name stands for 0 in the display's table, the second for 1, and so on.
+const fn choice(name: &'static str, about: &'static str, values: KeyValues, parameter: &'static str) -> NumberKey {
+    NumberKey { key: Key::new(name, about, values), parameter, per_unit: 1.0 }
 }
 
 const KEYS: [NumberKey; 12] = [
-    whole("width", "visible pixels of a line"),
-    whole("height", "visible lines"),
-    NumberKey { parameter: "refresh_hz", ..whole("hz", "scans a second") },
+    number("display.width", "px", "visible pixels of a line", "width"),
+    number("display.height", "px", "visible lines", "height"),
+    number("display.hz", "Hz", "scans a second", "refresh_hz"),
+    choice("display.interlace", "a scan lights every second line only", KeyValues::Flag, "interlace"),
+    choice(
+        "display.scan",
+        "rolling (pixels light one after the other) or global (all at once)",
+        KeyValues::Names(&["rolling", "global"]),
+        "scan",
+    ),
+    choice(
+        "display.direction",
+        "direction of a rolling scan",
+        KeyValues::Names(&["down", "up", "right", "left"]),
+        "direction",
+    ),
     NumberKey {
-        words: &[("false", 0), ("true", 1)],
-        ..whole("interlace", "true if a scan lights every second line only, else false")
-    },
-    NumberKey {
-        words: &[("rolling", 0), ("global", 1)],
-        ..whole("scan", "rolling (pixels light one after the other) or global (all at once)")
-    },
-    NumberKey {
-        words: &[("down", 0), ("up", 1), ("right", 2), ("left", 3)],
-        ..whole("direction", "direction of a rolling scan: down, up, right or left")
-    },
-    NumberKey {
-        parameter: "active_permille",
         per_unit: 1e3,
-        ..whole("active", "part of the period in which pixels light, 0.001 to 1; a global display lights at its end")
+        ..number(
+            "display.active",
+            "",
+            "part of the period in which pixels light; a global display lights at its end",
+            "active_permille",
+        )
     },
     NumberKey {
-        parameter: "persistence_us",
         per_unit: 1e3,
-        ..whole("persistence_ms", "time for which a pixel shines in each scan, at most a period")
+        ..number(
+            "display.persistence_ms",
+            "ms",
+            "time for which a pixel shines in each scan, at most a period",
+            "persistence_us",
+        )
     },
     NumberKey {
-        parameter: "response_us",
         per_unit: 1e3,
-        ..whole("response_ms", "time constant of a pixel's brightness")
+        ..number("display.response_ms", "ms", "time constant of a pixel's brightness", "response_us")
     },
-    whole("ports", "ports of a board on the ring, 1 to 8"),
-    whole("word_ns", "time of one word at a port"),
-    whole("bits", "bits of a pixel's colour, 3 to 24"),
+    number("display.ports", "", "ports of a board on the ring", "ports"),
+    number("display.word_ns", "ns", "time of one word at a port", "word_ns"),
+    number("display.bits", "", "bits of a pixel's colour", "bits"),
 ];
 
-/// Returns the key of every display parameter with its description.
-pub(super) fn keys() -> impl Iterator<Item = (String, &'static str)> {
-    KEYS.iter().map(|key| (format!("{NUMBERS}{}", key.key), key.about))
+impl NumberKey {
+    /// Returns the range of the parameter in a display's table, in the unit of the experiment file.
+    fn limits(&self, table: &dyn ParameterTable) -> KeyValues {
+        let info = table.infos().iter().find(|info| info.name == self.parameter);
+        let in_file = |value: Number| value.real() / self.per_unit;
+        info.map_or(KeyValues::NUMBER, |info| KeyValues::Real(in_file(info.limits.0), in_file(info.limits.1)))
+    }
+
+    /// Returns the key with the range of a display's table.
+    fn with_limits(&self, table: &dyn ParameterTable) -> Key {
+        let is_number = matches!(self.key.values, KeyValues::Real(..));
+        Key { values: if is_number { self.limits(table) } else { self.key.values }, ..self.key }
+    }
+}
+
+/// Returns the key of every display parameter with its description. The ranges are those of the panel.
+pub(super) fn keys() -> impl Iterator<Item = (&'static str, String)> {
+    KEYS.iter().map(|key| (key.key.name, key.with_limits(&PanelConfig::PAPERS).help()))
+}
+
+/// Returns the unit of a display parameter, or `None` if the key is no display parameter.
+pub(super) fn unit_of(name: &str) -> Option<&'static str> {
+    KEYS.iter().find(|key| key.key.name == name).map(|key| key.key.unit)
 }
 
 /// Reads the display of an experiment and its parameters. Returns `None` if the file names no display and sets no
@@ -73,78 +103,53 @@ pub(super) fn keys() -> impl Iterator<Item = (String, &'static str)> {
 pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig>>, SettingError> {
     let displays: Vec<(&str, &DisplayEntry)> =
         file.registry().displays().iter().map(|entry| (entry.name, entry)).collect();
-    let given: Vec<(&NumberKey, String, &Setting)> = KEYS
-        .iter()
-        .filter_map(|key| {
-            let path = format!("{NUMBERS}{}", key.key);
-            let setting = file.get(&path)?;
-            Some((key, path, setting))
-        })
-        .collect();
+    let given: Vec<(&NumberKey, &Setting)> =
+        KEYS.iter().filter_map(|key| Some((key, file.get(key.key.name)?))).collect();
     let own = displays.iter().find(|(name, _)| *name == OWN && !given.is_empty()).map(|(_, entry)| *entry);
     let Some(entry) = file.choice("display", &displays)?.or(own) else { return Ok(None) };
     let mut config = (entry.config)();
-    for (key, path, setting) in &given {
-        set(config.as_mut(), key, path, setting)?;
+    for (key, setting) in &given {
+        set(file, config.as_mut(), key, setting)?;
     }
     if let (Err(error), Some(first)) = (config.check(), given.first()) {
         // The message names the number of the table; the place is the place of the key that sets this number.
         let name = error.name.rsplit('.').next().unwrap_or_default();
-        let named = given.iter().find(|(key, ..)| key.parameter == name);
-        let (_, path, setting) = named.unwrap_or(first);
-        return Err(error.at(format_args!("{}: {path}", setting.place)));
+        let (key, setting) = given.iter().find(|(key, _)| key.parameter == name).unwrap_or(first);
+        return Err(error.at(format_args!("{}: {}", setting.place, key.key.name)));
     }
     Ok(Some(config))
 }
 
 /// Sets one parameter of the display to the value in the experiment file.
-fn set(config: &mut dyn DisplayConfig, key: &NumberKey, path: &str, setting: &Setting) -> Result<(), SettingError> {
-    let name = config.name();
-    let tables = config.tables_mut();
-    let table = tables.into_iter().map(|(_, table)| table).find(|table| table.get(key.parameter).is_ok());
+fn set(
+    file: &ExperimentFile,
+    config: &mut dyn DisplayConfig,
+    number: &NumberKey,
+    setting: &Setting,
+) -> Result<(), SettingError> {
+    let display = config.name();
+    let name = number.key.name;
+    let table =
+        config.tables_mut().into_iter().map(|(_, table)| table).find(|table| table.get(number.parameter).is_ok());
     let Some(table) = table else {
-        return Err(wrong(path, setting, &format!("nothing: the display {name} has no such number")));
+        return Err(wrong(name, setting, &format!("nothing: the display {display} has no such number")));
     };
-    let number = number(key, path, setting)?;
-    let before = table.get(key.parameter);
-    let info = table.infos().iter().find(|info| info.name == key.parameter);
-    let in_limits = info.is_none_or(|info| (info.limits.0..=info.limits.1).contains(&number));
-    if !in_limits || table.set(key.parameter, number).is_err() || before.is_err() {
-        return Err(wrong(path, setting, &limits(key, table)));
-    }
-    Ok(())
-}
-
-/// Converts the value of a display parameter to the unit of the display's table.
-fn number(key: &NumberKey, path: &str, setting: &Setting) -> Result<Number, SettingError> {
-    let found = plain(&setting.value);
-    if let Some((_, value)) = key.words.iter().find(|(word, _)| *word == found) {
-        return Ok(Number::Whole(*value));
-    }
-    if !key.words.is_empty() {
-        return Err(unknown(path, setting, key.words.iter().map(|(word, _)| *word)));
-    }
-    let value = setting.value.as_float().or(setting.value.as_integer().map(|value| value as f64));
-    let scaled = value.map(|value| value * key.per_unit).filter(|value| (0.0..=1e12).contains(value));
-    let is_whole = |value: &f64| (value - value.round()).abs() < 1e-6;
-    let whole = scaled.filter(is_whole).map(|value| Number::Whole(value.round() as u64));
-    whole.ok_or_else(|| wrong(path, setting, &unit_text(key)))
-}
-
-fn unit_text(key: &NumberKey) -> String {
-    if key.per_unit == 1.0 {
-        "a whole number from 0 on".to_owned()
-    } else {
-        format!("a number from 0 on in steps of {}", 1.0 / key.per_unit)
-    }
-}
-
-/// Returns the range of a display parameter in the unit of the experiment file, for error messages.
-fn limits(key: &NumberKey, table: &dyn ParameterTable) -> String {
-    let info = table.infos().iter().find(|info| info.name == key.parameter);
-    let text = |value: Number| match value {
-        Number::Whole(whole) => (whole as f64 / key.per_unit).to_string(),
-        Number::Real(real) => (real / key.per_unit).to_string(),
+    let key = number.with_limits(table);
+    let value = match file.value(&key)? {
+        Some(KeyValue::Flag(flag)) => u64::from(flag) as f64,
+        Some(KeyValue::Name(found)) => position(key.values, found) as f64,
+        Some(KeyValue::Real(real)) => real * number.per_unit,
+        _ => return Ok(()),
     };
-    info.map_or_else(String::new, |info| format!("a number from {} to {}", text(info.limits.0), text(info.limits.1)))
+    let is_whole = (value - value.round()).abs() < 1e-6;
+    let step = 1.0 / number.per_unit;
+    let expected = || format!("{} in steps of {step}", key.expected());
+    let set = is_whole.then(|| table.set(number.parameter, Number::Whole(value.round() as u64)));
+    if let Some(Ok(())) = set { Ok(()) } else { Err(wrong(name, setting, &expected())) }
+}
+
+/// Returns the position of a name among the names that a key allows.
+fn position(values: KeyValues, found: &str) -> usize {
+    let KeyValues::Names(names) = values else { return 0 };
+    names.iter().position(|name| *name == found).unwrap_or_default()
 }

@@ -3,10 +3,10 @@
 
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;
-use super::{ExperimentFile, reprojection, tracking_numbers};
+use super::{ExperimentFile, motion, reprojection, tracking_numbers};
 use crate::head_names::{Replay, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk};
-use pxpl5_machine::Parameter;
 use pxpl5_run::{Aim, Head, HeadPlace, Pipeline};
+use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::SettingError;
 use std::sync::Arc;
 use toml::Value;
@@ -32,6 +32,8 @@ impl PartialEq for HeadChoice {
     }
 }
 
+/// Name of the motion in front of the scene, as a motion of a tracked head.
+const SCENE: &str = "scene";
 const TRACKER: &str = "optical";
 const PREDICT: &str = "kalman";
 
@@ -57,7 +59,7 @@ impl HeadChoice {
         let tracker_name = file.text("head.tracker")?.unwrap_or(TRACKER).to_owned();
         let predict = file.text("head.predict")?.unwrap_or(PREDICT).to_owned();
         // Build motion, tracker and predictor with the experiment's numbers.
-        let moving = moving(file, &motion_name, &replay)?;
+        let moving = moving(file, &motion_name, &replay, seed)?;
         let tables = tracking_numbers::read(file, &tracker_name)?;
         let by_name = tracker_by(&tables, &tracker_name);
         let (of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
@@ -76,7 +78,9 @@ impl HeadChoice {
     /// Returns `None` for an experiment without a head motion. Returns an error if a `head.` or `tracking.` key is set
     /// in such an experiment.
     fn none(file: &ExperimentFile) -> Result<Option<Self>, SettingError> {
-        let of_head = file.settings.keys().any(|path| path.starts_with("head.") || path.starts_with("tracking."));
+        let of_head = file.settings.keys().any(|path| {
+            path.starts_with("tracking.") || path.starts_with("head.") && !motion::KEYS.contains(&path.as_str())
+        });
         let how = "the motion of the head, such as head.motion = \"pan:200\"";
         if of_head { Err(SettingError::missing("head.motion", how)) } else { Ok(None) }
     }
@@ -135,16 +139,21 @@ impl HeadChoice {
 /// Prefix of the keys that assign the columns of a recording's file.
 pub(super) const COLUMNS: &str = "head.columns.";
 
-/// Builds the head motion that is called `name`. The motion `walk` follows the path of the scene.
+/// Builds the head motion that is called `name`. The motion `scene` is the motion in front of the scene, with `seed` for
+/// its sway. The motion `walk` follows the path of the scene.
 fn moving(
     file: &ExperimentFile,
     name: &str,
     replay: &Replay,
+    seed: u64,
 ) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, SettingError> {
     // A recording in memory has priority over a file.
     if let Some(contents) = file.contents(name).filter(|_| is_recording(name)) {
         let recording = recording_of(&**contents, name, replay);
         return Ok(Arc::new(recording.map_err(|error| refused(file, "head.motion", &error))?));
+    }
+    if name == SCENE {
+        return Ok(Arc::new(SceneChoice::read(file)?.load()?.motion().with_seed(seed)));
     }
     if !is_walk(name) {
         return replayed(name, replay).map_err(|error| refused(file, "head.motion", &error));

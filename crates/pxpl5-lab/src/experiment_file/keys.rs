@@ -2,16 +2,17 @@
 
 use super::head::COLUMNS;
 use super::hmd;
+use super::motion::PathChoice;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use pxpl5_machine::MachineConfig;
-use pxpl5_run::Registry;
-use pxpl5_sim::parameters::SettingError;
-use tracking::motion::Columns;
+use pxpl5_run::{Aim, Every, FIELDS_RANGE, HeadPlace, Level, Pixels, Registry, Reprojection};
+use pxpl5_sim::parameters::{Key, KeyValues, SettingError, names};
+use tracking::motion::{Axes, Columns, End};
 
 /// A key of an experiment file, with an explanation for the user.
 #[derive(Clone, Debug)]
 pub struct FileKey {
-    /// Path of the key, as written before the equals sign: `motion.path`.
+    /// Path of the key, as written before the equals sign: `head.path`.
     pub path: String,
     /// Meaning and valid values of the key, for the user.
     pub about: String,
@@ -19,89 +20,214 @@ pub struct FileKey {
     pub applies_to: Vec<&'static str>,
 }
 
+impl FileKey {
+    fn of(path: &str, about: String) -> Self {
+        Self { path: path.to_owned(), about, applies_to: Vec::new() }
+    }
+}
+
 /// Keys that exist for every registry of pipelines and displays.
-const COMMON: &[(&str, &str)] = &[
-    ("title", "title of the experiment, for readers"),
-    (
+const COMMON: &[Key] = &[
+    Key::new("title", "title of the experiment, for readers", KeyValues::ANY),
+    Key::new(
         "scene",
         "a built-in scene or a model file (.ply, .obj, .stl, .pdb, .gltf, .glb), relative to the experiment file",
+        KeyValues::ANY,
     ),
-    ("triangles", "decimate the scene to at most this number of primitives, with a similar shape"),
-    (
-        "fit",
-        "move and scale a model file so that both eyes see all of it: true (default) or false (its coordinates are metres)",
+    Key::new(
+        "triangles",
+        "decimate the scene to at most this number of primitives, with a similar shape",
+        KeyValues::Whole(1, u32::MAX as u64),
     ),
-    ("cull", "drop triangles that face away from the eye, in all structures of the scene: true or false (default)"),
-    ("motion.path", "scene (the scene's own), still, look, pan or orbit"),
-    ("motion.sway", "0 to 10: scale of the head's sway"),
-    ("motion.distance", "metres from the scene's centre: still, look, orbit"),
-    ("motion.deg_per_s", "rate of turn: pan, orbit"),
-    (
+    Key {
+        default: "true",
+        ..Key::new(
+            "fit",
+            "move and scale a model file so that both eyes see all of it; without, its coordinates are metres",
+            KeyValues::Flag,
+        )
+    },
+    Key {
+        default: "false",
+        ..Key::new(
+            "cull",
+            "drop triangles that face away from the eye, in all structures of the scene",
+            KeyValues::Flag,
+        )
+    },
+    Key {
+        default: "scene",
+        ..Key::new(
+            "head.path",
+            "motion in front of the scene, where scene is the scene's own",
+            KeyValues::Names(&const { names(&PathChoice::ALL) }),
+        )
+    },
+    Key {
+        default: "1 for look, that of the scene for scene, else 0",
+        ..Key::new("head.sway", "scale of the head's sway on this path", KeyValues::Real(0.0, 10.0))
+    },
+    Key {
+        unit: "m",
+        default: "the scene fills the view",
+        ..Key::new(
+            "head.distance",
+            "distance from the scene's centre, for still, look and orbit",
+            KeyValues::Real(0.0, 1e9),
+        )
+    },
+    Key {
+        unit: "deg/s",
+        default: "the mean of recorded head motion",
+        ..Key::new("head.deg_per_s", "rate of turn, for pan and orbit", KeyValues::Real(-1e9, 1e9))
+    },
+    Key::new(
         "head.motion",
-        "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, \
-         or a recording (.csv, .txt, .tum, .jsonl), relative to the experiment file, seen through a tracker",
+        "scene (the motion of head.path), still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, \
+         walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, or a recording (.csv, .txt, .tum, .jsonl), relative to \
+         the experiment file, seen through a tracker",
+        KeyValues::ANY,
     ),
-    ("head.end", "behaviour after the end of a recording: error (a longer run is refused), hold or loop"),
-    ("head.axes", "axes of a recording: opengl, optical, euroc or robot; the default depends on the file format"),
-    ("head.tracker", crate::head_names::TRACKERS),
-    ("head.predict", "none, velocity, acceleration or kalman"),
-    (
+    Key::new(
+        "head.end",
+        "behaviour after the end of a recording: error (a longer run is refused), hold or loop",
+        KeyValues::Names(&const { names(&End::NAMES) }),
+    ),
+    Key {
+        default: "by the file format",
+        ..Key::new("head.axes", "axes of a recording", KeyValues::Names(&const { names(&Axes::NAMES) }))
+    },
+    Key::new("head.tracker", crate::head_names::TRACKERS, KeyValues::ANY),
+    Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY),
+    Key::new(
         "head.aim",
-        "instant for which a view is predicted, within the time in which it is shown: middle, first-pixel, last-pixel or retrace",
+        "instant for which a view is predicted, within the time in which it is shown",
+        KeyValues::Names(&const { names(&Aim::ALL) }),
     ),
-    (
-        "head.place",
-        "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins; default) or world (the \
-          poses are metres in the scene's coordinates)",
-    ),
-    (
+    Key {
+        default: "scene",
+        ..Key::new(
+            "head.place",
+            "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins) or \
+             world (the poses are metres in the scene's coordinates)",
+            KeyValues::Names(&const { names(&HeadPlace::ALL) }),
+        )
+    },
+    Key::new(
         "head.filter",
-        "numbers of the predictor: tuned (for the pipeline's prediction interval and the motion, with other noise than in the run) or \
-          given (those of tracking.filter)",
+        "numbers of the predictor: tuned (for the pipeline's prediction interval and the motion, with other noise than in \
+         the run) or given (those of tracking.filter)",
+        KeyValues::Names(&["tuned", "given"]),
     ),
-    (
-        "head.evaluate_at",
-        "metres from the eye at which pixel errors are evaluated; default: the distance of the scene's content",
-    ),
-    (
+    Key {
+        unit: "m",
+        default: "the distance of the scene's content",
+        ..Key::new(
+            "head.evaluate_at",
+            "distance from the eye at which pixel errors are evaluated",
+            KeyValues::Real(0.001, 1e6),
+        )
+    },
+    Key::new(
         "head.raster",
-        "plain, vdrt (the raster is shifted by the error of the pose), or a device that moves pictures to the newest pose by shift, \
-         rotation (timewarp) or depth",
+        "plain, vdrt (the raster is shifted by the error of the pose), or a device that moves pictures to the newest pose \
+         by shift, rotation (timewarp) or depth",
+        KeyValues::Names(&["plain", "vdrt", "shift", "rotation", "depth"]),
     ),
-    (
-        super::reprojection::EVERY,
-        "how often a device takes the newest pose: field (default), strip of 128 lines, or line",
-    ),
-    (
-        super::reprojection::LATENCY,
-        "microseconds from the pose to the first light of the pixels that it moves, 0 to 100000; default 2000 per field, 500 per strip, 100 per line",
-    ),
-    ("seed", "seed of the head motion's sway, or of the tracker's noise"),
-    ("fields", "periods of the display to simulate: NTSC fields"),
-    ("pixels", "off, lazy or all"),
-    ("level", "analytic (sweeps of pipelines with a closed form only), transaction or cycle"),
-    ("machine.preset", "a preset of `pxpl5 machines`"),
-    (
+    Key {
+        default: "field",
+        ..Key::new(
+            super::reprojection::EVERY,
+            "how often a device takes the newest pose: field, strip of 128 lines, or line",
+            KeyValues::Names(&const { names(&Every::ALL) }),
+        )
+    },
+    Key {
+        unit: "us",
+        default: "2000 per field, 500 per strip, 100 per line",
+        ..Key::new(
+            super::reprojection::LATENCY,
+            "time from the pose to the first light of the pixels that it moves",
+            KeyValues::Whole(Reprojection::LATENCY_US.0, Reprojection::LATENCY_US.1),
+        )
+    },
+    Key {
+        default: "1",
+        ..Key::new(
+            "seed",
+            "seed of the head motion's sway, or of the tracker's noise",
+            KeyValues::Whole(0, super::plan::MAX_SEED),
+        )
+    },
+    Key {
+        default: "120",
+        ..Key::new(
+            "fields",
+            "periods of the display to simulate: NTSC fields",
+            KeyValues::Whole(FIELDS_RANGE.0, FIELDS_RANGE.1),
+        )
+    },
+    Key {
+        default: "lazy",
+        ..Key::new("pixels", "which pixels are computed", KeyValues::Names(&const { names(&Pixels::ALL) }))
+    },
+    Key {
+        default: "transaction",
+        ..Key::new(
+            "level",
+            "detail of the model of the processors: analytic (sweeps of pipelines with a closed form only), transaction or \
+             cycle",
+            KeyValues::Names(&[Level::Analytic.name(), Level::Transaction.name(), Level::Cycle.name()]),
+        )
+    },
+    Key::new("machine.preset", "a preset of `pxpl5 machines`", KeyValues::ANY),
+    Key::new(
         "machine.code",
-        "i860 code that the processors run at the cycle level: unoptimised, compiled, scheduled, or none (the table's times)",
+        "i860 code that the processors run at the cycle level, or none (the table's times)",
+        KeyValues::Names(&const { names(&super::plan::CODES) }),
     ),
-    (
-        "machine.times",
-        "times of primitives in the table: papers (published or fitted), or code (those of the i860 code)",
+    Key {
+        default: "papers",
+        ..Key::new(
+            "machine.times",
+            "times of primitives in the table: papers (published or fitted), or code (those of the i860 code)",
+            KeyValues::Names(&const { names(&super::plan::TIMES) }),
+        )
+    },
+    Key::new("measure", "list of the quantities that go into tables and sweep rows", KeyValues::ANY),
+    Key { default: "true", ..Key::new("output.pictures", "write the last pictures as PNG", KeyValues::Flag) },
+    Key { default: "true", ..Key::new("output.timeline", "write a timeline as SVG", KeyValues::Flag) },
+    Key { default: "true", ..Key::new("output.csv", "write the measured quantities as CSV", KeyValues::Flag) },
+    Key::new(
+        "published.figure",
+        "number of the published figure that the experiment reproduces",
+        KeyValues::Whole(0, 999),
     ),
-    ("measure", "list of the quantities that go into tables and sweep rows"),
-    ("output.pictures", "write the last pictures as PNG: true or false"),
-    ("output.timeline", "write a timeline as SVG: true or false"),
-    ("output.csv", "write the measured quantities as CSV: true or false"),
-    ("published.figure", "number of the published figure that the experiment reproduces"),
-    ("published.source", "paper"),
-    ("published.quantity", "measured quantity that is compared with the published value"),
-    ("published.value", "published value of the quantity"),
+    Key::new("published.source", "paper", KeyValues::ANY),
+    Key::new("published.quantity", "measured quantity that is compared with the published value", KeyValues::ANY),
+    Key::new("published.value", "published value of the quantity", KeyValues::NUMBER),
 ];
 
-/// Former names of keys, each with the current name.
-const RENAMED: [(&str, &str); 3] =
-    [("head.display", "head.raster"), ("head.evaluate_at", "head.evaluate_at"), ("display.preset", "display")];
+/// Returns the key with a name, among the keys that exist for every registry.
+pub(super) fn common(name: &str) -> Option<&'static Key> {
+    COMMON.iter().chain(hmd::KEYS.iter().map(|(key, ..)| key)).find(|key| key.name == name)
+}
+
+/// Former names of keys, each with the current name. The next version accepts the current names only.
+const RENAMED: [(&str, &str); 7] = [
+    ("head.display", "head.raster"),
+    ("head.judge_at", "head.evaluate_at"),
+    ("display.preset", "display"),
+    ("motion.path", "head.path"),
+    ("motion.sway", "head.sway"),
+    ("motion.distance", "head.distance"),
+    ("motion.deg_per_s", "head.deg_per_s"),
+];
+
+/// Returns the current name of a key.
+pub(super) fn renamed(path: &str) -> &str {
+    RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now)
+}
 
 /// Returns all keys except the keys of the machine's parameters. A parameter's key is `machine.` followed by a path of
 /// [`MachineConfig::set`].
@@ -111,37 +237,27 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     let displays: Vec<&str> = registry.displays().iter().map(|entry| entry.name).collect();
     // The names of pipelines and displays depend on the registry.
     let mut all = vec![
-        common("pipeline", &pipelines.join(", ")),
-        common("display", &format!("display for which the pipeline draws: {}", displays.join(", "))),
+        FileKey::of("pipeline", pipelines.join(", ")),
+        FileKey::of("display", format!("display for which the pipeline draws: {}", displays.join(", "))),
     ];
-    all.extend(super::display::keys().map(|(path, about)| common(&path, about)));
-    all.extend(COMMON.iter().map(|(path, about)| common(path, about)));
-    all.extend(hmd::NUMBERS.iter().map(|(path, about, ..)| common(path, about)));
+    all.extend(super::display::keys().map(|(path, about)| FileKey::of(path, about)));
+    let of_all = COMMON.iter().chain(hmd::KEYS.iter().map(|(key, ..)| key));
+    all.extend(of_all.map(|key| FileKey::of(key.name, key.help())));
     // One key for each column of a recording.
-    all.extend(Columns::fields().map(|field| FileKey {
-        path: format!("{COLUMNS}{field}"),
-        about: "name or number of the column of a recording; _ms, _us, _ns and _mm give the unit, which is otherwise s or m".to_owned(),
-        applies_to: Vec::new(),
-    }));
+    let column =
+        "name or number of the column of a recording; _ms, _us, _ns and _mm give the unit, which is otherwise s or m";
+    all.extend(Columns::fields().map(|field| FileKey::of(&format!("{COLUMNS}{field}"), column.to_owned())));
     // Keys of pipelines state the families to which they apply.
     let of_pipelines = registry.keys().into_iter();
-    all.extend(of_pipelines.map(|(key, applies_to)| FileKey {
-        path: key.name.to_owned(),
-        about: key.about.to_owned(),
-        applies_to,
-    }));
+    all.extend(of_pipelines.map(|(key, applies_to)| FileKey { applies_to, ..FileKey::of(key.name, key.help()) }));
     all
-}
-
-fn common(path: &str, about: &str) -> FileKey {
-    FileKey { path: path.to_owned(), about: about.to_owned(), applies_to: Vec::new() }
 }
 
 /// Returns the full path of a key, or `None` for an unknown key. The prefix `machine.` is optional for a parameter of
 /// the machine.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     // Former names of keys are still accepted.
-    let path = RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now);
+    let path = renamed(path);
     if is_key(registry, path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
         return Some(path.to_owned());
     }
@@ -151,7 +267,7 @@ pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
 
 /// Returns true if the path is a key but not a parameter of the machine.
 fn is_key(registry: &Registry, path: &str) -> bool {
-    keys(registry).iter().any(|key| key.path == path)
+    common(path).is_some() || keys(registry).iter().any(|key| key.path == path)
 }
 
 /// Returns true if the path is a parameter of a machine with any display of the registry.

@@ -1,103 +1,112 @@
-//! The head motion of an experiment in which the head has no tracker.
+//! The motion of the head in front of the scene. A head without a tracker follows this motion without delay.
 
 use super::ExperimentFile;
 use super::read::wrong;
 use glam::Vec3;
-use pxpl5_scene::config::FIT_DISTANCE_RADII;
+use pxpl5_scene::config::{FIT_DISTANCE_RADII, MEAN_HEAD_SPEED_DEG_PER_S};
 use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway};
 use pxpl5_sim::parameters::SettingError;
+use toml::Value;
 
-/// The motion of a head without a tracker, in front of a scene.
+/// A path of the head relative to the scene's centre.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PathChoice {
+    /// The scene's own path.
+    #[default]
+    Scene,
+    /// The head stands still in front of the scene.
+    Still,
+    /// The head faces the scene and moves back and forth.
+    Look,
+    /// The head circles around the scene.
+    Orbit,
+    /// The head stays in front of the scene and turns.
+    Pan,
+}
+
+impl PathChoice {
+    /// All paths with their names in experiment files.
+    pub const ALL: [(&str, Self); 5] = [
+        ("scene", Self::Scene),
+        ("still", Self::Still),
+        ("look", Self::Look),
+        ("orbit", Self::Orbit),
+        ("pan", Self::Pan),
+    ];
+}
+
+pxpl5_sim::parameters::named!(PathChoice, "path of the head", PathChoice::ALL);
+
+/// The motion of a head in front of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MotionChoice {
-    /// Path of the head. `None` for the scene's own path.
-    pub path: Option<PathChoice>,
+    /// Path of the head.
+    pub path: PathChoice,
+    /// Distance from the scene's centre in metres, for the paths still, look and orbit. `None` fits the scene into the
+    /// view.
+    pub distance: Option<f64>,
+    /// Rate of the turn in degrees per second, for the paths orbit and pan. `None` for the mean of recorded head motion.
+    pub deg_per_s: Option<f64>,
     /// Scale factor of the head's random sway, 0 to 10. `None` for the default of the path.
     pub sway: Option<f64>,
 }
 
-/// A path of the head relative to the scene's centre.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PathChoice {
-    /// The head stands still in front of the scene.
-    Still {
-        /// Distance from the scene's centre in metres. `None` fits the scene into the view.
-        distance: Option<f64>,
-    },
-    /// The head faces the scene and moves back and forth.
-    Look {
-        /// Distance from the scene's centre in metres. `None` fits the scene into the view.
-        distance: Option<f64>,
-    },
-    /// The head circles around the scene.
-    Orbit {
-        /// Distance from the scene's centre in metres. `None` fits the scene into the view.
-        distance: Option<f64>,
-        /// Rate of the circular motion in degrees per second.
-        deg_per_s: f64,
-    },
-    /// The head stays in front of the scene and turns.
-    Pan {
-        /// Rate of the head's turn in degrees per second.
-        deg_per_s: f64,
-    },
-}
+const PATH: &str = "head.path";
+const DISTANCE: &str = "head.distance";
+const RATE: &str = "head.deg_per_s";
+const SWAY: &str = "head.sway";
 
-/// Default rate of a turning head in degrees per second: the mean of recorded head motion (see `pxpl5_scene::config`).
-const DEG_PER_S: f64 = pxpl5_scene::config::MEAN_HEAD_SPEED_DEG_PER_S;
+/// Keys of the motion in front of the scene. Unlike the other keys of the table `head`, they need no tracked head.
+pub(super) const KEYS: [&str; 4] = [PATH, DISTANCE, RATE, SWAY];
 
 impl MotionChoice {
     pub(super) fn read(file: &ExperimentFile) -> Result<Self, SettingError> {
-        let distance = file.number("motion.distance")?;
-        let rate = file.number("motion.deg_per_s")?;
-        let deg_per_s = rate.unwrap_or(DEG_PER_S);
-        let paths = [
-            ("scene", None),
-            ("still", Some(PathChoice::Still { distance })),
-            ("look", Some(PathChoice::Look { distance })),
-            ("orbit", Some(PathChoice::Orbit { distance, deg_per_s })),
-            ("pan", Some(PathChoice::Pan { deg_per_s })),
-        ];
-        let path = file.choice("motion.path", &paths)?.flatten();
-        let takes_distance = !matches!(path, None | Some(PathChoice::Pan { .. }));
-        let takes_rate = matches!(path, Some(PathChoice::Orbit { .. } | PathChoice::Pan { .. }));
+        let path = file.choice(PATH, &PathChoice::ALL)?.unwrap_or_default();
+        let takes_distance = !matches!(path, PathChoice::Scene | PathChoice::Pan);
+        let takes_rate = matches!(path, PathChoice::Orbit | PathChoice::Pan);
         // A setting without effect is an error, not ignored.
-        for (key, taken) in [("motion.distance", takes_distance), ("motion.deg_per_s", takes_rate)] {
+        for (key, taken) in [(DISTANCE, takes_distance), (RATE, takes_rate)] {
             if let (Some(setting), false) = (file.get(key), taken) {
-                return Err(wrong(key, setting, "nothing: this motion.path does not take it"));
+                return Err(wrong(key, setting, "nothing: this head.path does not take it"));
             }
         }
-        Ok(Self { path, sway: file.number("motion.sway")? })
+        let deg_per_s = file.number(RATE)?.or(takes_rate.then_some(MEAN_HEAD_SPEED_DEG_PER_S));
+        Ok(Self { path, distance: file.number(DISTANCE)?, deg_per_s, sway: file.number(SWAY)? })
     }
 
+    /// Returns the keys with their values. Keys without a value are left out.
+    pub(super) fn settings(&self) -> Vec<(&'static str, Value)> {
+        let Self { path, distance, deg_per_s, sway } = *self;
+        let numbers = [(DISTANCE, distance), (RATE, deg_per_s), (SWAY, sway)];
+        let numbers = numbers.into_iter().filter_map(|(key, value)| Some((key, value?.into())));
+        std::iter::once((PATH, path.to_string().into())).chain(numbers).collect()
+    }
+
+    /// Returns the head motion in front of a scene.
     pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, SettingError> {
         let own = scene.motion();
-        let path = self.path.map_or(*own.path(), |path| path.around(scene));
         // A replaced path loses the scene's own sway.
-        let own_scale = if self.path.is_none() { own.sway().scale } else { 0.0 };
-        let scale = match self.path {
-            Some(PathChoice::Look { .. }) => self.sway.unwrap_or(1.0),
-            _ => self.sway.unwrap_or(own_scale),
+        let usual = match self.path {
+            PathChoice::Scene => own.sway().scale,
+            PathChoice::Look => 1.0,
+            PathChoice::Still | PathChoice::Orbit | PathChoice::Pan => 0.0,
         };
-        HeadMotion::new(path, Sway { seed: own.sway().seed, scale }).map_err(|error| error.at("motion"))
+        let sway = Sway { seed: own.sway().seed, scale: self.sway.unwrap_or(usual) };
+        HeadMotion::new(self.path_around(scene), sway).map_err(|error| error.at("head"))
     }
-}
 
-impl PathChoice {
-    fn around(self, scene: &Scene) -> HeadPath {
+    fn path_around(&self, scene: &Scene) -> HeadPath {
         let (target, radius) = scene.bounding_sphere();
-        let fitted = f64::from(radius) * FIT_DISTANCE_RADII;
-        match self {
-            Self::Still { distance } => HeadPath::Still { eye: before(target, distance.unwrap_or(fitted)), target },
-            Self::Look { distance } => HeadPath::Look { target, distance: distance.unwrap_or(fitted) },
-            Self::Orbit { distance, deg_per_s } => {
-                HeadPath::Orbit { target, distance: distance.unwrap_or(fitted), height: 0.0, deg_per_s }
-            }
-            Self::Pan { deg_per_s } => HeadPath::Pan { eye: before(target, fitted), deg_per_s },
+        let distance = self.distance.unwrap_or(f64::from(radius) * FIT_DISTANCE_RADII);
+        let deg_per_s = self.deg_per_s.unwrap_or(MEAN_HEAD_SPEED_DEG_PER_S);
+        // The head begins on the +z side.
+        let eye = target + Vec3::Z * distance as f32;
+        match self.path {
+            PathChoice::Scene => *scene.motion().path(),
+            PathChoice::Still => HeadPath::Still { eye, target },
+            PathChoice::Look => HeadPath::Look { target, distance },
+            PathChoice::Orbit => HeadPath::Orbit { target, distance, height: 0.0, deg_per_s },
+            PathChoice::Pan => HeadPath::Pan { eye, deg_per_s },
         }
     }
-}
-
-fn before(target: Vec3, distance: f64) -> Vec3 {
-    target + Vec3::Z * distance as f32
 }

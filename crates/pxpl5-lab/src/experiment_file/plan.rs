@@ -8,17 +8,15 @@ use super::{ExperimentFile, Setting, display};
 use crate::Workstation;
 use crate::levels::summarise;
 use pxpl5_gp::CodeVersion;
-use pxpl5_machine::{MachineConfig, Parameter};
+use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
-    Experiment, ExperimentError, FIELDS_RANGE, Host, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
-    PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, warning_without_code,
+    Experiment, ExperimentError, Host, Level, LimitCriterion, Pipeline, PipelineEntry, PipelineSettings, Pixels,
+    Registry, check_faces, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
-use pxpl5_sim::parameters::{SettingError, Value as Number};
+use pxpl5_sim::parameters::{Parameter, SettingError, Value as Number};
 use std::sync::Arc;
-
-pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
 
 /// Files that a run writes in addition to its report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +49,7 @@ impl Published {
         let name = file.text("published.quantity")?.ok_or_else(missing)?;
         let quantity = measure(file, "published.quantity", name)?;
         let source = file.text("published.source")?.map(str::to_owned);
-        Ok(Some(Self { figure: file.integer("published.figure", 0..=999)?, source, quantity, value }))
+        Ok(Some(Self { figure: file.whole("published.figure")?, source, quantity, value }))
     }
 }
 
@@ -95,6 +93,8 @@ pub struct Plan {
     pub output: Outputs,
     /// Published figure to compare with, if any.
     pub published: Option<Published>,
+    /// Sentences about settings that have former names in the file.
+    pub notes: Vec<String>,
 }
 
 /// Largest seed that TOML can represent.
@@ -117,14 +117,14 @@ impl ExperimentFile {
             registry: Arc::clone(self.registry()),
             machine: self.machine(entry, pipeline.as_ref())?,
             scene: SceneChoice::read(self)?,
-            fields: self.integer("fields", FIELDS_RANGE.0..=FIELDS_RANGE.1)?.unwrap_or(120),
+            fields: self.whole("fields")?.unwrap_or(120),
             seed,
             level: self.level(entry, head.is_some())?,
             limit: (entry.limit)(&given),
             hmd: hmd::read(self, pipeline.as_ref())?,
             pipeline,
             head,
-            pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
+            pixels: self.choice("pixels", &Pixels::ALL)?.unwrap_or(Pixels::Lazy),
             measure: self.measures()?,
             output: Outputs {
                 pictures: self.flag("output.pictures")?.unwrap_or(true),
@@ -132,6 +132,7 @@ impl ExperimentFile {
                 csv: self.flag("output.csv")?.unwrap_or(true),
             },
             published: Published::read(self)?,
+            notes: self.notes.clone(),
         })
     }
 
@@ -153,29 +154,11 @@ impl ExperimentFile {
         let mut given = PipelineSettings::default();
         // Collect the values of the pipeline's own keys.
         for key in entry.keys {
-            if let Some(value) = self.pipeline_key(key)? {
+            if let Some(value) = self.value(key)? {
                 given.set(key.name, value);
             }
         }
         Ok((entry, given))
-    }
-
-    fn pipeline_key(&self, key: &Key) -> Result<Option<KeyValue>, SettingError> {
-        Ok(match key.values {
-            KeyValues::Flag => self.flag(key.name)?.map(KeyValue::Flag),
-            KeyValues::Whole(low, high) => self.integer(key.name, low..=high)?.map(KeyValue::Whole),
-            KeyValues::Lens => self.lens(key)?,
-            KeyValues::Names(names) => {
-                let choices: Vec<(&str, &'static str)> = names.iter().map(|name| (*name, *name)).collect();
-                self.choice(key.name, &choices)?.map(KeyValue::Name)
-            }
-        })
-    }
-
-    fn lens(&self, key: &Key) -> Result<Option<KeyValue>, SettingError> {
-        let Some(setting) = self.get(key.name) else { return Ok(None) };
-        let lens = KeyValues::lens(&plain(&setting.value));
-        lens.map(Some).map_err(|_| wrong(key.name, setting, &KeyValues::Lens.to_string()))
     }
 
     /// Returns an error for a key that belongs to another pipeline.
@@ -225,7 +208,7 @@ impl ExperimentFile {
             if let Some(parameter) =
                 path.strip_prefix("machine.").filter(|path| !["preset", "code", "times"].contains(path))
             {
-                let value = self.parameter_value(path, setting)?;
+                let value = Self::parameter_value(path, setting)?;
                 self.refuse_twice(entry, &adapted, (path, parameter, setting), value)?;
                 machine.set(parameter, value).map_err(|error| error.at(&setting.place))?;
             }
@@ -258,7 +241,7 @@ impl ExperimentFile {
     }
 }
 
-const CODES: [(&str, Option<CodeVersion>); 4] = [
+pub(super) const CODES: [(&str, Option<CodeVersion>); 4] = [
     ("none", None),
     (CodeVersion::Unoptimised.name(), Some(CodeVersion::Unoptimised)),
     (CodeVersion::Compiled.name(), Some(CodeVersion::Compiled)),
@@ -266,7 +249,7 @@ const CODES: [(&str, Option<CodeVersion>); 4] = [
 ];
 
 /// Names of the two sources for times of primitives: the papers (false) or executed code (true).
-const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
+pub(super) const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 impl PartialEq for Plan {
     fn eq(&self, other: &Self) -> bool {
@@ -301,12 +284,14 @@ impl Plan {
     }
 
     /// Returns warnings about settings that do not represent the real machine. The warnings concern parameters out of
-    /// range, times from a table although executed code was requested, and the recording of the head motion.
+    /// range, times from a table although executed code was requested, the recording of the head motion, and former
+    /// names of keys.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());
         let of_head = self.head.iter().flat_map(HeadChoice::warnings);
-        self.out_of_range().iter().map(Parameter::warning).chain(of_table).chain(of_head).collect()
+        let of_machine = self.out_of_range().into_iter().map(|parameter| parameter.warning());
+        self.notes.iter().cloned().chain(of_machine).chain(of_table).chain(of_head).collect()
     }
 
     /// Returns the name of the experiment's level of modelling.

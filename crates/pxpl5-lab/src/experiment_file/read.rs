@@ -1,9 +1,8 @@
 //! Typed access to the settings of an experiment file.
 
-use super::{ExperimentFile, Setting};
+use super::{ExperimentFile, Setting, keys};
 use crate::head_names;
-use pxpl5_sim::parameters::{SettingError, Value as Number};
-use std::ops::RangeInclusive;
+use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, Value as Number};
 use std::path::Path;
 use toml::Value;
 
@@ -17,34 +16,61 @@ impl ExperimentFile {
         setting.value.as_str().map(Some).ok_or_else(|| wrong(key, setting, "text in quotes"))
     }
 
-    pub(super) fn flag(&self, key: &str) -> Result<Option<bool>, SettingError> {
-        let Some(setting) = self.get(key) else { return Ok(None) };
-        setting.value.as_bool().map(Some).ok_or_else(|| wrong(key, setting, "true or false"))
+    /// Returns the value of a key, or `None` if the key is not set.
+    pub(super) fn value(&self, key: &Key) -> Result<Option<KeyValue>, SettingError> {
+        let Some(setting) = self.get(key.name) else { return Ok(None) };
+        let value = &setting.value;
+        let value = match key.values {
+            KeyValues::Flag => value.as_bool().map(KeyValue::Flag),
+            KeyValues::Whole(low, high) => {
+                let whole = value.as_integer().and_then(|value| u64::try_from(value).ok());
+                whole.filter(|whole| (low..=high).contains(whole)).map(KeyValue::Whole)
+            }
+            KeyValues::Real(low, high) => {
+                let real = value.as_float().or(value.as_integer().map(|value| value as f64));
+                real.filter(|real| (low..=high).contains(real)).map(KeyValue::Real)
+            }
+            KeyValues::Names(names) => {
+                let choices: Vec<(&str, &'static str)> = names.iter().map(|name| (*name, *name)).collect();
+                self.choice(key.name, &choices)?.map(KeyValue::Name)
+            }
+            KeyValues::Text(_, check) => {
+                let text = plain(value);
+                check(&text).is_ok().then(|| KeyValue::Text(text.into()))
+            }
+        };
+        value.map(Some).ok_or_else(|| wrong(key.name, setting, &key.expected()))
     }
 
-    pub(super) fn integer(&self, key: &str, range: RangeInclusive<u64>) -> Result<Option<u64>, SettingError> {
-        let Some(setting) = self.get(key) else { return Ok(None) };
-        let value = setting.value.as_integer().and_then(|value| u64::try_from(value).ok());
-        value
-            .filter(|value| range.contains(value))
-            .map(Some)
-            .ok_or_else(|| wrong(key, setting, &format!("a whole number from {} to {}", range.start(), range.end())))
+    /// Returns the value of a key that exists for every registry.
+    fn common(&self, name: &str) -> Result<Option<KeyValue>, SettingError> {
+        keys::common(name).map_or(Ok(None), |key| self.value(key))
+    }
+
+    pub(super) fn flag(&self, name: &str) -> Result<Option<bool>, SettingError> {
+        Ok(self.common(name)?.and_then(|value| if let KeyValue::Flag(flag) = value { Some(flag) } else { None }))
+    }
+
+    pub(super) fn whole(&self, name: &str) -> Result<Option<u64>, SettingError> {
+        Ok(self.common(name)?.and_then(|value| if let KeyValue::Whole(number) = value { Some(number) } else { None }))
+    }
+
+    pub(super) fn number(&self, name: &str) -> Result<Option<f64>, SettingError> {
+        Ok(self.common(name)?.and_then(|value| if let KeyValue::Real(number) = value { Some(number) } else { None }))
     }
 
     /// Converts the value of a setting to a parameter. A TOML value with a fraction becomes a real number. Any other
     /// value must be a whole number.
-    pub(super) fn parameter_value(&self, path: &str, setting: &Setting) -> Result<Number, SettingError> {
+    pub(super) fn parameter_value(path: &str, setting: &Setting) -> Result<Number, SettingError> {
         match &setting.value {
             Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
             // The largest whole number of TOML is `i64::MAX`.
-            _ => Ok(Number::Whole(self.integer(path, 0..=i64::MAX as u64)?.unwrap_or_default())),
+            value => value
+                .as_integer()
+                .and_then(|whole| u64::try_from(whole).ok())
+                .map(Number::Whole)
+                .ok_or_else(|| wrong(path, setting, &format!("a whole number from 0 to {}", i64::MAX))),
         }
-    }
-
-    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, SettingError> {
-        let Some(setting) = self.get(key) else { return Ok(None) };
-        let value = setting.value.as_float().or(setting.value.as_integer().map(|value| value as f64));
-        value.filter(|value| value.is_finite()).map(Some).ok_or_else(|| wrong(key, setting, "a number"))
     }
 
     pub(super) fn texts(&self, key: &str) -> Result<Option<Vec<String>>, SettingError> {

@@ -49,8 +49,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
         }
         Named::Device(by) => {
             let every = file.choice(EVERY, &Every::ALL)?.unwrap_or(Every::Field);
-            let (least, most) = Reprojection::LATENCY_US;
-            let latency_us = file.integer(LATENCY, least..=most)?.unwrap_or(every.usual_latency_us());
+            let latency_us = file.whole(LATENCY)?.unwrap_or(every.usual_latency_us());
             Ok(Raster::Reprojected(Reprojection { by, every, latency_us }))
         }
     }

@@ -32,7 +32,7 @@ impl SceneChoice {
         let name = file.text("scene")?.ok_or_else(|| SettingError::missing("scene", how))?;
         let folder = file.get("scene").map(|setting| setting.folder.clone()).unwrap_or_default();
         let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };
-        let triangles = file.integer("triangles", 1..=u64::from(u32::MAX))?.map(|n| n as usize);
+        let triangles = file.whole("triangles")?.map(|n| n as usize);
         let placement = if file.flag("fit")?.unwrap_or(true) { Placement::Fitted } else { Placement::AsInFile };
         // Built-in scenes are already in the view.
         if let (Some(setting), false) = (file.get("fit"), is_file(&name)) {

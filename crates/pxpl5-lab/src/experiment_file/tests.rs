@@ -55,7 +55,7 @@ fn errors_name_the_line_and_what_was_expected() {
             "pipeline = \"slats\"\nscene = \"mig\"\nmeasure = [\"latency_ms.maen\"]",
             "line 3: measure: there is no quantity `latency_ms.maen`; did you mean `latency_ms.mean`?",
         ),
-        ("pipeline = \"slats\"\nscene = \"mig\"\nmotion.distance = 1", "this motion.path does not take it"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nmotion.distance = 1", "this head.path does not take it"),
         ("pipeline = \"slats\"\nscene = \"mig\"\npublished.value = 1", "published.quantity is missing"),
         ("pipeline = \"jitp-scanline\"\nscene = \"mig\"\nblock = 8", "does not apply to the pipeline jitp-scanline"),
         (
@@ -99,7 +99,7 @@ fn errors_name_the_line_and_what_was_expected() {
 fn what_is_shown_is_a_file_that_means_the_same() {
     let texts = [
         RC.to_owned(),
-        format!("{RC}mono = true\nshading = \"gouraud\"\ntriangles = 9\nseed = 5\n[motion]\npath = \"orbit\"\ndistance = 2\nsway = 0.5\n"),
+        format!("{RC}mono = true\nshading = \"gouraud\"\ntriangles = 9\nseed = 5\n[head]\npath = \"orbit\"\ndistance = 2\nsway = 0.5\n[hmd]\nnear = 0.1\n"),
         "title = \"a \\\"b\\\"\"\npipeline = \"slats\"\nscene = \"mig\"\ncode = 1995\npublished = {figure = 3, source = \"x\", quantity = \"copies_ms\", value = 2}\n".to_owned(),
     ];
     let registry = crate::registry();
@@ -126,7 +126,7 @@ fn the_fingerprint_is_of_what_changes_the_result() {
         "fields = 121",
         "mono = true",
         "triangles = 5",
-        "motion.sway = 2",
+        "head.sway = 2",
         "machine.ring.hop_ns = 51",
     ] {
         assert_ne!(plan(&format!("{RC}{other}")).fingerprint(), base, "{other}");
@@ -135,13 +135,35 @@ fn the_fingerprint_is_of_what_changes_the_result() {
 
 #[test]
 fn a_motion_is_round_the_scene() {
-    let scene = plan(&format!("{RC}motion.path = \"orbit\"\nmotion.distance = 3")).load_scene().expect("built in");
+    let scene = plan(&format!("{RC}head.path = \"orbit\"\nhead.distance = 3")).load_scene().expect("built in");
     let (centre, _) = scene.bounding_sphere();
     for time_ps in [0, 1_000_000_000_000, 2_500_000_000_000] {
         let eye = scene.motion().pose(time_ps).position;
         assert!(((eye - centre.as_dvec3()).length() - 3.0).abs() < 1e-3);
     }
     assert_ne!(scene.motion().pose(0).position, scene.motion().pose(1_000_000_000_000).position);
+}
+
+#[test]
+fn former_names_of_keys_mean_the_same_and_are_noted() {
+    let former = plan(&format!("{RC}[motion]\npath = \"orbit\"\nsway = 0.5\n"));
+    assert_eq!(former, plan(&format!("{RC}[head]\npath = \"orbit\"\nsway = 0.5\n")));
+    let notes = former.warnings();
+    assert!(
+        notes[0].ends_with("motion.path is now head.path; the next version does not accept motion.path"),
+        "{notes:?}"
+    );
+    assert_eq!(notes.len(), 2);
+}
+
+#[test]
+fn a_tracked_head_can_follow_the_motion_in_front_of_the_scene() {
+    let plan = plan(&format!("{RC}seed = 5\nhead.path = \"orbit\"\nhead.sway = 1\nhead.motion = \"scene\"\n"));
+    let own = plan.load_scene().expect("built in").motion().with_seed(5);
+    let head = plan.head.as_ref().expect("a head").head();
+    for time_ps in [0, 700_000_000_000] {
+        assert_eq!(head.motion().pose(time_ps), own.pose(time_ps));
+    }
 }
 
 #[test]
@@ -243,7 +265,7 @@ fn what_is_said_of_a_head_is_checked() {
         ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect_err("refused").to_string()
     };
     let at = refusal("head.motion = \"pan:1\"\nhead.evaluate_at = 0");
-    assert!(at.contains("distance at which errors are evaluated, m: expected 0.001 to 1000000, found 0"), "{at}");
+    assert!(at.contains("line 4: head.evaluate_at: expected a number from 0.001 to 1000000 m, found 0"), "{at}");
     let end = refusal("head.motion = \"pan:1\"\nhead.end = \"hold\"");
     assert!(end.contains("line 4: head.end: expected nothing: head.motion is no recording"), "{end}");
     let sine = refusal("head.motion = \"sine:20\"");
@@ -261,4 +283,37 @@ fn moved_to(x: f64, folder: &Path) -> Plan {
 
 fn config_hash(plan: &Plan) -> Fingerprint {
     plan.experiment(plan.load_scene().expect("built in")).config_hash()
+}
+
+#[test]
+fn the_keys_of_the_head_mounted_display_have_the_limits_and_defaults_of_its_table() {
+    use pxpl5_sim::parameters::KeyValues;
+    use tracking::config::HeadMountedView;
+    for (name, parameter, per_unit) in [
+        ("hmd.field_of_view", "horizontal_fov_deg", 1.0),
+        ("hmd.eye_distance", "eye_separation_m", 1e3),
+        ("hmd.near", "near_m", 1.0),
+        ("hmd.far", "far_m", 1.0),
+    ] {
+        let key = super::keys::common(name).expect("a key");
+        let info = HeadMountedView::INFOS.iter().find(|info| info.name == parameter).expect("a parameter");
+        let KeyValues::Real(low, high) = key.values else { panic!("{name} is a number") };
+        assert_eq!((low, high), (info.limits.0.real() * per_unit, info.limits.1.real() * per_unit), "{name}");
+        let default = (info.papers.real() * per_unit).to_string();
+        assert_eq!(key.default.split(' ').next(), Some(default.as_str()), "{name}");
+    }
+}
+
+#[test]
+fn every_key_has_one_description_and_its_values_are_in_it() {
+    let keys = ExperimentFile::keys_of(&crate::registry());
+    let about = |path: &str| &keys.iter().find(|key| key.path == path).expect(path).about;
+    assert!(about("fields").ends_with("; 1 to 10000000; default 120"), "{}", about("fields"));
+    assert!(about("hmd.near").contains("; 0.000001 to 1000000 m; default 0.05"), "{}", about("hmd.near"));
+    assert!(about("display.hz").ends_with("; 1 to 1000 Hz"), "{}", about("display.hz"));
+    assert!(about("strip_rows").ends_with("; 1 to 128"), "{}", about("strip_rows"));
+    assert!(about("level").contains("transaction or cycle; default transaction"), "{}", about("level"));
+    let mut paths: Vec<&str> = keys.iter().map(|key| key.path.as_str()).collect();
+    paths.sort_unstable();
+    assert!(paths.windows(2).all(|pair| pair[0] != pair[1]), "a path appears twice: {paths:?}");
 }

@@ -1,13 +1,13 @@
 //! Converts a plan (checked experiment) to the text of a complete experiment file.
 
 use super::hmd;
-use super::motion::PathChoice;
-use super::plan::{PIXELS, Plan};
+use super::plan::Plan;
 use super::scene::is_file;
 use crate::compare::is_recording;
-use pxpl5_machine::{MachineConfig, Parameter};
+use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Fingerprint, KeyValue};
 use pxpl5_scene::Placement;
+use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::Value as Number;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -20,11 +20,6 @@ pub struct Settings {
     pub values: BTreeMap<String, Value>,
     /// Remarks by the path of the key. A remark states unit, provenance and the value in the preset.
     remarks: BTreeMap<String, String>,
-}
-
-/// Returns the name of `value` in a list of names and values.
-fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> &'static str {
-    choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name)
 }
 
 impl Plan {
@@ -45,7 +40,7 @@ impl Plan {
         hmd::settings(&self.hmd).for_each(|(path, value)| all.put(path, value));
         all.put("fields", self.fields as i64);
         all.put("seed", self.seed as i64);
-        all.put("pixels", name(&PIXELS, &self.pixels));
+        all.put("pixels", self.pixels.to_string());
         all.put("level", self.level_name());
         all.put("measure", self.measure.iter().map(|m| Value::from(m.name())).collect::<Vec<_>>());
         all.put("output.pictures", self.output.pictures);
@@ -89,6 +84,7 @@ impl Plan {
             match value {
                 KeyValue::Flag(flag) => all.put(key, flag),
                 KeyValue::Whole(number) => all.put(key, number.cast_signed()),
+                KeyValue::Real(number) => all.put(key, number),
                 KeyValue::Name(name) => all.put(key, name),
                 KeyValue::Text(text) => all.put(key, text.to_string()),
             }
@@ -108,21 +104,7 @@ impl Plan {
         if let Some(triangles) = self.scene.triangles {
             all.put("triangles", triangles as i64);
         }
-        let motion = &self.scene.motion;
-        let (path, distance, deg_per_s) = match motion.path {
-            None => ("scene", None, None),
-            Some(PathChoice::Still { distance }) => ("still", distance, None),
-            Some(PathChoice::Look { distance }) => ("look", distance, None),
-            Some(PathChoice::Orbit { distance, deg_per_s }) => ("orbit", distance, Some(deg_per_s)),
-            Some(PathChoice::Pan { deg_per_s }) => ("pan", None, Some(deg_per_s)),
-        };
-        all.put("motion.path", path);
-        let numbers = [("distance", distance), ("deg_per_s", deg_per_s), ("sway", motion.sway)];
-        for (key, value) in numbers {
-            if let Some(value) = value {
-                all.put(&format!("motion.{key}"), value);
-            }
-        }
+        self.scene.motion.settings().into_iter().for_each(|(path, value)| all.put(path, value));
     }
 
     fn published_settings(&self, all: &mut Settings) {
@@ -192,7 +174,7 @@ fn toml_number(value: Number) -> Value {
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.lines(f, None)?;
-        for table in ["motion", "head", "tracking", "machine", "output", "published"] {
+        for table in ["head", "hmd", "tracking", "machine", "output", "published"] {
             if self.values.keys().any(|path| path.split_once('.').is_some_and(|(of, _)| of == table)) {
                 writeln!(f, "\n[{table}]")?;
                 self.lines(f, Some(table))?;

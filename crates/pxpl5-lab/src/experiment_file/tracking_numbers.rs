@@ -3,7 +3,7 @@
 
 use super::{ExperimentFile, Setting};
 use crate::compare::tracker_by;
-use pxpl5_machine::Parameter;
+use pxpl5_sim::parameters::Parameter;
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use tracking::config::{FACTS, Tables};
 use tracking::tracker::{SerialRead, TrackerConfig};
@@ -76,7 +76,7 @@ pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, Setti
             return Err(SettingError::combination(reason).at(&setting.place));
         }
         // Each assignment is checked together with the rest of its table.
-        let value = file.parameter_value(path, setting)?;
+        let value = ExperimentFile::parameter_value(path, setting)?;
         if let Some(table) = tables.named_mut(table) {
             let set = table.set(name, value).and_then(|()| table.check());
             set.map_err(|error| refused(path, setting, error))?;

@@ -4,8 +4,10 @@
 //! of the key.
 
 use super::tracking_numbers::tracking_parameters;
-use pxpl5_machine::{MachineConfig, Parameter};
+use super::{display, keys};
+use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
+use pxpl5_sim::parameters::Parameter;
 use toml::Value;
 
 type Kind = &'static [(&'static str, f64)];
@@ -20,18 +22,6 @@ const SIZES: Kind = &[("bytes", 1.0), ("B", 1.0), ("kB", 1e3), ("KiB", 1024.0), 
 const PIXELS: Kind = &[("px", 1.0), ("pixels", 1.0)];
 
 const KINDS: [Kind; 8] = [TIMES, LENGTHS, ANGLES, RATES, TURNS, SPEEDS, SIZES, PIXELS];
-
-/// Units of the keys that are not machine or tracking parameters.
-const UNITS: [(&str, &str); 8] = [
-    ("motion.distance", "m"),
-    ("motion.deg_per_s", "deg/s"),
-    ("head.evaluate_at", "m"),
-    ("hmd.field_of_view", "deg"),
-    ("hmd.eye_distance", "mm"),
-    ("hmd.near", "m"),
-    ("hmd.far", "m"),
-    ("hmd.convergence", "m"),
-];
 
 /// Converts a text such as `20us` to a number in the unit of a key.
 ///
@@ -82,8 +72,9 @@ fn value(number: f64) -> Value {
 
 /// Returns the unit of a key, or `None` if the key has no unit.
 fn unit_of(registry: &Registry, key: &str) -> Option<String> {
-    if let Some((_, unit)) = UNITS.iter().find(|(name, _)| *name == key) {
-        return Some((*unit).to_owned());
+    let own = keys::common(key).map(|key| key.unit).or_else(|| display::unit_of(key));
+    if let Some(unit) = own {
+        return Some(unit.to_owned()).filter(|unit| !unit.is_empty());
     }
     let unit = |parameters: Vec<Parameter>, path: &str| {
         parameters.into_iter().find(|parameter| parameter.path == path).map(|parameter| parameter.info.unit.to_owned())
@@ -115,7 +106,7 @@ mod tests {
             ("machine.renderer.clock_hz", "40MHz", Value::Integer(40_000_000)),
             ("hmd.field_of_view", "60deg", Value::Integer(60)),
             ("hmd.eye_distance", "6.4cm", Value::Integer(64)),
-            ("motion.distance", "250mm", Value::Float(0.25)),
+            ("head.distance", "250mm", Value::Float(0.25)),
             ("tracking.optical.latency", "0.02s", Value::Integer(20)),
         ] {
             assert_eq!(read(key, text), Ok(Some(expected)), "{key} = {text}");

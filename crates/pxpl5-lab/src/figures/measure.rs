@@ -17,7 +17,7 @@ use pxpl5_run::{
     Experiment, ExperimentError, Level, Pipeline, Pixels, Slats, Statistics, Summary, WARM_UP_PICTURES, display_list,
     views,
 };
-use pxpl5_scene::{Hmd, HmdConfig, Scene};
+use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{ParameterTable, SettingError, Value};
 use std::sync::Arc;
@@ -421,8 +421,7 @@ fn regions_touched() -> Result<FigureValue> {
 /// Returns the number of bin entries per visible triangle, over both eyes and `n_views` head poses.
 fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     let list = Arc::new(display_list(scene)?);
-    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
-    let (views, _) = views(scene, 1, hmd, 2);
+    let (views, _) = views(scene, 1, Hmd::unc(), 2);
     let share = Share::new(list, 0, 1);
     let layout = Layout::rendering_control_phong();
     let picture = Picture {

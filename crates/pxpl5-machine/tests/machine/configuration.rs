@@ -1,9 +1,9 @@
 //! Tests of a machine's configuration: paths of parameters, limits, and parameters that identify a machine.
 
 use crate::rig::{ScreenConfig, ScreenNumbers, config};
-use pxpl5_machine::{MachineConfig, Parameter};
+use pxpl5_machine::MachineConfig;
 use pxpl5_sim::Span;
-use pxpl5_sim::parameters::{SettingErrorKind, Value};
+use pxpl5_sim::parameters::{Parameter, SettingErrorKind, Value};
 
 pxpl5_sim::parameters::parameter_table! {
     struct Numbers {

@@ -2,7 +2,7 @@
 
 use super::jitp::{TABLES, config, load, whole_pass};
 use super::{ntsc, samples};
-use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
@@ -13,7 +13,7 @@ use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
 use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -225,24 +225,13 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     about: "blocks in random order, each with the newest view, shown at once (frameless rendering, 1994)",
     preset: "small-hmd",
     keys: &[
-        Key {
-            name: "block",
-            about: "width and height of a block: 4 to 128 pixels",
-            values: KeyValues::Whole(4, 128),
-            sets: &[],
-        },
-        Key {
-            name: "batch",
-            about: "number of blocks drawn with one view; 0 keeps ring and processors equally busy",
-            values: KeyValues::Whole(0, 65_535),
-            sets: &[],
-        },
-        Key {
-            name: "order_seed",
-            about: "seed of the order of the blocks",
-            values: KeyValues::Whole(0, i64::MAX as u64),
-            sets: &[],
-        },
+        Key::new("block", "width and height of a block in pixels", KeyValues::Whole(4, 128)),
+        Key::new(
+            "batch",
+            "number of blocks drawn with one view; 0 keeps ring and processors equally busy",
+            KeyValues::Whole(0, 65_535),
+        ),
+        Key::new("order_seed", "seed of the order of the blocks", KeyValues::Whole(0, i64::MAX as u64)),
     ],
     build,
     limit: |_| LimitCriterion { goal: Goal::RateHz(30.0), scene: TestScene::FullScreen, fields: 24 },

@@ -1,7 +1,7 @@
 //! Just-in-time pixels on the emulated machine.
 
 use super::{late_regions, ntsc, samples};
-use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
@@ -12,7 +12,7 @@ use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
 use pxpl5_wire::display::Aim;
 use pxpl5_wire::{CopyTarget, FieldParity, PictureNumber, RegionGrid, RegionId, ViewNumber};
 use std::collections::BTreeMap;
@@ -283,8 +283,7 @@ pub fn region_at(grid: &RegionGrid, x: u32, row: u32) -> RegionId {
 /// Tables of the firmware's timing parameters.
 pub(super) const TABLES: &[NamedTable] = &[("jitp", || Box::new(JitpTiming::PAPERS))];
 
-const KEYS: &[Key] =
-    &[Key { name: "strip_rows", about: "lines of a strip: 1 to 128", values: KeyValues::Whole(1, 128), sets: &[] }];
+const KEYS: &[Key] = &[Key::new("strip_rows", "lines of a strip", KeyValues::Whole(1, 128))];
 
 /// Returns a registry entry of the family `jitp`.
 const fn entry(

@@ -4,7 +4,6 @@
 //! One graphics processor draws frames for a single eye and shows each frame as soon as it is finished. TRANSFORM ends
 //! before the policy is called, so the policy receives the final number of primitives in every region.
 
-use crate::keys::KeyValue;
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use pphigs::{DisplayList, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages};
@@ -12,6 +11,7 @@ use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Fault, Gp, Priority, Stage};
 use pxpl5_machine::{Machine, Ports, Record};
 use pxpl5_renderer::Layout;
+use pxpl5_sim::parameters::KeyValue;
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{

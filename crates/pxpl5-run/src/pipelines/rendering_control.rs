@@ -1,7 +1,7 @@
 //! Rendering Control on the emulated machine.
 
 use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in};
-use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::keys::PipelineSettings;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
@@ -10,7 +10,7 @@ use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::Surface;
 use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
@@ -241,19 +241,13 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     about: "frames drawn region by region in three overlapping stages under PPHIGS (TR94)",
     preset: "small-hmd",
     keys: &[
-        Key {
-            name: "mono",
-            about: "one picture instead of a stereo pair: true or false",
-            values: KeyValues::Flag,
-            sets: &[],
-        },
+        Key::new("mono", "one picture instead of a stereo pair", KeyValues::Flag),
         SHADING,
-        Key {
-            name: "finished",
-            about: "rule for a finished region whose frame buffer is not available: wait in pixel memory, or store (the renderer continues with the next)",
-            values: KeyValues::Names(&[FinishedRegions::Wait.name(), FinishedRegions::Store.name()]),
-            sets: &[],
-        },
+        Key::new(
+            "finished",
+            "rule for a finished region whose frame buffer is not available: wait in pixel memory, or store (the renderer continues with the next)",
+            KeyValues::Names(&[FinishedRegions::Wait.name(), FinishedRegions::Store.name()]),
+        ),
     ],
     build,
     limit: |_| LimitCriterion { goal: Goal::NoMissedRetrace, scene: TestScene::Typical, fields: 90 },

@@ -1,7 +1,7 @@
 //! Slats on the emulated machine.
 
 use super::{late_regions, ntsc, samples};
-use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
@@ -11,7 +11,7 @@ use pxpl5_gp::{CodeUse, CodeVersion, GpTiming, Priority};
 use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_sim::parameters::SettingError;
+use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
 use pxpl5_wire::display::LightTimes;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, SurfaceId, ViewNumber};
 use slats::{CopySchedule, SlatsConfig, host, processor};
@@ -371,30 +371,29 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     about: "a new picture in every field, drawn completely between two retraces (TR94, I3D95)",
     preset: "slats",
     keys: &[
-        Key {
-            name: "copy",
-            about: "time of the copies of regions: whole (all before the retrace), split (the bottom regions after it) or \
+        Key::new(
+            "copy",
+            "time of the copies of regions: whole (all before the retrace), split (the bottom regions after it) or \
                     backup (split, and the last complete field replaces a late field; beyond the prototype)",
-            values: KeyValues::Names(&[COPIES[0].0, COPIES[1].0, COPIES[2].0]),
-            sets: &[],
-        },
+            KeyValues::Names(&const { names(&CopySchedule::ALL) }),
+        ),
+        Key::new(
+            "binning",
+            "receivers of a clump: all regions, or the touched regions",
+            KeyValues::Names(&const { names(&RegionBinning::ALL) }),
+        ),
+        Key::new(
+            "lighting",
+            "source of vertex colours: precomputed (no light on the GP), or gp (computed on the GP for each eye)",
+            KeyValues::Names(&const { names(&SlatsLighting::ALL) }),
+        ),
         Key {
-            name: "binning",
-            about: "receivers of a clump: all regions, or the touched regions",
-            values: KeyValues::Names(&[BINNINGS[0].0, BINNINGS[1].0]),
-            sets: &[],
-        },
-        Key {
-            name: "lighting",
-            about: "source of vertex colours: precomputed (no light on the GP), or gp (computed on the GP for each eye)",
-            values: KeyValues::Names(&[LIGHTINGS[0].0, LIGHTINGS[1].0]),
-            sets: &[],
-        },
-        Key {
-            name: "code",
-            about: "times per primitive of the code of 1994, 1995 or optimised, instead of the times of the machine",
-            values: KeyValues::Names(&[CODES[0].0, CODES[1].0, CODES[2].0]),
             sets: &["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"],
+            ..Key::new(
+                "code",
+                "times per primitive of the code of 1994, 1995 or optimised, instead of the times of the machine",
+                KeyValues::Names(&const { names(&Code::ALL) }),
+            )
         },
     ],
     build,

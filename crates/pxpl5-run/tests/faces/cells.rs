@@ -5,7 +5,7 @@ use address_recalculation::{CubeFace, FaceSet, Lens, TexelAddress};
 use glam::{DVec3, Vec3};
 use pxpl5_machine::{MachineConfig, Record};
 use pxpl5_run::{
-    Experiment, FacePipeline, FacePolicy, FaceSource, KeyValue, KeyValues, Outcome, PipelineSettings, Pixels, Registry,
+    Experiment, FacePipeline, FacePolicy, FaceSource, KeyValue, Outcome, PipelineSettings, Pixels, Registry,
     SegmentedScene,
 };
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex, builtin};
@@ -237,7 +237,7 @@ fn the_falloff_follows_the_side_of_a_cell() {
 fn faces_are_seen_through_a_lens_that_is_given() {
     let built = |text: &str| {
         let mut settings = PipelineSettings::default();
-        settings.set("lens", KeyValues::lens(text).expect("a lens"));
+        settings.set("lens", KeyValue::Text(text.into()));
         let registry = Registry::of_papers();
         let entry = registry.pipeline("arp-full").expect("listed");
         let pipeline = (entry.build)(&settings);
@@ -256,7 +256,7 @@ fn faces_are_seen_through_a_lens_that_is_given() {
     let (config, pipeline) = built("radial:-0.3");
     let error = Experiment::with(config, pipeline, Arc::new(wall())).fields(3).run().expect_err("it folds");
     assert!(error.to_string().contains("above 0 up to the corner pixel"), "{error}");
-    assert!(KeyValues::lens("fisheye").is_err());
+    assert!("fisheye".parse::<Lens>().is_err());
 }
 
 #[test]

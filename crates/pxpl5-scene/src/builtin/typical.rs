@@ -5,15 +5,14 @@ use glam::Vec3;
 use super::one_structure;
 use crate::config::{DEFAULT_COLOUR, TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
 use crate::scene::{Frame, Scene, Vertex};
-use crate::view::{Hmd, HmdConfig};
+use tracking::view::Hmd;
 
 /// Distance of all triangles from the head, metres. Assumed: any value between the display's near and far planes.
 const DEPTH_M: f32 = 1.0;
 
 /// Generates a scene of right-angled triangles that are spread evenly over the view.
 pub(super) fn scene(count: u32) -> Scene {
-    let hmd = Hmd::new(HmdConfig::unc()).expect("pxpl5-scene: the preset is in range");
-    let pixel = DEPTH_M / hmd.focal_length_px() as f32;
+    let pixel = DEPTH_M / Hmd::unc().focal_px() as f32;
     let vertex = |position: Vec3| Vertex { position, normal: Vec3::Z, colour: DEFAULT_COLOUR };
     let vertices: Vec<Vertex> = (0..count).flat_map(|i| corners(i, pixel)).map(vertex).collect();
     let name = format!("typical:{count}");

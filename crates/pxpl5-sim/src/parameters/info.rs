@@ -52,6 +52,14 @@ impl ParameterInfo {
             _ => None,
         }
     }
+
+    /// Returns the kind, limits and unit of valid values in words, for error messages.
+    #[must_use]
+    pub fn expected(&self) -> String {
+        let (least, most) = self.limits;
+        let kind = if matches!(self.papers, Value::Whole(_)) { "a whole number" } else { "a number" };
+        format!("{kind} of {least} to {most} {}", self.unit)
+    }
 }
 
 /// Creates the error of a table that has no parameter called `name`. The function is public for tables that are written

@@ -5,7 +5,7 @@ use super::shown::ShownStatement;
 use crate::settings::VolumeSettings;
 use pxpl5_sim::figures::column::NUMBER;
 use pxpl5_sim::figures::{Definition, FigureRow, TableColumn, significant, table};
-use pxpl5_sim::parameters::Entry;
+use pxpl5_sim::parameters::{Parameter, PathSettings};
 use std::fmt::Write as _;
 
 /// Returns the text of docs/volumetric.md. The text has every figure, the definitions, the statements without numbers,
@@ -166,7 +166,7 @@ fn numbers(text: &mut String) {
          print the number. The option `--set PATH=VALUE` changes a setting.\n\n\
          | path | value | unit | provenance | range | source |\n|---|---|---|---|---|---|\n"
     );
-    for (path, Entry { info, value }) in VolumeSettings::paper().numbers() {
+    for Parameter { path, info, value, .. } in VolumeSettings::paper().numbers() {
         let (low, high) = info.range;
         let _ = writeln!(
             text,

@@ -5,17 +5,17 @@
 
 use glam::{DVec2, DVec3};
 
-use super::HmdView;
+use super::Hmd;
 
 /// Interpolates a vertex between its positions on the screen at the times T0 and T1. `start` and `end` are the vertex
 /// in head axes (m) at these times. Returns `None` if the vertex is behind the eye at T0 or T1.
-pub fn screen_space(view: &HmdView, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
+pub fn screen_space(view: &Hmd, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
     Some(view.project(start)?.lerp(view.project(end)?, s))
 }
 
 /// Interpolates a vertex between its positions in head axes at the times T0 and T1, then projects the result. Returns
 /// `None` if the result is behind the eye.
-pub fn view_space(view: &HmdView, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
+pub fn view_space(view: &Hmd, start: DVec3, end: DVec3, s: f64) -> Option<DVec2> {
     view.project(start.lerp(end, s))
 }
 
@@ -26,7 +26,7 @@ mod tests {
     use crate::rotation;
     use crate::time::{NTSC_FIELD_PS, ntsc_lines_ps};
 
-    type Interpolate = fn(&HmdView, DVec3, DVec3, f64) -> Option<DVec2>;
+    type Interpolate = fn(&Hmd, DVec3, DVec3, f64) -> Option<DVec2>;
 
     /// Returns the greatest interpolation error (px) during `span_ps` of a head turn at 200 deg/s. Only points within
     /// `half_width` px of the middle are evaluated, in a view of 600 px and 60 degrees.
@@ -38,7 +38,7 @@ mod tests {
     }
 
     fn error(interpolate: Interpolate, span_ps: u64, half_width: f64, step: u64, tenth_deg: i32) -> Option<f64> {
-        let view = HmdView::new(600, 480, 60.0).unwrap();
+        let view = Hmd::unc().with_pixels(600, 480);
         let point = rotation::about_y(f64::from(tenth_deg) / 573.0) * DVec3::NEG_Z * 4.0;
         let truth = view.project(seen_in_pan(point, span_ps * step / 40))?;
         let guess = interpolate(&view, seen_in_pan(point, 0), seen_in_pan(point, span_ps), step as f64 / 40.0)?;
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn both_meet_the_ends_of_the_field() {
-        let view = HmdView::ntsc();
+        let view = Hmd::unc();
         let start = DVec3::new(0.3, 0.2, -2.0);
         let end = DVec3::new(0.1, 0.3, -3.0);
         for interpolate in [screen_space, view_space] {
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn a_vertex_that_passes_the_eye_has_no_place() {
-        let view = HmdView::ntsc();
+        let view = Hmd::unc();
         assert_eq!(screen_space(&view, DVec3::NEG_Z, DVec3::Z, 0.1), None);
         assert!(view_space(&view, DVec3::NEG_Z, DVec3::Z, 0.1).is_some());
         assert_eq!(view_space(&view, DVec3::NEG_Z, DVec3::Z, 0.9), None);

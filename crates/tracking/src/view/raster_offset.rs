@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
 
-use super::HmdView;
+use super::Hmd;
 use super::hmd::angle_between;
 use crate::pose::Pose;
 use crate::rotation;
@@ -57,7 +57,7 @@ impl RasterOffset {
     }
 
     /// Returns the shift of a flat raster at `t_ps`, px, x to the right and y down.
-    pub fn shift_px(&self, view: &HmdView, t_ps: u64) -> DVec2 {
+    pub fn shift_px(&self, view: &Hmd, t_ps: u64) -> DVec2 {
         let middle = self.turned(DVec3::NEG_Z, t_ps);
         view.project(middle).map_or(DVec2::ZERO, |place| place - view.centre_px())
     }
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_flat_raster_is_right_in_the_middle_and_wrong_at_the_edge() {
-        let view = HmdView::ntsc();
+        let view = Hmd::unc();
         let pan = Pan::at(200.0);
         let predicted = pan.pose(0);
         let actual = pan.pose(NTSC_FIELD_PS);

@@ -3,13 +3,14 @@
 use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::pipeline::{FaceLens, FacePipeline, FaceSource};
 use super::policy::FacePolicy;
-use crate::keys::{Key, PipelineSettings};
+use crate::keys::PipelineSettings;
 use crate::pipeline::Pipeline;
 use crate::pipelines::{SHADING, shading_or};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use address_recalculation::Latch;
 use address_recalculation::priority::{Falloff, PriorityTiming};
 use pxpl5_machine::NamedTable;
+use pxpl5_sim::parameters::Key;
 use std::sync::Arc;
 
 /// Settings (keys) of the pipelines of each policy.

@@ -11,7 +11,7 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 pub(crate) fn lights_of(scan: &FaceScan, field: PeriodNumber) -> LightTimes {
     let tick = scan.retrace(field);
     let top = FieldParity::of_field(field).first_line();
-    let light = |x: u32, y: u32| scan.lights(x, y, field).unwrap_or(tick);
+    let light = |x: u32, y: u32| scan.when(x, y, field).unwrap_or(tick);
     LightTimes { tick, first: light(0, top), last: light(scan.width() - 1, scan.height() - 2 + top) }
 }
 
@@ -124,7 +124,7 @@ impl OrientationTiming {
         // The orientation comes from the newest report that the host knew.
         let report = head.report_by(known)?;
         let measured = head.measured_at(report)?;
-        let scanned = self.scan.lights(x, y, field)?;
+        let scanned = self.scan.when(x, y, field)?;
         let loaded = self.loaded(report);
         // Each part begins at the end of the part before.
         Some(RotationLatency {

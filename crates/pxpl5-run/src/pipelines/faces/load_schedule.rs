@@ -38,7 +38,7 @@ impl LoadSchedule {
     ///
     /// The host of such a display sends each orientation as soon as the orientation is known.
     pub(crate) fn new(scan: FaceScan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
-        let line = scan.lights(0, 2, PeriodNumber::FIRST)?.since(scan.lights(0, 0, PeriodNumber::FIRST)?);
+        let line = scan.when(0, 2, PeriodNumber::FIRST)?.since(scan.when(0, 0, PeriodNumber::FIRST)?);
         let lines = link.0.div_ceil(line.0.max(1)).max(1) as u32;
         let loads = match latch {
             Latch::Field => return None,
@@ -49,20 +49,20 @@ impl LoadSchedule {
     }
 
     /// Returns the number of lines of a field.
-    const fn height(&self) -> u32 {
+    fn height(&self) -> u32 {
         self.scan.height() / 2
     }
 
     /// Returns the instant at which a pixel of a line of a field is lit.
     fn light(&self, x: u32, line: u32, field: PeriodNumber) -> Time {
         let y = 2 * line + FieldParity::of_field(field).first_line();
-        self.scan.lights(x, y, field).unwrap_or_else(|| self.scan.retrace(field))
+        self.scan.when(x, y, field).unwrap_or_else(|| self.scan.retrace(field))
     }
 
     /// Returns the load of the display's orientation register that a pixel uses. Returns `None` for a pixel that the
     /// field does not scan.
     pub(crate) fn load_of(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Load> {
-        let into_line = self.scan.lights(x, y, field)?.since(self.light(0, y / 2, field));
+        let into_line = self.scan.when(x, y, field)?.since(self.light(0, y / 2, field));
         let number = (into_line.0 / self.link.0.max(1)).min(u64::from(self.loads) - 1) as u32;
         Some(Load { field, line: y / 2 / self.lines * self.lines, number })
     }

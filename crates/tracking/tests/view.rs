@@ -1,10 +1,11 @@
 //! The matrices of the eyes agree with values computed by hand.
 
 use glam::{DQuat, DVec3, Mat4, Vec3, Vec4};
-use pxpl5_scene::{EyePoint, Hmd, HmdConfig, Pose, View};
+use tracking::Pose;
+use tracking::view::{EyePoint, Hmd, HmdConfig, View};
 
 fn hmd() -> Hmd {
-    Hmd::new(HmdConfig::unc()).expect("the preset is in range")
+    Hmd::unc()
 }
 
 /// Returns a head at (1, 2, 3), turned left by 90 degrees. The head looks along -x, and its right is -z.
@@ -73,7 +74,7 @@ fn depth_is_0_at_the_near_plane_1_at_the_far_plane_and_grows_between() {
 #[test]
 fn disparity_is_eye_separation_times_focal_length_over_depth() {
     // Focal length 320 / tan 30 deg = 554.256 px; 0.064 x 554.256 / 2 = 17.736 px at 2 m.
-    assert!((hmd().focal_length_px() - 554.256).abs() < 1e-3);
+    assert!((hmd().focal_px() - 554.256).abs() < 1e-3);
     assert!((hmd().disparity_px(2.0) - 17.736_2).abs() < 1e-3);
     let head = turned_left();
     for depth in [0.3_f32, 1.0, 2.0, 40.0] {
