@@ -92,7 +92,7 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
         let name = error.name.rsplit('.').next().unwrap_or_default();
         let named = given.iter().find(|(key, ..)| key.parameter == name);
         let (_, path, setting) = named.unwrap_or(first);
-        return Err(error.at(format_args!("{}: {path}", setting.place)));
+        return Err(error.at(setting.place_of(path)));
     }
     Ok(Some(config))
 }
