@@ -217,7 +217,6 @@ impl LimitArgs {
     }
 }
 
-/// Returns a goal in words.
 fn goal_text(goal: Goal) -> String {
     match goal {
         Goal::NoMissedRetrace => "every picture that is due is shown in time".to_owned(),
@@ -297,7 +296,7 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
     format!("{object:#}\n")
 }
 
-/// Returns the name of the scene that is drawn at every size.
+/// Returns the name of the scene that the search draws with different numbers of triangles.
 fn scene(query: &LimitQuery) -> String {
     query.model.as_ref().map_or_else(|| query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned())
 }

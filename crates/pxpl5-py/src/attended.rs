@@ -24,7 +24,6 @@ impl Progress {
         self.done.fetch_max(done, Ordering::Relaxed);
     }
 
-    /// Requests that the work stop.
     pub(crate) fn stop(&self) {
         self.stopped.stop();
     }
@@ -34,7 +33,6 @@ impl Progress {
         self.stopped.clone()
     }
 
-    /// Returns true after a call of [`Self::stop`].
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.is_stopped()
     }

@@ -107,8 +107,8 @@ impl Swept for Sweep {
     }
 }
 
-/// Simulates a point and returns its row. An error, even a panic, is stored in the row, so that the other points
-/// continue.
+/// Simulates a point and returns its row. An error, even a panic, is stored in the row, so that the sweep continues
+/// with all remaining points.
 pub(super) fn row(sweep: &impl Swept, point: u64, stop: &StopFlag) -> SweepRow {
     let results = match catch_unwind(AssertUnwindSafe(|| sweep.simulate(point, stop))) {
         Ok(results) => results.map_err(|error| error.to_string()),
