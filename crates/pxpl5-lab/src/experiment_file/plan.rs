@@ -55,7 +55,7 @@ impl Published {
 
 fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, SettingError> {
     Measure::named(name).map_err(|error| match file.get(key) {
-        Some(setting) => error.at(format_args!("{}: {key}", setting.place)),
+        Some(setting) => error.at(setting.place_of(key)),
         None => SettingError::missing("measure", "quantities that are measured"),
     })
 }
