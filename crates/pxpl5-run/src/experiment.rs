@@ -9,7 +9,6 @@ use crate::keep::Keep;
 use crate::level::Level;
 use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::raster::Raster;
 use pxpl5_machine::{MachineConfig, Optimization, Parameter, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
@@ -253,7 +252,6 @@ impl Experiment {
         &'a self,
         record: &'a Record,
         head: Option<&'a Arc<HeadViews>>,
-        notes: &'a RequestedUpdates,
     ) -> FinalResults<'a> {
         FinalResults {
             pipeline: self.pipeline.as_ref(),
@@ -261,7 +259,6 @@ impl Experiment {
             fields: self.fields,
             record,
             head,
-            notes,
             hmd: self.hmd,
             arrivals: &record.observation().arrivals,
             pictures: &[],

@@ -2,7 +2,7 @@
 
 use super::ExperimentFile;
 use super::read::{not_applicable, wrong};
-use pxpl5_run::Pipeline;
+use pxpl5_run::{Coverage, Pipeline};
 use pxpl5_scene::{Hmd, HmdConfig};
 use pxpl5_sim::parameters::SettingError;
 use toml::Value;
@@ -65,7 +65,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
         let Some(setting) = file.get(key) else { continue };
         let is_parallel = key == CONVERGENCE && setting.value.as_float() == Some(f64::INFINITY);
         let Some(value) = (if is_parallel { Some(f64::INFINITY) } else { file.number(key)? }) else { continue };
-        if pipeline.draws_faces() {
+        if pipeline.coverage() == Coverage::Surroundings {
             let applies_to = "pipelines that draw a picture for each eye";
             return Err(not_applicable(key, pipeline.name(), applies_to).at(&setting.place));
         }

@@ -12,7 +12,7 @@ use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, Host, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
-    PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range, warning_without_code,
+    PipelineEntry, PipelineSettings, Pixels, Registry, check_coverage, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::parameters::{SettingError, Value as Number};
@@ -209,7 +209,7 @@ impl ExperimentFile {
         if let Some(display) = display::read(self)? {
             machine.displays = vec![display];
             let place = self.get("display").map_or("display", |setting| &setting.place);
-            check_faces(&machine, pipeline).map_err(|error| error.at(place))?;
+            check_coverage(&machine, pipeline).map_err(|error| error.at(place))?;
         }
         // The pipeline adapts the machine to its needs.
         let mut machine = pipeline.adapt(machine);

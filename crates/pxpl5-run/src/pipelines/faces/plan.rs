@@ -3,6 +3,7 @@
 
 use crate::pipeline::Setup;
 use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
+use crate::pipelines::faces::segments::moves;
 use address_recalculation::FaceScan;
 use glam::{DMat3, DVec3, Mat3, Mat4};
 use pphigs::{EyeView, FrameView, ModelFrame};
@@ -19,7 +20,9 @@ pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction>;
 pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
-    pub(super) notes: RequestedUpdates,
+    pub(super) notes: Arc<RequestedUpdates>,
+    /// For each structure of the scene, true if the structure moves by itself or with the head.
+    pub(super) moving: Vec<bool>,
     /// Number of updates that were sent so far, for each display memory.
     sent: Vec<u64>,
     /// True if any structure is attached to the head. The position of such a structure depends on the head's direction.
@@ -27,9 +30,11 @@ pub(super) struct Updates {
 }
 
 impl Updates {
-    pub(super) fn new(setup: &Setup, projection: Mat4, memories: usize) -> Self {
+    pub(super) fn new(setup: &Setup, notes: &Arc<RequestedUpdates>, projection: Mat4, memories: usize) -> Self {
         let has_head_frame = setup.list.structures.iter().any(|structure| structure.frame == ModelFrame::Head);
-        Self { setup: setup.clone(), projection, notes: setup.notes.clone(), sent: vec![0; memories], has_head_frame }
+        let moving = setup.scene.structures().iter().map(moves).collect();
+        let (setup, notes) = (setup.clone(), Arc::clone(notes));
+        Self { setup, projection, notes, moving, sent: vec![0; memories], has_head_frame }
     }
 
     /// Returns the newest view of the head for an update that the host sends now.
