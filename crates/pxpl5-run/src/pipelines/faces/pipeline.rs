@@ -30,7 +30,8 @@ use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, Coverage};
 use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PeriodNumber, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
-use rendering_control::cube::{CubeControlConfig, Faces, WarpedLists, host, master, slave};
+use rendering_control::cube::{Faces, WarpedLists};
+use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
@@ -133,20 +134,19 @@ impl FacePipeline {
         }
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, SettingError> {
+    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig<Faces>, SettingError> {
         let ports = machine.ports();
         // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
         if slaves.is_empty() {
             return Err(too_few_gps(1));
         }
-        Ok(CubeControlConfig {
+        Ok(RenderingControlConfig {
             host: ports.host,
             master: *master,
             slaves: slaves.to_vec(),
             renderers: ports.renderers.clone(),
-            faces: self.faces(machine, pixels)?,
-            warped: WarpedLists::default(),
+            drawn: self.faces(machine, pixels)?,
         })
     }
 
@@ -164,7 +164,7 @@ impl FacePipeline {
             region_has_room(machine.record(), content.words().into())?;
         }
         let memories = machine.ports().display()[..display.timing.display_memories as usize].to_vec();
-        Ok(Faces { memories, picture, content })
+        Ok(Faces { memories, picture, content, warped: WarpedLists::default() })
     }
 
     /// Returns the plan (a function) by which the host selects the next update of a display memory.
@@ -478,7 +478,6 @@ impl FacePipeline {
             plan: self.plan(machine, setup)?,
             faces: Arc::new(self.faces(machine, setup.pixels)?),
             list: Arc::new(matte(&setup.list)),
-            warped: WarpedLists::default(),
             scan,
             next: PictureNumber::FIRST,
         };

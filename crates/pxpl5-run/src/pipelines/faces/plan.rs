@@ -9,12 +9,13 @@ use glam::{DMat3, DVec3, Mat3, Mat4};
 use pphigs::{EyeView, FrameView, ModelFrame};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
-use rendering_control::cube::{FaceUpdate, FaceWarp, HostAction};
+use rendering_control::HostAction;
+use rendering_control::cube::{FaceUpdate, FaceWarp};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Function that returns the next action of a host, when the host is ready for an update.
-pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction>;
+pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction<FaceUpdate>>;
 
 /// State that all plans of a host share: views, starts of frames, and the record of updates.
 pub(super) struct Updates {
@@ -113,7 +114,7 @@ impl Full {
         Self { updates, structures }
     }
 
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction {
+    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
         match (self.updates.setup.starts)(now) {
             None => HostAction::Nothing,
             Some(start) if start > now => HostAction::Wait(start),
@@ -159,7 +160,7 @@ impl<P: DuePolicy> Cycles<P> {
         Self { updates, scan, policy, pending: VecDeque::new(), began: None }
     }
 
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction {
+    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
         if self.pending.is_empty() {
             let field = self.scan.field_at(now);
             if self.began.is_some_and(|began| began >= field) {
