@@ -1,5 +1,5 @@
-//! Figures of papers about systems other than Pixel-Planes 5. These figures follow the figures of Pixel-Planes 5
-//! in the document.
+//! Figures of papers about systems other than Pixel-Planes 5. In ACCURACY.md, these figures follow the figures of
+//! Pixel-Planes 5.
 
 use super::measured::{Result, scene_named};
 use super::{Bench, FigureError};
@@ -42,8 +42,8 @@ const COMPARED: usize = 55;
 
 impl FigureFamily {
     /// Runs the experiments on address recalculation, priority rendering and region warping. E1 runs on Pixel-Planes 5,
-    /// E2 to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are only in the
-    /// document.
+    /// E2 to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are not measured
+    /// here, but stated in the document `document`.
     ///
     /// # Errors
     ///
@@ -68,11 +68,13 @@ impl FigureFamily {
         let _ = write!(
             text,
             "\n## {}\n\n\
-             This section compares experiments E1 to E9 with the papers by Regan, Pose and Chow. The page [{}]({}) has the details. That\n\
-             page also has the pictures of experiment E10, and the numbers that follow from the papers' tables without a simulation.\n\
-             Experiment E1 runs on Pixel-Planes 5 with the display of address recalculation. The other experiments use an ideal renderer.\n\
-             A row is *met* if its error is at most 1 %. The papers do not print the conditions of {shapes} rows. For these rows (*cannot\n\
-             be reproduced*), only the shape of the papers' drawings and tables is checked. The model misses {} of the {} other rows.\n\n{}\n{}\n",
+             This section compares experiments E1 to E9 with the papers by Regan, Pose and Chow. The page\n\
+             [{}]({}) has the details. The page docs/address-recalculation.md\n\
+             also has the pictures of experiment E10, and the numbers that follow from the papers' tables without a simulation.\n\
+             Experiment E1 runs on Pixel-Planes 5 with the display of address recalculation. The experiments E2 to E9 use an ideal\n\
+             renderer. A row is *met* if its error is at most 1 %. The papers do not print the conditions of {shapes} rows. For rows\n\
+             without printed conditions (*cannot be reproduced*), only the shape of the papers' drawings and tables is checked. The\n\
+             model misses {} of the {} rows with printed conditions.\n\n{}\n{}\n",
             self.title,
             self.document,
             self.document,
@@ -85,9 +87,9 @@ impl FigureFamily {
     }
 }
 
-/// Runs E1, which measures two latencies for growing numbers of triangles. The first is the latency of the head's
-/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control. In
-/// the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
+/// Runs experiment E1, which measures two latencies for growing numbers of triangles. The first is the latency of the
+/// head's rotation with the display that turns cube faces. The second is the latency of a picture under Rendering
+/// Control. In the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
 fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
     let mut turns = Vec::new();
     let mut drawn_ms = Vec::new();
