@@ -166,7 +166,7 @@ pub mod run {
         ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, FrameStarts, KEPT_SAMPLES,
         LATE_REGIONS_LISTED, OrientationTiming, PixelField, Poses, ReportTimes, RequestedUpdate, RequestedUpdates,
         RotationLatency, SegmentedScene, ShownUpdate, SoFar, SurfaceLatency, Tally, Views, ViewsWanted, bit_of,
-        check_faces, display_list, in_ms, in_us, region_at, retraces, views, warning_without_code,
+        check_coverage, display_list, in_ms, in_us, region_at, retraces, views, warning_without_code,
     };
 }
 

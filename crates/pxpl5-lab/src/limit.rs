@@ -24,8 +24,8 @@ use crate::experiment_file::{Plan, SceneChoice};
 use crate::levels::summarise;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{
-    Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry, Summary,
-    TestScene,
+    Coverage, Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry,
+    Summary, TestScene,
 };
 use pxpl5_scene::{Decimation, Scene, builtin};
 use pxpl5_sim::parameters::SettingError;
@@ -179,10 +179,12 @@ impl LimitQuery {
         if triangles == 0 { self.check_rate() } else { Ok(()) }
     }
 
-    /// Returns an error if the goal is an update rate and the scene has no measurable update rate. A display with cube
-    /// faces redraws so little of some scenes that fewer than two updates occur.
+    /// Returns an error if the goal is an update rate and the scene has no measurable update rate. A
+    /// pipeline that draws all directions redraws so little of some scenes that fewer than two updates occur.
     fn check_rate(&self) -> Result<(), ExperimentError> {
-        let (Goal::RateHz(hz), true) = (self.criterion.goal, self.pipeline.draws_faces()) else { return Ok(()) };
+        let (Goal::RateHz(hz), true) = (self.criterion.goal, self.pipeline.coverage() == Coverage::Surroundings) else {
+            return Ok(());
+        };
         let outcome = self.experiment(1)?.run()?;
         if outcome.shown() == 0 || outcome.updates_hz().is_some() {
             return Ok(());

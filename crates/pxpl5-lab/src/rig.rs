@@ -19,7 +19,7 @@ use glam::{DVec3, Vec3};
 use image::RgbImage;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, MachineConfig, Record};
-use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
+use pxpl5_run::{Coverage, Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_sim::Time;
 use pxpl5_wire::display::Display;
@@ -162,7 +162,7 @@ fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), 
         let definition = pipeline.due_definition();
         Err(StudyError::NoFrames { pipeline: pipeline.name(), reason, definition })
     };
-    if pipeline.draws_faces() {
+    if pipeline.coverage() == Coverage::Surroundings {
         return refused("its display turns with the head, so the light changes before any frame is drawn");
     }
     let machine =

@@ -21,7 +21,7 @@ use crate::host_line::HostLine;
 use crate::optimization::Optimization;
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
-use crate::record::Record;
+use crate::record::{Attachment, Record};
 use crate::run_error::{Blocked, RunError};
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, GpUse, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
@@ -32,6 +32,7 @@ use pxpl5_wire::display::{DisplayContext, DisplayEvent};
 use pxpl5_wire::{Body, CopyTarget, Message, NodeId, PeriodNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// A running machine: boards, observations ([`Record`]), programs and the queue of future events.
 #[derive(Debug)]
@@ -116,6 +117,7 @@ impl Machine {
                 met_full_store: false,
                 elapsed: Time::ZERO,
                 processors_used: Vec::new(),
+                attachments: Vec::new(),
             },
             queue: EventQueue::new(),
             contexts: Contexts::default(),
@@ -176,6 +178,7 @@ impl Machine {
     pub fn discard_before(&mut self, instant: Time) {
         let Record { observation, displays, .. } = &mut self.record;
         observation.discard_before(instant, |period| displays[0].tick(period));
+        self.record.attachments.iter().for_each(|attachment| attachment.discard(&self.record));
     }
 
     /// Returns the boards and all observations so far.
@@ -234,6 +237,11 @@ impl Machine {
     /// [`Machine::switch_on`].
     pub fn plug_host_line(&mut self, line: Box<dyn HostLine>) {
         self.host_lines.push(line);
+    }
+
+    /// Adds data of the pipeline to the record of the run.
+    pub fn attach(&mut self, attachment: Arc<dyn Attachment>) {
+        self.record.attachments.push(attachment);
     }
 
     /// Starts the machine: all programs and the first period of every display begin at time zero.

@@ -11,6 +11,16 @@ use pxpl5_sim::{Span, Time, TraceHash};
 use pxpl5_wire::display::{Display, Surface};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::any::Any;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// Data that a pipeline adds to the record of a run, beside the observations of the boards.
+///
+/// The pipeline's programs write the data. The pipeline's results read the data with [`Record::attached`].
+pub trait Attachment: Any + Debug + Send + Sync {
+    /// Discards the data that only discarded observations need. By default, all data is kept.
+    fn discard(&self, _record: &Record) {}
+}
 
 /// The boards of a machine, without programs, and all observations of the run. The record can be sent to another
 /// thread.
@@ -28,6 +38,7 @@ pub struct Record {
     pub(crate) met_full_store: bool,
     pub(crate) elapsed: Time,
     pub(crate) processors_used: Vec<GpUse>,
+    pub(crate) attachments: Vec<Arc<dyn Attachment>>,
 }
 
 impl Record {
@@ -92,6 +103,12 @@ impl Record {
     #[must_use]
     pub fn surface(&self, id: SurfaceId) -> Option<&Surface> {
         self.surfaces().nth(id.index()).map(|(_, surface)| surface)
+    }
+
+    /// Returns the attachment of type `T`, or `None` if the pipeline added none.
+    #[must_use]
+    pub fn attached<T: Attachment>(&self) -> Option<&T> {
+        self.attachments.iter().find_map(|attachment| (attachment.as_ref() as &dyn Any).downcast_ref())
     }
 
     /// Returns all observations so far.

@@ -1,7 +1,6 @@
 //! A machine with its programs, and the records of its run.
 
 use crate::head_views::HeadViews;
-use crate::pipelines::faces::requests::RequestedUpdates;
 use pxpl5_machine::Machine;
 use pxpl5_sim::Time;
 use std::sync::Arc;
@@ -11,7 +10,6 @@ use std::sync::Arc;
 pub(crate) struct Assembled {
     pub(crate) machine: Machine,
     pub(crate) head: Option<Arc<HeadViews>>,
-    pub(crate) notes: RequestedUpdates,
 }
 
 impl Assembled {
@@ -28,9 +26,5 @@ impl Assembled {
     pub(crate) fn discard_before(&mut self, instant: Time, of_head: Time) {
         self.machine.discard_before(instant);
         self.head.iter().for_each(|head| head.discard_before(of_head));
-        let record = self.machine.record();
-        let of_memories = record.ports().display().iter().enumerate();
-        of_memories
-            .for_each(|(memory, port)| self.notes.keep_from(memory, record.observation().first_swap_held(*port)));
     }
 }

@@ -44,9 +44,8 @@ pub struct DryRun {
 impl DryRun {
     /// Returns the head with a tuned predictor. Returns `None` if the dry run found no prediction interval.
     ///
-    /// The parameters for positions are tuned for the prediction interval of pictures. If the display latches (samples
-    /// and holds) orientations, the parameters for orientations are tuned for the prediction interval of latched
-    /// orientations.
+    /// The parameters for positions are tuned for the prediction interval of pictures. If the display turns pictures,
+    /// the parameters for orientations are tuned for the prediction interval of these turns.
     pub(crate) fn tuned(&self, head: &Head) -> Option<Head> {
         let of_pictures = self.interval_ps.map(|interval_ps| head.tuned_for(interval_ps));
         match self.turn_interval_ps {

@@ -6,19 +6,18 @@ use crate::instants::Instants;
 use crate::observers::{FinalResults, StreamingObserver};
 use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
-use crate::pipelines::faces::latched_head::OrientationTiming;
-use pxpl5_sim::{Span, Time};
+use pxpl5_sim::Span;
 use pxpl5_wire::display::LightTimes;
-use pxpl5_wire::{FieldParity, PeriodNumber, PictureNumber, ViewNumber};
+use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::any::Any;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Step, in picoseconds, to which the prediction interval for tuning is rounded: one millisecond. A finer step changes
 /// the parameters of a filter by less than one per cent.
 const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 
 /// Streaming observer that collects the times at which views are shown, and the prediction intervals of views and
-/// latched (sampled and held) orientations.
+/// of orientations by which the display turns pictures.
 #[derive(Debug, Default)]
 pub(crate) struct DryRunObserver {
     pictures: usize,
@@ -97,18 +96,14 @@ impl DryRunObserver {
     /// Returns the pictures whose display times are known, each with the next picture, which replaces the picture on
     /// the screen.
     ///
-    /// For a display with several memories, only the first memory is timed. The first memory holds the structures that
-    /// must be drawn most often. The last picture of this memory is returned only when its successor is known.
+    /// For a display with several layers, only the first layer is timed. The first layer holds the structures that must
+    /// be drawn most often. The last picture of this layer is returned only when its successor is known.
     fn timed(&mut self, results: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
-        let notes = results.notes.all();
-        // Leave out the updates of all memories except the first.
-        let of_others: BTreeSet<PictureNumber> =
-            notes.iter().filter(|note| note.memory > 0).map(|note| note.picture).collect();
-        let is_timed = |times: &&PictureTimes| !of_others.contains(&times.picture);
+        let is_timed = |times: &&PictureTimes| times.layer == 0;
         let timed = results.pictures.iter().filter(is_timed).copied();
         let mut timed: Vec<PictureTimes> = self.waiting.take().into_iter().chain(timed).collect();
         let next = results.next.filter(is_timed).copied();
-        // If another memory is shown next, the successor of the last picture is not known yet.
+        // If another layer is shown next, the successor of the last picture is not known yet.
         if results.next.is_some() && next.is_none() {
             self.waiting = timed.pop();
         }
@@ -154,26 +149,12 @@ impl DryRunObserver {
         }
     }
 
-    /// Adds the prediction interval of the middle pixel of each field. The interval lasts from the measurement of the
-    /// head's orientation to the instant for which the orientation was predicted.
+    /// Adds the prediction interval of the orientation by which the display turns each period.
     fn take_turns(&mut self, results: &FinalResults<'_>, head: &HeadViews) {
-        let display = results.record.display();
-        let Some((latched, surface)) = OrientationTiming::of_run(results).zip(display.surfaces().first()) else {
-            return;
-        };
-        for field in self.turned_to.until(results.until) {
-            let y = surface.height / 2 + FieldParity::of_field(field).first_line();
-            let span = turned(&latched, head, [surface.width / 2, y], field);
-            span.into_iter().for_each(|span| self.turns.add(span));
-        }
-        self.turned_to = results.until;
+        let FinalResults { pipeline, record, aim, until, .. } = *results;
+        let periods = self.turned_to.until(until);
+        let spans = periods.filter_map(|period| pipeline.turn_interval(record, head, aim, period));
+        spans.for_each(|span| self.turns.add(span));
+        self.turned_to = until;
     }
-}
-
-/// Returns the prediction interval of the head orientation that a pixel uses. Returns `None` before the first tracker
-/// report.
-fn turned(latched: &OrientationTiming, head: &HeadViews, [x, y]: [u32; 2], field: PeriodNumber) -> Option<Span> {
-    let (known, aimed): (Time, Time) = latched.orientation_of_pixel(head, x, y, field)?;
-    let measured = head.measured_at(head.report_by(known)?)?;
-    Some(aimed.since(measured))
 }

@@ -9,7 +9,6 @@ use crate::keep::Keep;
 use crate::level::Level;
 use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::raster::Raster;
 use pxpl5_machine::{MachineConfig, Optimization, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
@@ -254,7 +253,6 @@ impl Experiment {
         &'a self,
         record: &'a Record,
         head: Option<&'a Arc<HeadViews>>,
-        notes: &'a RequestedUpdates,
     ) -> FinalResults<'a> {
         FinalResults {
             pipeline: self.pipeline.as_ref(),
@@ -262,7 +260,6 @@ impl Experiment {
             fields: self.fields,
             record,
             head,
-            notes,
             hmd: self.hmd,
             arrivals: &record.observation().arrivals,
             pictures: &[],

@@ -373,7 +373,7 @@ impl Head {
     /// Returns the data from which the parameters for orientations were tuned separately. Returns `None` if positions
     /// and orientations have the same tuning, or if nothing was tuned.
     ///
-    /// Only a display that latches orientations needs separate parameters.
+    /// Only a display that turns pictures needs separate parameters.
     #[must_use]
     pub const fn training_of_turns(&self) -> Option<&Training> {
         if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }

@@ -9,7 +9,7 @@
 //! The cycle level needs no more detailed model of the ring. A property test of the ring's crate shows that the events
 //! and a word-by-word reference model give the same picosecond for every message.
 //!
-//! This crate has Rendering Control, Slats, just-in-time pixels, frameless rendering and the pipelines with six faces.
+//! This crate has Rendering Control, Slats, just-in-time pixels, frameless rendering and address recalculation.
 //! In these pipelines, all work of graphics processors is i860 code (docs/gp-timing.md). At the cycle level no time
 //! comes from the timing table, and `tests/cycle.rs` checks this. Other pipelines take the times of the table for work
 //! without code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports state this.

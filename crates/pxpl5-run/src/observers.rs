@@ -2,7 +2,6 @@
 
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::ResultWindow;
 use pxpl5_machine::{Arrival, Record};
 use pxpl5_scene::Hmd;
@@ -30,8 +29,6 @@ pub struct FinalResults<'a> {
     pub head: Option<&'a Arc<HeadViews>>,
     /// Optics of the head-mounted display.
     pub hmd: Hmd,
-    /// Records of the requested updates of display memories, as far as the records are still in memory.
-    pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.
     pub arrivals: &'a [Arrival],
     /// Pictures whose results can no longer change, in the order in which the pictures are shown.

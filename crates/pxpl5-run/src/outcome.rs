@@ -7,7 +7,6 @@ use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
 use crate::observers::FinalResults;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::{ResultWindow, WINDOW_DEFINITION};
 use crate::summary::Summary;
 use crate::tally::{Tally, of_picture};
@@ -28,7 +27,6 @@ pub struct Outcome {
     experiment: Experiment,
     record: Record,
     head: Option<Arc<HeadViews>>,
-    notes: RequestedUpdates,
     closed: Closed,
     reached: PeriodNumber,
     host_seconds: Option<f64>,
@@ -54,16 +52,16 @@ impl Outcome {
         reached: PeriodNumber,
         host_seconds: Option<f64>,
     ) -> Self {
-        let Assembled { machine, head, notes } = run;
+        let Assembled { machine, head } = run;
         let record = machine.into_record();
-        let closed = window.close(&experiment, &record, (head.as_ref(), &notes), reached);
-        Self { experiment, record, head, notes, closed, reached, host_seconds }
+        let closed = window.close(&experiment, &record, head.as_ref(), reached);
+        Self { experiment, record, head, closed, reached, host_seconds }
     }
 
     /// Returns all final results of the run and the records in memory, for evaluation after the run.
     #[must_use]
     pub fn final_results(&self) -> FinalResults<'_> {
-        let all = self.experiment.final_results(&self.record, self.head.as_ref(), &self.notes);
+        let all = self.experiment.final_results(&self.record, self.head.as_ref());
         FinalResults { pictures: self.pictures(), window: self.closed.window, ..all }
     }
 
@@ -189,13 +187,6 @@ impl Outcome {
     #[must_use]
     pub const fn head(&self) -> Option<&Arc<HeadViews>> {
         self.head.as_ref()
-    }
-
-    /// Returns the requested updates of display memories, in order. The result is empty for a pipeline without cube
-    /// faces.
-    #[must_use]
-    pub const fn face_notes(&self) -> &RequestedUpdates {
-        &self.notes
     }
 
     /// Returns the real time that the run took on the host computer, in seconds. Returns `None` on a host without a

@@ -101,6 +101,7 @@ fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> O
         copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),
         shown_at,
         end: PictureResult::Shown,
+        layer: 0,
     })
 }
 

@@ -366,7 +366,7 @@ fn needed_by_run(partial: &Outcome) -> Option<u64> {
     Some((field + 1).max(partial.fields() + 1))
 }
 
-/// Returns the number of pictures of a run, including periods that show old cube faces in a new direction of the head.
+/// Returns the number of pictures of a run, including periods that show old pictures in a new direction of the head.
 fn shown_in(outcome: &Outcome) -> u64 {
     outcome.tally().pictures.max(outcome.pipeline().turned_periods(outcome.record(), outcome.end()))
 }

@@ -7,7 +7,6 @@ use crate::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
 use crate::observers::FinalResults;
 use crate::picture_ends::PictureResults;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::summary::retraces;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
@@ -50,9 +49,8 @@ pub struct Tally {
     pub copy_begins_ms: Samples,
     /// Durations of TRANSFORM and of RENDER, for all pictures in the result window.
     pub stage_ms: [(Stage, Samples); 2],
-    /// Number of updates in the result window that were shown, by display memory. Memories without updates have no
-    /// entry.
-    pub memory_updates: BTreeMap<usize, u64>,
+    /// Number of pictures in the result window, by layer of the display. Layers without pictures have no entry.
+    pub updates: BTreeMap<usize, u64>,
     /// Number of regions that arrived after their deadline.
     pub late_regions: u64,
     /// The first late regions, at most [`LATE_REGIONS_LISTED`].
@@ -118,7 +116,7 @@ impl Tally {
             copy_ms: [none(), none()],
             copy_begins_ms: none(),
             stage_ms: [Stage::Transform, Stage::Render].map(|stage| (stage, none())),
-            memory_updates: BTreeMap::new(),
+            updates: BTreeMap::new(),
             late_regions: 0,
             first_late_regions: Vec::new(),
             records_read: 0,
@@ -155,7 +153,7 @@ impl Tally {
     /// Adds the times of counted pictures that lie in the result window. All records of these pictures must be
     /// complete.
     pub(crate) fn take(&mut self, results: &FinalResults<'_>) {
-        let FinalResults { pipeline, record, notes, window, .. } = *results;
+        let FinalResults { pipeline, record, window, .. } = *results;
         let Some(window) = window else { return };
         if self.window_from != Some(window.first_period) {
             // The window begins later than assumed, so all samples so far lie before the window.
@@ -172,15 +170,7 @@ impl Tally {
         complete.clone().for_each(|times| self.take_complete(record, times, of_picture(&stages, times.picture)));
         self.take_eye_swaps(&stages, complete);
         self.take_stages(&stages, &steady);
-        self.take_memories(notes, &steady);
-    }
-
-    fn take_memories(&mut self, notes: &RequestedUpdates, pictures: &[PictureTimes]) {
-        let memories: BTreeMap<PictureNumber, usize> =
-            notes.all().iter().map(|note| (note.picture, note.memory)).collect();
-        for memory in pictures.iter().filter_map(|times| memories.get(&times.picture)) {
-            *self.memory_updates.entry(*memory).or_default() += 1;
-        }
+        steady.iter().for_each(|times| *self.updates.entry(times.layer).or_default() += 1);
     }
 
     /// Clears the samples of the result window. Counts over the whole run keep their values.

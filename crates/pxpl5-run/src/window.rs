@@ -6,7 +6,6 @@ use crate::head_views::HeadViews;
 use crate::keep::Keep;
 use crate::observers::{FinalResults, StreamingObserver};
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::ResultWindow;
 use crate::tally::Tally;
 use pxpl5_machine::Record;
@@ -106,7 +105,7 @@ impl Window {
         let until = record.display().period_at(begin);
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let (next, samples) = (held.first(), self.samples);
-        let all = experiment.final_results(record, run.head.as_ref(), &run.notes);
+        let all = experiment.final_results(record, run.head.as_ref());
         // The counts are updated first, because the window depends on them.
         self.tally.count(record, pictures);
         let every = experiment.pipeline.periods_a_picture(record);
@@ -135,7 +134,7 @@ impl Window {
         mut self,
         experiment: &Experiment,
         record: &Record,
-        (head, notes): (Option<&Arc<HeadViews>>, &RequestedUpdates),
+        head: Option<&Arc<HeadViews>>,
         reached: PeriodNumber,
     ) -> Closed {
         let pipeline = experiment.pipeline.as_ref();
@@ -148,7 +147,7 @@ impl Window {
         // All remaining pictures and arrivals are final at the end of the run.
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let samples = self.samples;
-        let all = experiment.final_results(record, head, notes);
+        let all = experiment.final_results(record, head);
         self.tally.count(record, &pictures);
         let every = pipeline.periods_a_picture(record);
         let window = ResultWindow::of(self.tally.ends(), every, reached, experiment.end());

@@ -45,20 +45,12 @@
 
 mod config;
 mod faces;
-mod host;
-mod master;
-mod protocol;
-mod rules;
-mod slave;
 mod update;
 mod warp;
 mod warped_lists;
 
-pub use config::{CubeControlConfig, Faces};
-pub use faces::{CubePass, face_view};
-pub use host::{HostAction, host};
-pub use master::master;
-pub use slave::slave;
+pub use config::Faces;
+pub use faces::face_view;
 pub use update::FaceUpdate;
 pub use warp::FaceWarp;
 pub use warped_lists::WarpedLists;

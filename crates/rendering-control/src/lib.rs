@@ -32,16 +32,18 @@
 //!
 //! Sources: TR94, I3D95.
 
-mod config;
 pub mod cube;
+mod drawn;
+mod frames;
 mod host;
 mod master;
 mod protocol;
 pub mod rules;
 mod slave;
 
-pub use config::RenderingControlConfig;
-pub use host::host;
+pub use drawn::{Drawn, RenderingControlConfig, Sent};
+pub use frames::Frames;
+pub use host::{HostAction, frames, host};
 pub use master::master;
 pub use slave::slave;
 

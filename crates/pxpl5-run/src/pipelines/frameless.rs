@@ -172,6 +172,7 @@ impl PictureRules for Frameless {
                 copied_at: Some(*copied_at),
                 shown_at: next_light(video, target, *copied_at),
                 end: PictureResult::of(*blocks == batch, true),
+                layer: 0,
             })
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();

@@ -223,6 +223,7 @@ impl PictureRules for Jitp {
                 copied_at: middle_at,
                 shown_at: video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field)),
                 end: PictureResult::of(in_period == grid.regions(), in_time == grid.regions()),
+                layer: 0,
             }
         });
         times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()

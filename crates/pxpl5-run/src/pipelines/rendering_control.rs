@@ -14,7 +14,7 @@ use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::Surface;
 use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
-use rendering_control::{RenderingControlConfig, host, master, slave};
+use rendering_control::{Frames, RenderingControlConfig, frames, host, master, slave};
 use std::sync::Arc;
 
 /// The pipeline Rendering Control of the library PPHIGS (TR94).
@@ -89,7 +89,7 @@ impl RenderingControl {
         Ok(Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels })
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, SettingError> {
+    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig<Frames>, SettingError> {
         let ports = machine.ports();
         // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
@@ -104,10 +104,12 @@ impl RenderingControl {
             master: *master,
             slaves: slaves.to_vec(),
             renderers: ports.renderers.clone(),
-            frame_buffers: ports.display().iter().copied().take(self.eyes()).collect(),
-            frame_buffer_ports: ports.display().to_vec(),
-            picture,
-            regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
+            drawn: Frames {
+                frame_buffers: ports.display().iter().copied().take(self.eyes()).collect(),
+                frame_buffer_ports: ports.display().to_vec(),
+                picture,
+                regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
+            },
         })
     }
 }
@@ -151,8 +153,8 @@ impl Pipeline for RenderingControl {
         let starts = Arc::clone(&setup.starts);
         let gp = machine.processor(config.host, foreground);
         // The host decides when a frame begins, and samples the view for it.
-        let view_of = move |view, time| views(view, time);
-        let program = host(gp, config.clone(), setup.host, move |ready| starts(ready), view_of);
+        let plan = frames(move |ready| starts(ready), move |view, time| views(view, time));
+        let program = host(gp, config.clone(), setup.host, plan);
         machine.load(config.host, foreground, Box::pin(program));
         let gp = machine.processor(config.master, foreground);
         machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));

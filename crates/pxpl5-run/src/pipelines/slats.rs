@@ -237,6 +237,7 @@ impl PictureRules for Slats {
                 copied_at: whole.then_some(copied.at),
                 shown_at: record.tick(shown.unwrap_or(field)),
                 end: picture_end,
+                layer: 0,
             }
         });
         // A picture is evaluated only after its last possible period. The bottom half of a split copy is scanned in
