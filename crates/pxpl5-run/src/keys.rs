@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// The value of a pipeline's setting (key).
+/// The value of a key, which is a setting of a pipeline.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyValue {
     /// A choice between true and false.
@@ -30,21 +30,21 @@ impl fmt::Display for KeyValue {
     }
 }
 
-/// The values that a key (setting of a pipeline) allows.
+/// The values that a key allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyValues {
-    /// The key allows true and false.
+    /// True and false.
     Flag,
-    /// The key allows whole numbers from the first number to the second number, inclusive.
+    /// Whole numbers from the first number to the second number, inclusive.
     Whole(u64, u64),
-    /// The key allows one of these names.
+    /// One of these names.
     Names(&'static [&'static str]),
-    /// The key allows the text of a [`Lens`].
+    /// The text form of a [`Lens`].
     Lens,
 }
 
 impl KeyValues {
-    /// Checks that `text` describes a lens, and returns the lens as the value of a key.
+    /// Parses the text form of a lens into the value of a key.
     ///
     /// # Errors
     ///
@@ -77,7 +77,8 @@ pub struct Key {
     pub about: &'static str,
     /// Values that the key allows.
     pub values: KeyValues,
-    /// Paths of machine parameters that the key sets too. A user must not set both the key and one of these parameters.
+    /// Paths of the machine parameters that the key changes. An experiment must not set both the key and such a
+    /// parameter.
     pub sets: &'static [&'static str],
 }
 
