@@ -14,7 +14,7 @@ use std::fmt::Debug;
 
 /// The boards of a machine and all their timing parameters.
 ///
-/// The type does not implement `Default`. A configuration starts from a preset, which states its source.
+/// The type does not implement `Default`. Every configuration starts from a preset, which states its sources.
 #[derive(Clone, Debug)]
 pub struct MachineConfig {
     /// Name of the preset that this configuration started from.
@@ -25,29 +25,29 @@ pub struct MachineConfig {
     pub n_renderers: usize,
     /// Timing of the ring: number of channels, clock and overhead.
     pub ring: RingTiming,
-    /// Times of the graphics processors' work. Runs without i860 code use these times.
+    /// Times of the graphics processors' work, for runs without i860 code.
     pub gp: GpTiming,
     /// Version of the i860 code that the graphics processors execute at the cycle level. With `None`, the times come
     /// from `gp` instead.
     pub code: Option<CodeVersion>,
-    /// Timing of the i860 core and its memory at the cycle level: clocks of pipeline freezes and of DRAM accesses.
+    /// Clocks of the i860 and of its memory at the cycle level.
     pub i860: i860::Config,
-    /// Timing of the renderers: clocks of commands, FIFO and backing store.
+    /// Clocks of the renderers' commands, and sizes of their memories.
     pub renderer: RendererTiming,
     /// Timing of the host workstation and its link to the ring.
     pub host: HostTiming,
-    /// The displays. The first display is the sync generator, for which the pipelines draw their pictures.
+    /// The displays. The first display generates the retrace signal, and pipelines draw for this display.
     pub displays: Vec<Box<dyn DisplayConfig>>,
-    /// Parameter tables of firmware, each with the prefix of its parameter paths.
+    /// Timing tables of pipelines, each with the first part of its parameter paths, such as `jitp`.
     pub firmware: Vec<(&'static str, Box<dyn FirmwareTable>)>,
 }
 
-/// The prefix of a parameter table's paths, and a function that returns the table with the values from the papers.
+/// The first part of a table's parameter paths, and a function that returns the table with the values of the papers.
 pub type NamedTable = (&'static str, fn() -> Box<dyn FirmwareTable>);
 
-/// A parameter table of firmware, stored in a [`MachineConfig`].
+/// A timing table of a pipeline, which a [`MachineConfig`] can store.
 pub trait FirmwareTable: ParameterTable + Any + Debug + Send + Sync {
-    /// Returns a boxed copy of the table.
+    /// Returns a copy of the table.
     fn boxed(&self) -> Box<dyn FirmwareTable>;
 }
 
@@ -78,20 +78,20 @@ impl PartialEq for MachineConfig {
 /// A parameter of a machine: path, metadata and value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Prefix of the table and name of the field, such as `ring.word_ns`.
+    /// Name of the table and of the parameter, such as `ring.word_ns`.
     pub path: String,
     /// Unit, provenance, range and source.
     #[serde(flatten)]
     pub info: ParameterInfo,
-    /// Value in this machine, in the unit that the table states.
+    /// Value in this machine, in the unit of `info`.
     pub value: Value,
     /// True if the parameter is a fixed property of a chip, which [`MachineConfig::set`] refuses to change.
     pub read_only: bool,
 }
 
 impl Parameter {
-    /// Returns the parameters of one table. Paths begin with `prefix`, and `read_only` states if all these parameters
-    /// are fixed properties of a chip.
+    /// Returns the parameters of `table`. Each path begins with `prefix`. `read_only` is true for fixed properties of a
+    /// chip.
     pub fn of_table(prefix: &str, table: &dyn ParameterTable, read_only: bool) -> impl Iterator<Item = Self> {
         table.entries().into_iter().map(move |Entry { info, value }| {
             let path = format!("{prefix}.{}", info.name);
@@ -101,7 +101,7 @@ impl Parameter {
 }
 
 impl Parameter {
-    /// Returns true if the value lies within the range that the parameter's table derives from sources.
+    /// Returns true if the value lies within the range that the sources support.
     #[must_use]
     pub fn is_in_range(&self) -> bool {
         let (low, high) = self.info.range;
@@ -121,7 +121,7 @@ impl Parameter {
     }
 }
 
-/// Largest number of boards of one kind. With this limit, 16-bit port numbers suffice for all boards.
+/// Largest number of graphics processors or of renderers, so that 16 bits suffice for port numbers.
 const MAX_BOARDS: u64 = 1_000;
 
 impl MachineConfig {
@@ -131,7 +131,7 @@ impl MachineConfig {
         [self.n_gps as u64, self.n_renderers as u64]
     }
 
-    /// Returns the name of the processors' i860 code: `unoptimised`, `compiled`, `scheduled`, or `none`.
+    /// Returns the name of the i860 code: `unoptimised`, `compiled`, `scheduled`, or `none`.
     #[must_use]
     pub const fn code_name(&self) -> &'static str {
         match self.code {
@@ -140,7 +140,6 @@ impl MachineConfig {
         }
     }
 
-    /// Returns all parameter tables in the order of the boards, each with its path prefix.
     fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
         let mut all: Vec<(&'static str, &dyn ParameterTable)> = vec![("ring", &self.ring), ("gp", &self.gp)];
         all.extend(self.i860.tables());
@@ -151,7 +150,6 @@ impl MachineConfig {
         all
     }
 
-    /// Returns the parameter tables that can be changed, each with its path prefix.
     fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
         let mut all: Vec<(&'static str, &mut dyn ParameterTable)> =
             vec![("ring", &mut self.ring), ("gp", &mut self.gp)];
@@ -163,33 +161,31 @@ impl MachineConfig {
         all
     }
 
-    /// Returns the parameters that identify this machine in names of experiments.
+    /// Returns the parameters that identify this machine in the names of experiments.
     ///
-    /// The result omits parameters of firmware and of the i860 that have the values from the papers. In older versions,
-    /// experiments could not set these parameters. Without the omitted parameters, the names of old experiments stay
-    /// valid.
+    /// Parameters of pipelines and of the i860 are omitted if they have the values of the papers. Older versions could
+    /// not change these parameters, so names of old experiments do not contain them.
     #[must_use]
     pub fn identifying_parameters(&self) -> Vec<Parameter> {
         let all = self.parameters().into_iter();
         all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()
     }
 
-    /// Returns true for parameters of firmware and of the i860. Names of old experiments imply the values from the
-    /// papers for these parameters.
+    /// Returns true for parameters of pipelines and of the i860, which names of experiments may omit.
     fn is_implied(&self, parameter: &Parameter) -> bool {
         let table = parameter.path.rsplit_once('.').map(|(table, _)| table);
         let of_i860 = self.i860.tables().map(|(name, _)| name);
         self.firmware.iter().map(|(name, _)| *name).chain(of_i860).any(|name| Some(name) == table)
     }
 
-    /// Adds the parameter table of a firmware, unless the configuration already has a table of this name.
+    /// Adds the timing table of a pipeline, unless the configuration already has a table of this name.
     pub fn add_firmware_table(&mut self, name: &'static str, table: Box<dyn FirmwareTable>) {
         if self.firmware.iter().all(|(known, _)| *known != name) {
             self.firmware.push((name, table));
         }
     }
 
-    /// Returns the firmware parameter table that has the type `T`.
+    /// Returns the timing table of a pipeline that has the type `T`.
     #[must_use]
     pub fn firmware_table<T: FirmwareTable>(&self) -> Option<&T> {
         self.firmware.iter().find_map(|(_, table)| (table.as_ref() as &dyn Any).downcast_ref())
@@ -202,10 +198,9 @@ impl MachineConfig {
         all.flat_map(|(path, table)| Parameter::of_table(path, table, path == i860::CHIP_PATH)).collect()
     }
 
-    /// Returns the parameters that differ from the values of the preset. The keys are the paths of the parameters.
+    /// Returns the parameters that differ from the preset, by path.
     ///
-    /// The preset may lack a table, for example the table of a firmware or of another display. The parameters of such a
-    /// table are compared with the values from the papers.
+    /// If the preset lacks the table of a parameter, the parameter is compared with the value of the papers.
     #[must_use]
     pub fn overrides(&self) -> BTreeMap<String, Value> {
         let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
@@ -216,9 +211,8 @@ impl MachineConfig {
         self.settings().into_iter().filter(|(path, value)| expected(path) != Some(value)).collect()
     }
 
-    /// Returns the changed parameters whose values lie outside their stated range.
-    ///
-    /// The model accepts such values, but no source supports them.
+    /// Returns the changed parameters whose values lie outside the range that the sources support. The model accepts
+    /// such values.
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let changed = self.overrides();
@@ -262,7 +256,6 @@ impl MachineConfig {
         Err(self.not_settable(path))
     }
 
-    /// Returns the error for a path that is not in any changeable table: the parameter is read-only or unknown.
     fn not_settable(&self, path: &str) -> SettingError {
         match self.parameters().into_iter().find(|parameter| parameter.path == path) {
             Some(Parameter { path, info, value, .. }) => SettingError::read_only(&path, value, info.source),
@@ -317,11 +310,11 @@ impl MachineConfig {
         Self { n_renderers, ..self }
     }
 
-    /// Returns an error for a ring in which commands for full renderer FIFOs can occupy all channels.
+    /// Returns an error for a ring in which commands to full renderer FIFOs can occupy all channels.
     ///
-    /// A renderer empties its FIFO only when it can send pixels. Without a free channel, the renderers would therefore
-    /// wait for ever. Three limits apply to the channels that such commands occupy: `fifo_channels`, one channel for
-    /// each renderer, and `source_channels` channels for each graphics processor.
+    /// A renderer empties its FIFO only after it has sent pixels, so the machine could then deadlock. The commands
+    /// occupy at most `fifo_channels` channels, one channel per renderer, and `source_channels` channels per graphics
+    /// processor.
     fn check_channels(&self) -> Result<(), SettingError> {
         let RingTiming { channels, fifo_channels, source_channels, .. } = self.ring;
         let sent = source_channels.saturating_mul(self.n_gps as u64);
@@ -341,7 +334,6 @@ impl MachineConfig {
     }
 }
 
-/// Converts the value of `n_gps` or `n_renderers` to an integer.
 fn whole(path: &str, value: Value) -> Result<usize, SettingError> {
     let number = value.whole().and_then(|number| usize::try_from(number).ok());
     number.ok_or_else(|| SettingError::not_whole(path, value))
