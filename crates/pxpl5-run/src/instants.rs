@@ -3,7 +3,7 @@
 
 use pxpl5_sim::Time;
 
-/// Number of entries from one [`Begin`] to the next. A lookup decodes at most this number of entries.
+/// Number of entries from one `Begin` to the next. A lookup decodes at most this number of entries.
 const BLOCK: u64 = 256;
 
 /// A compressed list of instants. Each instant has a number, such as the number of its view. The numbers ascend.
