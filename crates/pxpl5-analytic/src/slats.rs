@@ -58,7 +58,7 @@ impl SlatsModel {
 /// Each step of the computation depends on the previous step, so two registers take little more time than one.
 const TOGETHER: usize = 16;
 
-/// Like `fields_at_once`, with the widest vector instructions of the host.
+/// Computes `fields_at_once` with the widest vector instructions of the host.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTriangle) -> [FieldTimes; TOGETHER] {
     fields_at_once(models, triangles, each)

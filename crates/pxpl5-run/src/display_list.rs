@@ -52,7 +52,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, ExperimentError> {
     Ok(list.with_vertices_in_order())
 }
 
-/// Like [`display_list`], but with colours that are computed in advance if `shading` requires them.
+/// Returns the list of [`display_list`], with colours that are computed in advance if `shading` requires them.
 pub(crate) fn display_list_for(scene: &Scene, shading: Shading) -> Result<DisplayList, ExperimentError> {
     let list = display_list(scene)?;
     Ok(if shading == Shading::Precomputed { list.with_precomputed_colours() } else { list })
