@@ -185,7 +185,7 @@ impl CommandWords for RegionWords {
     }
 }
 
-/// Returns the words of the commands `numbers` from `all`, the commands of one kind.
+/// Returns the words of the commands with the indices `numbers`. `all` has the words of all commands of one kind.
 fn words_of<'a>(all: &'a [Word], numbers: &Range<u32>, kind: CommandKind) -> &'a [Word] {
     let [begin, end] = [numbers.start, numbers.end].map(|number| (number * kind.words()) as usize);
     debug_assert!(end <= all.len(), "as many commands as were counted");

@@ -45,7 +45,6 @@ pub struct Pass {
     encoder: OnceLock<Option<Encoder>>,
 }
 
-/// Input of the binning.
 #[derive(Debug)]
 struct Walk {
     share: Share,

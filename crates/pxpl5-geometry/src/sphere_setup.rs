@@ -34,7 +34,8 @@ pub struct SphereSetup {
 pub struct GouraudSphere {
     /// Silhouette and depth of the sphere.
     pub setup: SphereSetup,
-    /// Red, green and blue without the square root, with [`format::COLOUR_FRACTION_BITS`] fraction bits.
+    /// Linear parts of red, green and blue, to which a multiple of the square root is added, with
+    /// [`format::COLOUR_FRACTION_BITS`] fraction bits.
     pub rgb: [Linear; 3],
     /// Factors of the square root, 0 to 511, for red, green and blue: component = limit(linear + ((root >> 4) * factor
     /// >> 8)).

@@ -48,7 +48,7 @@ impl DuePictures {
     /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
     /// that was not over when the run ended.
     ///
-    /// If a picture is due every second period, it may also be shown one period early, and so on for longer intervals.
+    /// A picture also counts as shown if it is shown before its due period, but after the preceding due period.
     #[must_use]
     pub fn count(
         pictures: impl Iterator<Item = (PeriodNumber, PictureResult)>,

@@ -24,7 +24,8 @@ pub enum Cause {
     ScanOut,
     /// Noise and bias of the tracker. Without this cause, reports contain the true pose.
     Noise,
-    /// Wrong predictions. Without this cause, the head moves exactly as its true motion does after the newest report.
+    /// Errors of the predictor. Without this cause, the pose of the newest report is moved exactly as the head really
+    /// moves.
     Prediction,
     /// Sampling: the tracker measures, and the host polls, at intervals. Without this cause, a report arrives exactly
     /// when the host predicts.
@@ -50,8 +51,7 @@ impl Cause {
 
 pxpl5_sim::parameters::named!(Cause, "cause", Cause::ALL.map(|cause| (cause.name(), cause)));
 
-/// Without [`Cause::Sampling`], each request has its own predictor, which receives the reports of this time, in
-/// picoseconds.
+/// Length of the series of reports that a new predictor receives for one request, in picoseconds.
 const FED_PS: u64 = 2 * PS_PER_S;
 
 /// Computes the head's pose from the tracker reports that a host has at an instant.

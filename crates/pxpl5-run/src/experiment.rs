@@ -311,13 +311,13 @@ impl Experiment {
         Self { head: None, ..self }
     }
 
-    /// Returns how the head-mounted display corrects a picture while it scans the picture.
+    /// Returns the correction that the head-mounted display applies to a picture during scan-out.
     #[must_use]
     pub fn raster(&self) -> Raster {
         self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
     }
 
-    /// Returns the instant of a picture's display time for which the picture is drawn, such as the middle of this time.
+    /// Returns the instant for which pictures are drawn, such as the middle of the time in which a picture lights.
     #[must_use]
     pub fn aim(&self) -> Aim {
         self.head.as_ref().map(|head| head.aim()).unwrap_or_default()

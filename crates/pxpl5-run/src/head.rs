@@ -23,9 +23,9 @@ enum Numbers {
     Given,
     /// A dry run will find the parameters.
     ToBeTuned,
-    /// A dry run has found the parameters. The first entry is for complete poses.
+    /// A dry run has found the parameters. The first training data are for complete poses, the second for orientations.
     ///
-    /// The second entry is for orientations, if the display itself uses the newest orientation.
+    /// Only a display that itself uses the newest orientation has training data for orientations.
     Tuned(Option<Training>, Option<Training>),
 }
 
@@ -45,13 +45,13 @@ pub enum HeadPlace {
 }
 
 impl HeadPlace {
-    /// All coordinates of head motions, with their names in experiment files.
+    /// Both choices of coordinates, with their names in experiment files.
     pub const ALL: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
 }
 
 pxpl5_sim::parameters::named!(HeadPlace, "meaning of head poses", HeadPlace::ALL);
 
-/// A viewer's head with a motion, a tracker, a predictor, and a correction by the display.
+/// A viewer's head with a motion, a tracker, a predictor and a display.
 #[derive(Clone)]
 pub struct Head {
     pub(crate) motion: Moving,
@@ -158,7 +158,7 @@ impl Head {
         self
     }
 
-    /// Replaces the prediction method, and keeps the parameters and the choice whether they are tuned.
+    /// Replaces the prediction method and keeps all other settings of the predictor.
     #[must_use]
     pub const fn predicting(mut self, kind: PredictorKind) -> Self {
         self.predictor.kind = kind;
@@ -198,14 +198,14 @@ impl Head {
         self.place
     }
 
-    /// Sets how the head-mounted display corrects a picture while it scans the picture.
+    /// Sets the correction that the head-mounted display applies to a picture during scan-out.
     #[must_use]
     pub const fn before(mut self, raster: Raster) -> Self {
         self.raster = raster;
         self
     }
 
-    /// Sets the instant of a picture's display time for which the pose is predicted, such as the middle of this time.
+    /// Sets the instant for which poses are predicted, such as the middle of the time in which a picture lights.
     #[must_use]
     pub const fn with_aim(mut self, aim: Aim) -> Self {
         self.aim = aim;
@@ -247,14 +247,13 @@ impl Head {
         }
     }
 
-    /// Returns the instant of a picture's display time for which the pose is predicted, such as the middle of this
-    /// time.
+    /// Returns the instant for which poses are predicted, such as the middle of the time in which a picture lights.
     #[must_use]
     pub const fn aim(&self) -> Aim {
         self.aim
     }
 
-    /// Returns how the head-mounted display corrects a picture while it scans the picture.
+    /// Returns the correction that the head-mounted display applies to a picture during scan-out.
     #[must_use]
     pub const fn raster(&self) -> Raster {
         self.raster
@@ -301,7 +300,7 @@ impl Head {
         self.predictor.kind != PredictorKind::None
     }
 
-    /// Returns true if a run chooses, or has chosen, the parameters of the predictor.
+    /// Returns true if a run tunes, or has tuned, the parameters of the predictor.
     #[must_use]
     pub fn is_tuned(&self) -> bool {
         self.numbers != Numbers::Given

@@ -119,7 +119,7 @@ pub(crate) struct Pair {
 /// Each entry has the index of the eye that starts the latency and of the eye that ends the latency.
 pub(crate) const LATENCY_SURFACES: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
 
-/// Returns the time at which an event of an eye happened. The event ends a latency.
+/// Function that returns the time of the event that ends a latency. The argument is the index of the eye.
 pub(crate) type End = fn(&Pair, usize) -> Time;
 
 /// The events that can end a latency, with name, definition and time.

@@ -19,13 +19,13 @@ use std::sync::Arc;
 pub struct FinalResults<'a> {
     /// Pipeline that draws the pictures.
     pub pipeline: &'a dyn Pipeline,
-    /// Instant of a picture's display time for which the picture is drawn, such as the middle of this time.
+    /// Instant for which pictures are drawn, such as the middle of the time in which a picture lights.
     pub aim: Aim,
     /// Number of periods of the first display that the run simulates.
     pub fields: u64,
     /// The machine and its records in memory, including records of later pictures and periods.
     pub record: &'a Record,
-    /// Recent poses of the tracked head. `None` without a tracked head.
+    /// Views of the tracked head, with the requested poses in memory. `None` without a tracked head.
     pub head: Option<&'a Arc<HeadViews>>,
     /// Optics of the head-mounted display.
     pub hmd: HmdConfig,

@@ -42,7 +42,8 @@ pub(crate) struct PictureResults {
 impl PictureResults {
     const ALL: [PictureResult; 3] = [PictureResult::Shown, PictureResult::Late, PictureResult::Incomplete];
 
-    /// Records a picture that was due in `period`. Pictures must be recorded in the order of their periods.
+    /// Records the result of a picture that should be seen in `period`. Pictures must be recorded in the order of their
+    /// periods.
     pub(crate) fn note(&mut self, period: PeriodNumber, end: PictureResult) {
         self.begun += 1;
         if self.begun > WARM_UP_PICTURES {

@@ -43,8 +43,8 @@ impl Experiment {
         })
     }
 
-    /// Runs the experiment and calls `at` at the start of some fields: the fields in `stops`, every 60th field, and the
-    /// end of the run.
+    /// Runs the experiment and calls `at` at the start of each field in `stops`, at every 60th field, and at the end of
+    /// the run.
     ///
     /// `at` receives the field and the machine, before the machine handles any event of this field. An error from `at`
     /// ends the run.

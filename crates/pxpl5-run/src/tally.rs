@@ -263,8 +263,8 @@ impl Tally {
         }
     }
 
-    /// Adds the port times of arrived regions. `message` is the time for which one message occupies a channel of the
-    /// ring.
+    /// Adds the times for which arrived regions have occupied ports of the display. `message` is the duration of one
+    /// message on the ring.
     pub(crate) fn take_arrivals(&mut self, arrivals: &[Arrival], message: Span) {
         for arrival in arrivals {
             let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);

@@ -86,7 +86,7 @@ impl Default for Frameless {
 }
 
 /// Smallest and largest number of blocks in a batch (assumed). In smaller batches, the master would be the bottleneck,
-/// because each order takes it 24 us. In larger batches, the view would become too old.
+/// because each order takes 24 us. In larger batches, the view would become too old.
 const LEAST_BATCH: u64 = 4;
 const MOST_BATCH: u64 = 64;
 
