@@ -170,7 +170,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Returns the instant for which a batch of blocks is drawn that the master orders now.
+    /// Returns the instant for which the blocks of an order are drawn, if the master sends the order now.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;
@@ -191,7 +191,7 @@ struct Expected {
 /// Times of recent orders, from which the master estimates the times of the next order.
 struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
-    /// Times of the newest orders, oldest first, in which every block of the frame is drawn once.
+    /// Times of the newest orders, oldest first. Together, these orders draw every block of the frame once.
     pass: VecDeque<Time>,
     orders_of_pass: usize,
 }

@@ -2,8 +2,8 @@
 //!
 //! To *place* a structure is to compute its matrices and its light source in the coordinates of an eye. Both steps are
 //! i860 code in the style of compiled code (`pxpl5_geometry::kernel::place_source`). The code computes the parameters
-//! that a kernel needs for each structure. The kernels nevertheless read parameters that the simulator computes. Both
-//! are equal in every word (tests/begin.rs).
+//! that a kernel needs for each structure. The kernels nevertheless read parameters that the simulator computes. The
+//! parameters of the code and of the simulator are equal in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
 use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};

@@ -479,9 +479,9 @@ impl Pass {
 
     /// Returns the memory that a kernel needs for its output.
     ///
-    /// The number of commands is that of all primitives in `given`, visible or not, plus the pieces of clipped
-    /// triangles, plus one command that the kernel can discard. [`pxpl5_gp::Memory`] counts only the commands of
-    /// visible primitives.
+    /// The memory has room for the commands of all primitives in `given`, visible or not, and of the pieces of clipped
+    /// triangles. The kernel needs room for one more command, which it can discard. [`pxpl5_gp::Memory`] counts only
+    /// the commands of visible primitives.
     pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> OutputSize {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {

@@ -34,8 +34,8 @@ pub struct RegionEnvelope {
     pub copy: Option<CopyOrder>,
 }
 
-/// Returns the messages with the primitives of a region's bin and the commands of the envelope, as few as their maximum
-/// length permits.
+/// Returns the messages with the primitives of a region's bin and the commands of the envelope. The number of messages
+/// is as small as their maximum length permits.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
@@ -446,7 +446,8 @@ struct SetupBatches<'a> {
 }
 
 enum SetupBatch<'a> {
-    /// Triangles whose edges and planes are computed together. An invisible triangle has a place without data.
+    /// Triangles whose edges and planes are computed together. A triangle without area takes the place of an invisible
+    /// triangle.
     Unclipped(&'a [BinEntry], &'a TriangleLanes<'a>),
     /// A piece of a clipped triangle, in a batch of its own.
     Clipped(&'a BinEntry),

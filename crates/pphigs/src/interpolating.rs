@@ -83,7 +83,8 @@ pub struct StripInterpolation<'a> {
     pub share: &'a Share,
     /// Views at the start and at the end of a field, in which a [`TriangleEndsRecorder`] has recorded the triangles.
     pub views: [&'a FrameView; 2],
-    /// View between these views, for spheres, light and clipped triangles, which are not interpolated.
+    /// View between these views. Spheres, light and clipped triangles are computed for this view instead of
+    /// interpolated.
     pub between: &'a FrameView,
     /// The instant of `between`, from 0 (first view) to 1 (second view).
     pub part_of_way: f64,

@@ -22,8 +22,7 @@ pub struct DisplayList {
     pub triangles: Vec<[u32; 3]>,
     /// Spheres, in the coordinates of their structure.
     pub spheres: Vec<WorldSphere>,
-    /// Structures. Each structure has a range of triangles and a range of spheres, which follow those of the structure
-    /// before.
+    /// Structures. The ranges of triangles and of spheres of successive structures follow each other without gaps.
     pub structures: Vec<DisplayStructure>,
     /// Unit vector towards the light source, in the room or, for structures that move with the head, in the head.
     pub towards_light: Vec3,

@@ -77,9 +77,9 @@ struct Found {
 
 /// Counts primitives without storing them.
 struct PrimitiveCounter {
-    /// Number of triangles that touch only this region.
+    /// For each region, the number of triangles that touch only this region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// Numbers of triangles that also touch another region, and of all spheres.
+    /// For each region, the number of triangles that also touch another region, and the number of spheres.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,

@@ -63,8 +63,7 @@ impl Clone for RecentViews {
     }
 }
 
-/// Number of eyes' views in the cache: two eyes of two frames, because a slow processor may still draw the previous
-/// frame.
+/// Capacity of the cache: the views of two eyes in two frames. A slow processor may still draw the previous frame.
 const RECENT: usize = 4;
 
 /// The data that determine where structures are placed.

@@ -102,7 +102,7 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// The times up to which the sending of clumps (groups of triangles) has been computed.
+/// Progress of the clumps (groups of triangles) that have been sent so far.
 struct Chain<const N: usize> {
     /// Time at which the graphics processor has finished its latest work.
     cpu: Times<N>,

@@ -136,11 +136,11 @@ pub(super) struct Commands<const N: usize> {
     drawing: Times<N>,
     /// Time from the start of the first command after the header until the FIFO has room for the last word.
     ///
-    /// The FIFO has this room when the command starts whose words lie one FIFO depth before the last word. The value is
-    /// `f64::MIN` if this is a command of the previous message.
+    /// The room comes from an earlier command: when it starts, the words one FIFO depth before the last word leave the
+    /// FIFO. The value is `f64::MIN` if this is a command of the previous message.
     room_after: Times<N>,
-    /// Number of commands, counted back from the end of the previous message, to the command that must have started
-    /// before the FIFO has room for the last word. The value is infinite if this is a command of the same message.
+    /// Position of the command whose start makes room for the last word, as a number of commands before the end of the
+    /// previous message. The value is infinite if a command of the same message makes the room.
     room_before: Times<N>,
 }
 

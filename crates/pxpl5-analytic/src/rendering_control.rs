@@ -16,7 +16,7 @@ use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Time, mix};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
-/// Number of words of a short message between processors, such as a token (assumed).
+/// Number of words of a message between master and slaves, such as a token.
 const ORDER_WORDS: f64 = 6.0;
 
 /// The parameters that determine the times of Rendering Control on a machine.
@@ -76,7 +76,7 @@ struct History {
     copied: Vec<f64>,
     /// Size of the bins of the previous picture on one slave, in bytes.
     bin_bytes: f64,
-    /// Time from the first to the last slave that has no more bins of the previous picture.
+    /// Time between the instants at which the first and the last slave have sent all bins of the previous picture.
     first_free_ns: f64,
     edited_ns: f64,
     swapped_ns: f64,
@@ -163,7 +163,7 @@ impl StereoModel {
         })
     }
 
-    /// Returns the times of frame after frame. `loads` has the work for each eye of each frame.
+    /// Returns the times of successive frames. `loads` has the work for each eye of each frame.
     #[must_use]
     pub fn frames(&self, loads: &[Load]) -> Vec<StereoTimes> {
         let mut history = History::default();
@@ -242,7 +242,8 @@ impl StereoModel {
         self.entries(load) * BIN_ENTRY_BYTES as f64
     }
 
-    /// Returns the time between the first and the last slave that has sent all its bins of a picture.
+    /// Returns the time between the instants at which the first and the last slave have sent all their bins of a
+    /// picture.
     ///
     /// A region's token starts at one slave and moves from slave to slave as fast as renderers accept commands. With
     /// fewer renderers than slaves, some slaves finish early. The first slave finishes when each token has visited as

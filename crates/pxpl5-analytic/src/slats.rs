@@ -143,8 +143,8 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
 const FIELDS_BEFORE: u64 = WARM_UP_PERIODS;
 const _: () = assert!(FIELDS_BEFORE >= WARM_UP_PICTURES as u64 + 2);
 
-/// Returns the number of fields that an experiment needs, or `None` if pictures are late, because then all pictures are
-/// late.
+/// Returns the number of fields that an experiment needs. Returns `None` if pictures are late: all fields are equal, so
+/// every picture would be late.
 fn fields_needed(experiment: &Experiment) -> Option<u64> {
     let (_, times) = steady_field(experiment).ok()?;
     times.in_time.then_some(FIELDS_BEFORE + 1)

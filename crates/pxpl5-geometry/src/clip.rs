@@ -155,7 +155,7 @@ fn order(a: &[f64; 4], b: &[f64; 4]) -> Ordering {
     a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-/// Returns true if all three corners are outside the same side of the visible volume, so that the triangle is not
+/// Returns true if all three corners are beyond the same side of the visible volume, so that the triangle is not
 /// visible.
 pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     let beyond_a_side: [fn(&[f32; 4]) -> bool; 6] = [

@@ -14,9 +14,9 @@
 //!                                             clipper -> the same for pieces
 //! ```
 //!
-//! The native code makes the same computation, so both give the same words, bit for bit. The reciprocal of w is
-//! computed from a first approximation by two Newton steps, in single precision. A matrix rotates the normals, which
-//! are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
+//! The Rust code of this crate makes the same computation, so both give the same words, bit for bit. The reciprocal of
+//! w is computed from a first approximation by two Newton steps, in single precision. A matrix rotates the normals,
+//! which are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
 //! registers and memory layouts. A [`Kernel`] concatenates source files, like a linker, and defines constants. The
 //! conditions in the files (`.if`) use these constants to select lines. This crate neither assembles nor runs the
 //! sources.
@@ -44,11 +44,11 @@ pub enum Schedule {
     /// vertices or triangles. Each loop fits the instruction cache.
     ///
     /// Most of the source lists single operations in order, without clocks and pipelines. This project's assembler
-    /// assigns the operations to clocks, which the i860's own assembler does not support.
+    /// assigns the operations to clocks. The i860's own assembler cannot do so.
     Dual,
 }
 
-/// Values at the corners of a triangle, between which planes interpolate.
+/// The kind of values at the corners of a triangle, which planes interpolate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelSurface {
     /// Colours, which the kernel computes from light and normals.

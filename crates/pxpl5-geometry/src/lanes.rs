@@ -115,8 +115,8 @@ impl CornerValues {
     }
 }
 
-/// Replaces some expressions by `constant`: those whose element of `there` is 0. All other elements of `there` must
-/// have all bits set.
+/// Replaces each expression whose element of `there` is 0 by `constant`. All other elements of `there` must have all
+/// bits set.
 #[inline(always)]
 fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> LinearLanes {
     for (i, there) in there.iter().enumerate() {
@@ -364,8 +364,8 @@ fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> Linea
     out
 }
 
-/// Divides an integer below 2^34 by 16 and rounds down, as rounding to the nearest integer after a subtraction of
-/// 15/32.
+/// Divides an integer below 2^34 by 16 and rounds down. To round down, the function subtracts 15/32 from the quotient
+/// and rounds to the nearest integer.
 #[inline(always)]
 fn sixteenth(k: f64) -> i32 {
     const _: () = assert!(1 << format::SUBPIXEL_BITS == 16);
@@ -383,8 +383,8 @@ struct LanePlanes {
 }
 
 impl LanePlanes {
-    /// Computes the values that all planes of a triangle share. The result does not depend on the winding, because a
-    /// change of the winding changes the signs of both cross products and area.
+    /// Computes the values that all planes of a triangle share. Both windings have the same result, because the other
+    /// winding changes the signs of the cross products and of the area.
     #[inline(always)]
     fn through_corners(corners: &CornerValues, rows: PictureRows) -> Self {
         let [p, q, r] = &corners.x;

@@ -2,7 +2,7 @@
 //!
 //! The i860 has the instructions `frcp` and `frsqr`, which give a first approximation with 8 bits of fraction. Newton
 //! steps refine the approximation. To round a number, the code adds a large constant and subtracts the constant again.
-//! The native code performs the same steps as the i860 kernels, so both give the same words.
+//! The Rust code of this crate performs the same steps as the i860 kernels, so both give the same words.
 
 /// The bits of a double that a first approximation has: sign, exponent and 8 bits of fraction.
 const SEED: u64 = !((1 << (52 - 8)) - 1);

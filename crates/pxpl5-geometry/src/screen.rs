@@ -223,8 +223,7 @@ impl ScreenTriangle<SurfaceNormals> {
     }
 }
 
-/// Converts three numbers. Three written calls are faster, because compilers do not always inline a closure over an
-/// array.
+/// Applies `value` to three numbers by three calls, because compilers do not always inline a closure over an array.
 #[inline(always)]
 fn values<T: Copy>([a, b, c]: &[T; 3], value: impl Fn(T) -> f32) -> [f32; 3] {
     [value(*a), value(*b), value(*c)]

@@ -18,7 +18,7 @@ pub struct SphereSetup {
     /// Silhouette expression, which is at least 0 at the pixels inside the sphere. Within the sphere's regions, the
     /// value fits 48 bits.
     ///
-    /// Its unit differs from sphere to sphere and is chosen so that the square root needs no factor.
+    /// The unit of the expression differs from sphere to sphere. With the chosen unit, the square root needs no factor.
     pub silhouette: Quadratic,
     /// Number of low bits of the silhouette expression that the square root ignores, 0 to 24.
     pub root_shift: u8,

@@ -15,7 +15,7 @@ pub struct SetupStats {
     /// Number of triangles, or pieces of clipped triangles, dropped because a clip coordinate is NaN, infinite or
     /// beyond [`crate::MAX_CLIP`], or because w is nearly 0.
     pub not_finite: u64,
-    /// Number of triangles dropped because all corners are outside the same side of the visible volume.
+    /// Number of triangles dropped because all corners are beyond the same side of the visible volume.
     pub outside: u64,
     /// Number of triangles cut by the near plane, the far plane or the guard band.
     pub clipped: u64,

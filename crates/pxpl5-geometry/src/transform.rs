@@ -78,8 +78,8 @@ pub struct TriangleEnds {
 }
 
 impl TriangleEnds {
-    /// Returns the corners between the two views, in whole subpixels. `s` is 0 in the first view and 1 in the second
-    /// view.
+    /// Returns the corners at an instant between the two views, in whole subpixels. `s` is 0 in the first view and 1 in
+    /// the second view.
     fn at(&self, s: f64) -> [Snapped; 3] {
         std::array::from_fn(|i| Snapped {
             x: whole_between(self.from[i].x.into(), self.to[i].x.into(), s) as i32,
@@ -175,7 +175,7 @@ impl Assembled {
         (twice_area != 0).then_some(Self { outline, swapped })
     }
 
-    /// Rearranges the values of three corners like the corners.
+    /// Rearranges the values of three corners in the same way as the corners.
     #[inline(always)]
     pub(crate) fn order<T>(&self, [p, q, r]: [T; 3]) -> [T; 3] {
         if self.swapped { [p, r, q] } else { [p, q, r] }

@@ -19,8 +19,8 @@ use pxpl5_wire::LANES;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex(pub(crate) Snapped);
 
-/// The x of a vertex outside the guard band. It is greater than any x inside, and differences to other coordinates are
-/// still exact.
+/// The x of a vertex outside the guard band. This x is greater than any x inside the band, and its differences from
+/// other coordinates are still exact.
 pub(crate) const OUTSIDE: i32 = 2 * screen::GUARD_PIXELS * SUBPIXELS;
 
 const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };

@@ -312,9 +312,9 @@ impl MachineConfig {
 
     /// Returns an error for a ring in which commands to full renderer FIFOs can occupy all channels.
     ///
-    /// A renderer empties its FIFO only after it has sent pixels, so the machine could then deadlock. The commands
-    /// occupy at most `fifo_channels` channels, one channel per renderer, and `source_channels` channels per graphics
-    /// processor.
+    /// A renderer empties its FIFO only after it has sent pixels, so the machine could then deadlock. Three limits
+    /// apply to the number of these channels: `fifo_channels`, the number of renderers, and `source_channels` for each
+    /// graphics processor.
     fn check_channels(&self) -> Result<(), SettingError> {
         let RingTiming { channels, fifo_channels, source_channels, .. } = self.ring;
         let sent = source_channels.saturating_mul(self.n_gps as u64);

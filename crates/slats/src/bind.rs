@@ -70,8 +70,8 @@ impl Binding {
 
     /// Returns the regions that a renderer copies, in the order of copying. The eyes alternate.
     ///
-    /// A whole copy begins with the left eye. A split copy has only the top half (`top`) or only the bottom half. In a
-    /// split copy, renderers with an odd index begin with the right eye.
+    /// A whole copy begins with the left eye. A split copy has only the top half if `top` is true, otherwise only the
+    /// bottom half. In a split copy, renderers with an odd index begin with the right eye.
     #[must_use]
     pub fn copies(&self, renderer: usize, top: bool) -> Vec<BoundRegion> {
         let of_renderer = self.regions.iter().filter(|b| b.renderer == renderer);

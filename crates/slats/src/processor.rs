@@ -32,7 +32,7 @@ struct ProcessorState {
     newest: Option<FrameView>,
     /// Fields that are not drawn yet, on all graphics processors except the first.
     begun: VecDeque<(PeriodNumber, FrameView)>,
-    /// Number of renderers that have acknowledged their last copy since the last copy order.
+    /// Number of renderers that have reported the end of their copies since the newest copy order.
     copied: usize,
     /// The copies of the bottom regions, which wait until all top regions are copied.
     bottom: Option<Bottom>,
@@ -140,8 +140,7 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
 impl Backup {
     /// Records that a field is complete, and shows the field at the next retrace if this is the field's period.
     ///
-    /// The field counts as complete before its bottom regions are copied, because their copies are faster than the
-    /// beam.
+    /// The field counts as complete before its bottom regions are copied, because the copies are faster than the beam.
     async fn show_next(self, gp: &Gp, state: &SharedState, field: PeriodNumber) {
         {
             let state = &mut *state.borrow_mut();
@@ -391,8 +390,8 @@ impl SlatsProcessor {
         (self.config.renderers[renderer], list.words(), Body::Commands(list))
     }
 
-    /// Returns the copy commands for the top regions (`top`) or the bottom regions. If copies are not split, the
-    /// commands for the top regions also copy the bottom regions.
+    /// Returns the copy commands for the top regions if `top` is true, otherwise for the bottom regions. If copies are
+    /// not split, the commands for the top regions also copy the bottom regions.
     fn copies(&self, field: PeriodNumber, top: bool) -> Vec<(NodeId, u32, Body)> {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);

@@ -23,7 +23,7 @@ pub struct Tie<'a> {
     pub x: u32,
     /// Row of the picture, counted from the top.
     pub y: u32,
-    /// Colours of these primitives, in the order of the display list.
+    /// Colours of the nearest primitives at this pixel, in the order of the display list.
     pub colours: &'a [[u8; 3]],
 }
 

@@ -5,7 +5,7 @@ use crate::oracle::widths::{ROOT_BITS, Widths};
 use pxpl5_geometry::{GouraudSphere, SphereSetup};
 use pxpl5_wire::format::COLOUR_FRACTION_BITS;
 
-/// Number of upper bits of the square root that are multiplied for a colour.
+/// Number of upper bits of the square root from which a colour is computed.
 const COLOUR_ROOT_BITS: u32 = 8;
 const NORMAL_ROOT_BITS: u32 = 10;
 
