@@ -43,7 +43,7 @@ struct Field {
 
 type SharedFields = Rc<RefCell<SlaveFields>>;
 
-/// A cache of transformed fields, which all slaves of the simulator share.
+/// A cache of transformed fields, which the simulator shares among all slaves.
 ///
 /// All slaves hold the same display list and get the same views, so each field is computed only once. Every slave
 /// nevertheless spends the simulated time of its own TRANSFORM.

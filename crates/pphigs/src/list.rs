@@ -127,9 +127,9 @@ pub struct Share {
     pub(crate) list: Arc<DisplayList>,
     first: usize,
     step: usize,
-    /// Range of the triangles, among those of the graphics processor.
+    /// Range of this share in the list of the graphics processor's triangles.
     triangles: Range<usize>,
-    /// Range of the spheres, among those of the graphics processor.
+    /// Range of this share in the list of the graphics processor's spheres.
     spheres: Range<usize>,
 }
 

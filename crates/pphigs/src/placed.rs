@@ -85,7 +85,7 @@ impl RecentViews {
         self.named.get_or_init(find)
     }
 
-    /// Returns the structures of a view from the cache, or else from `place`.
+    /// Returns the structures of a view from the cache. If the view is not in the cache, `place` computes them.
     pub(crate) fn cached_or_placed(
         &self,
         key: ViewKey,

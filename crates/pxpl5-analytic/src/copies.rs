@@ -74,7 +74,7 @@ struct Ports<const N: usize> {
     ends: Times<N>,
 }
 
-/// Makes all copies of the renderers. Each copy takes `region` nanoseconds.
+/// Copies the regions of all renderers to the frame buffers. Each copy takes `region` nanoseconds.
 ///
 /// The renderer that is free first copies first, and for equal times the renderer with the lower index. While this
 /// order is equal on all machines, the machines are computed together.
@@ -173,7 +173,7 @@ impl<const N: usize> Ports<N> {
     }
 
     /// Makes one copy on each machine, to the right frame buffer if the mask is set, otherwise to the left. Returns the
-    /// ends.
+    /// end times.
     #[inline(always)]
     fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
         let [left, right] = self.free;

@@ -247,5 +247,5 @@ pub(crate) fn normal_value(component: i16) -> f32 {
     (i32::from(component) * SCALE) as f32 + NORMAL_HALF
 }
 
-/// Half a unit of a normal's component, which makes truncation round.
+/// Half a unit of a normal's component. Truncation after the addition of this number rounds to the nearest unit.
 pub(crate) const NORMAL_HALF: f32 = (1 << (format::NORMAL_FRACTION_BITS - 1)) as f32;

@@ -52,13 +52,14 @@ impl ScreenVertex {
     }
 }
 
-/// Rounds a component of a normal like [`screen::normal_fixed`], and converts it to the units of planes.
+/// Rounds a component of a normal like [`screen::normal_fixed`], and converts it to the fixed-point units of planes.
 #[inline(always)]
 fn snapped_component(component: f32) -> f32 {
     screen::normal_value(screen::normal_fixed(component)) - screen::NORMAL_HALF
 }
 
-/// Rounds a component of a lit colour like [`screen::colour_fixed`], and converts it to the units of planes.
+/// Rounds a component of a lit colour like [`screen::colour_fixed`], and converts it to the fixed-point units of
+/// planes.
 #[inline(always)]
 fn snapped_colour(component: f32) -> f32 {
     screen::colour_value(screen::colour_fixed(component))

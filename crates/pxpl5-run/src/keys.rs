@@ -33,7 +33,7 @@ impl fmt::Display for KeyValue {
 /// The values that a key allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyValues {
-    /// True and false.
+    /// The values true and false.
     Flag,
     /// Whole numbers from the first number to the second number, inclusive.
     Whole(u64, u64),

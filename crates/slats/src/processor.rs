@@ -30,7 +30,7 @@ const BEGIN: Word = 0x00BE_6123;
 struct ProcessorState {
     /// The newest view from the host, on the first graphics processor.
     newest: Option<FrameView>,
-    /// Fields that are not drawn yet, on all graphics processors except the first.
+    /// Fields that this graphics processor must still draw. Empty on the first graphics processor.
     begun: VecDeque<(PeriodNumber, FrameView)>,
     /// Number of renderers that have reported the end of their copies since the newest copy order.
     copied: usize,
