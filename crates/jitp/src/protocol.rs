@@ -20,7 +20,7 @@ pub(crate) enum DrawingOrder {
     Field { field: PeriodNumber, views: Vec<FrameView> },
     /// Order to draw a strip. If `view` is `None`, the strip uses the views of its field.
     Strip { field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView> },
-    /// Order to draw blocks of the random order from step `step` on.
+    /// Order to draw a batch of blocks. The first block is drawn in the step `step` of the random sequence.
     Blocks { update: PictureNumber, step: u64, view: FrameView },
     /// A tracker report from the host. The master may use all reports that the host received before `known`.
     Report { known: Time },

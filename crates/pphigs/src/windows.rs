@@ -353,7 +353,7 @@ fn make_windows(
     processor.call(&PROGRAM, "windows", &registers, BUDGET + BUDGET_OF_ENTRY * windows.len() as u64)
 }
 
-/// Executes the code that lists the messages of one window, after the messages of earlier windows.
+/// Executes the code that lists the messages of one window. In memory, the list follows the lists of earlier windows.
 fn hand_over(
     processor: &mut Processor,
     window: u32,

@@ -92,8 +92,8 @@ pub struct Estimates {
     ///
     /// The function returns `None` if no such picture will be shown, or if the formulas give no estimate.
     pub fields_needed: fn(&Experiment) -> Option<u64>,
-    /// Function that estimates the largest number of triangles that the pipeline draws in time. Returns `None` if the
-    /// formulas give no estimate.
+    /// Function that estimates how many primitives the scene can have, after decimation, so that all pictures are in
+    /// time. Returns `None` if the formulas give no estimate.
     pub triangles_in_time: fn(&Experiment) -> Option<u64>,
 }
 
@@ -260,8 +260,8 @@ impl Experiment {
         }
     }
 
-    /// Returns an estimate of the largest number of triangles that the pipeline draws in time. Returns `None` if the
-    /// pipeline has no closed form, or if the formulas give no estimate.
+    /// Returns an estimate of how many primitives the scene can have, after decimation, so that all pictures are in
+    /// time. Returns `None` if the pipeline has no closed form, or if the formulas give no estimate.
     #[must_use]
     pub fn triangles_in_time(&self) -> Option<u64> {
         (self.estimates?.triangles_in_time)(self)

@@ -22,11 +22,11 @@ use tracking::tracker::TrackerReport;
 pub struct SampledPose {
     /// Number of the view for which the pose was requested, as counted by the pipeline.
     pub number: ViewNumber,
-    /// Instant of the request. The pose depends only on reports that arrived before this instant.
+    /// Instant of the request. The pose depends only on reports that had arrived by this instant.
     pub known: Time,
-    /// Time at which the newest report was measured. `None` before the first report.
+    /// Time at which the newest used report was measured. `None` before the first report.
     pub measured_at: Option<Time>,
-    /// Time at which the newest report arrived at the host. `None` before the first report.
+    /// Time at which the newest used report arrived at the host. `None` before the first report.
     pub arrived_at: Option<Time>,
     /// Instant for which the picture is drawn, chosen by the head's [`Aim`](crate::Aim). Moving objects have their
     /// positions of this instant.

@@ -65,7 +65,7 @@ impl Jitp {
     }
 }
 
-/// Returns the settings of the firmware for a machine. Errors contain the name `pipeline`.
+/// Returns the settings of the firmware for a machine. `pipeline` is the name of the pipeline, for errors.
 pub(super) fn config(
     pipeline: &str,
     record: &Record,

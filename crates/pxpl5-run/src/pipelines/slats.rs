@@ -289,8 +289,8 @@ impl PictureRules for Slats {
     }
 }
 
-/// Number of retraces for which a late field of [`Slats::backup`] can still be shown. In this time, the display scans
-/// the lines of the field twice more.
+/// Number of further retraces at which a late field of [`Slats::backup`] can still be shown. In this time, the display
+/// scans the lines of the field twice more.
 const LATER_RETRACES: u64 = 4;
 
 #[derive(Clone, Copy, Debug, Default)]
