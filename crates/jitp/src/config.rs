@@ -29,7 +29,8 @@ pub enum Viewpoint {
     Field,
     /// Each strip of lines shows its own instant and is transformed separately.
     Strip,
-    /// Each strip shows its own instant. Its vertices are interpolated between the start and the end of the field.
+    /// Each strip shows its own instant. The vertices of a strip are interpolated between the start and the end of the
+    /// field.
     Dual(Interpolation),
 }
 

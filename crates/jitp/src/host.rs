@@ -9,8 +9,7 @@ use pxpl5_sim::Time;
 /// Sends every report of the tracker to the master. If several reports wait, only the newest report is sent
 /// ([`send_as_tracked`]).
 ///
-/// `next_report` returns the time at which the first report after a given time arrives, or `None` if no more reports
-/// follow.
+/// `next_report` returns the arrival time of the first report after a time, or `None` if no more reports follow.
 ///
 /// # Errors
 ///

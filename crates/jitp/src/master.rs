@@ -94,9 +94,9 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     /// Returns the time at which slaves must begin to transform the display list for a field, so that the first strip
     /// is ready in time.
     ///
-    /// With the timing table, this leaves 1.5 times the TRANSFORM time, because slaves also draw strips during
-    /// TRANSFORM. With i860 code, it leaves a whole field, because the time of the code is unknown in advance (pphigs's
-    /// kernels/order_rules.md).
+    /// With the timing table, the slaves have 1.5 times the TRANSFORM time, because they also draw strips during
+    /// TRANSFORM. With i860 code, the slaves have a whole field, because the time of the code is unknown in advance
+    /// (pphigs's kernels/order_rules.md).
     fn preparation_at(&self, field: PeriodNumber, viewpoint: Viewpoint, ahead: Span) -> Time {
         let first_strip = self.config.deadline(field, 0);
         if self.gp.runs_code() {

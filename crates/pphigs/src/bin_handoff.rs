@@ -1,7 +1,7 @@
 //! Work of a graphics processor that sends a region's bin. The code lists the pieces of memory that contain the
 //! commands of each message, and the ring interface then sends these pieces.
 //!
-//! The code is kernels/token.s. It reads the bins that the code of TRANSFORM has filled, and does not move the
+//! The code is kernels/token.s. This code reads the bins that the code of TRANSFORM has filled, and does not move the
 //! commands. In the timing table, each bin entry takes `token_entry_ns`.
 
 use crate::commands::RegionEnvelope;

@@ -1,4 +1,4 @@
-//! CPU work of TRANSFORM. Its time comes from the timing table or from i860 code.
+//! CPU work of TRANSFORM. The time of the work comes from the timing table or from i860 code.
 //!
 //! [`pxpl5_geometry::kernel`] has the code for triangles and [`pxpl5_geometry::sphere_kernel`] the code for spheres.
 //! Each program is called once for each structure of the display list. All triangles come before the spheres, in the

@@ -9,13 +9,13 @@ use pxpl5_wire::{Body, NodeId, ViewNumber, Word};
 /// A message is sent for each report, when the previous message has been accepted. If several reports have arrived in
 /// the meantime, only the newest report is sent.
 ///
-/// The first message is sent at `first`, if there is such a time. `next_report` returns the time at which the first
-/// report after a given time arrives, or `None` if no more reports follow. `message` makes the words of a message from
-/// its number and a time. The words use only reports that the host has received by that time.
+/// The first message is sent at `first`, if there is such a time. `next_report` returns the arrival time of the first
+/// report after a time, or `None` if no more reports follow. `message` makes the words of a message from its number and
+/// a time. The words use only reports that the host has received by that time.
 ///
 /// # Errors
 ///
-/// The function never returns an error. Its return type is the return type of all programs.
+/// The function never returns an error. The return type is the same for all programs.
 pub async fn send_as_tracked(
     gp: Gp,
     receiver: NodeId,

@@ -385,7 +385,8 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     }
 }
 
-/// Returns the source of the code that prepares a view (kernels/place.s). Its labels are `edit`, `reset` and `place`.
+/// Returns the source of the code that prepares a view (kernels/place.s). The labels of the source are `edit`, `reset`
+/// and `place`.
 ///
 /// The code at `place` writes all parameters that depend on a view or a light, for [`Kernel::parameters`] and for
 /// [`crate::sphere_kernel`].

@@ -36,8 +36,8 @@ impl Outline {
         [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]
     }
 
-    /// Returns the expression of an edge. Its value at a pixel is twice the area of the triangle (from, to, pixel
-    /// centre), in 1/16 square px, rounded down.
+    /// Returns the expression of an edge. The value of the expression at a pixel is twice the area of the triangle
+    /// (from, to, pixel centre), in 1/16 square px, rounded down.
     ///
     /// In 1/256 square px, the value at pixel (x, y) is `16 (dx y - dy x) + k`. This value is at least 0 exactly if `dx
     /// y - dy x + floor(k / 16)` is at least 0, so rounding changes no covered pixel. If a pixel's centre is on the

@@ -1,4 +1,5 @@
-//! Planes: linear expressions of the pixel position that pass through given values at the three corners of a triangle.
+//! Planes: linear expressions of the pixel position that pass through one value at each of the three corners of a
+//! triangle.
 //!
 //! Slopes are rounded to integers, so the error grows with the distance (dx, dy) from a reference pixel. The error is
 //! at most `(|dx| + |dy|) (1/2 + 2^-15) + 1` in the last bit. Rounding the slopes adds 1/2 per pixel of distance.

@@ -161,8 +161,8 @@ impl Outline {
         ]
     }
 
-    /// Returns the pixel in the middle of the visible part of the triangle, at which planes are most exact. Its y
-    /// counts frame lines.
+    /// Returns the pixel in the middle of the visible part of the triangle, at which planes are most exact. The y of
+    /// this pixel counts frame lines.
     #[inline(always)]
     fn middle(&self, viewport: &Viewport) -> [i32; 2] {
         [middle_pixel(&self.x, viewport.grid().width), middle_pixel(&self.y, viewport.frame_lines())]

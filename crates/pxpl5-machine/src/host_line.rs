@@ -6,7 +6,7 @@ use std::fmt::Debug;
 
 /// A connection from the host to the first display that bypasses the ring, for example for orientations of the head.
 ///
-/// Its messages are never delayed by messages on the ring.
+/// Messages on the ring never delay messages of a host line.
 pub trait HostLine: Debug {
     /// Returns the time of the first arrival after the instant `after`, or `None` if no more messages follow.
     fn next(&self, after: Time) -> Option<Time>;

@@ -21,8 +21,8 @@ impl Assembled {
         observation.records() + traffic + self.head.as_ref().map_or(0, |head| head.records())
     }
 
-    /// Discards the machine's observations before `instant` and the requested head poses before `of_head`. Their
-    /// results must already be part of the statistics of the run.
+    /// Discards the machine's observations before `instant` and the requested head poses before `of_head`. The results
+    /// of discarded records must already be part of the statistics of the run.
     pub(crate) fn discard_before(&mut self, instant: Time, of_head: Time) {
         self.machine.discard_before(instant);
         self.head.iter().for_each(|head| head.discard_before(of_head));

@@ -91,7 +91,7 @@ impl DryRunObserver {
     /// Returns each new picture with its successor, because the successor ends the display time of the picture.
     ///
     /// If the display has several memories, only pictures in the first memory are returned. This memory has the highest
-    /// update rate. Its newest picture is returned in a later call, when the successor is known.
+    /// update rate. The newest picture of the first memory is returned in a later call, when the successor is known.
     fn timed(&mut self, results: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
         let notes = results.notes.all();
         // Leave out the updates of all memories except the first.

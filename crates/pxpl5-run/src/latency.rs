@@ -1,4 +1,4 @@
-//! The parts of a picture's latency. Their sum is the latency, to the picosecond.
+//! The parts of a picture's latency. The sum of the parts is the latency, to the picosecond.
 //!
 //! The parts are measured on the eye that is drawn last, because this eye decides when the picture can be shown. If two
 //! stages overlap, the later stage counts from the end of the earlier stage. A stage that a pipeline does not have

@@ -1,4 +1,5 @@
-//! Registry of pipelines and displays, in which commands and experiment files find them by name.
+//! Registry of pipelines and displays. Commands and experiment files find a pipeline or a display in the registry by
+//! name.
 
 use crate::error::ExperimentError;
 use crate::experiment::{Estimates, Experiment};

@@ -69,8 +69,8 @@ impl Summary {
 /// duration of a display period in milliseconds.
 #[must_use]
 pub fn retraces(latency_ms: f64, field_ms: f64) -> f64 {
-    /// Tolerance in display periods. Without it, rounding errors would change the result for a latency of a whole
-    /// number of periods.
+    /// Tolerance in display periods. Without this tolerance, rounding errors would change the result for a latency of a
+    /// whole number of periods.
     const ROUNDING: f64 = 1e-9;
     (latency_ms / field_ms - ROUNDING).ceil()
 }

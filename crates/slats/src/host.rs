@@ -11,8 +11,8 @@ use pxpl5_wire::ViewNumber;
 /// The host sends the first message at the start of the run, and then a message for every report of the tracker
 /// ([`send_as_tracked`]). The graphics processor uses the newest view when it begins a field.
 ///
-/// `next_report` returns the time at which the first report after a given time arrives. `view_of` returns the view
-/// whose pose is sampled at a given time.
+/// `next_report` returns the arrival time of the first report after a time. `view_of` returns the view for a number and
+/// for the time at which the pose is sampled.
 ///
 /// # Errors
 ///

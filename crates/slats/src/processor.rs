@@ -51,7 +51,8 @@ struct Bottom {
     not_before: PeriodNumber,
     /// Number of renderers that must acknowledge the copies of their top regions before the chain starts.
     copiers: usize,
-    /// True if one of the board's two programs is about to start the chain. The other program must then not start it.
+    /// True if one of the board's two programs is about to start the chain. The other program must then not start the
+    /// chain.
     is_taken: bool,
 }
 
@@ -318,7 +319,8 @@ impl SlatsProcessor {
         }
     }
 
-    /// Returns true if there is only one graphics processor. Its first clump then also clears the regions.
+    /// Returns true if there is only one graphics processor. The first clump of a single processor also clears the
+    /// regions.
     fn is_alone(&self) -> bool {
         self.config.processors.len() == 1
     }

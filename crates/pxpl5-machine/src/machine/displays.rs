@@ -42,8 +42,8 @@ impl Machine {
     }
 }
 
-/// Records that port `port` of a surface shows buffer `buffer` from period `tick` on. Also signals the swap to the
-/// first graphics processor.
+/// Records that port `port` of a surface shows buffer `buffer` from the display period `tick` on. Also signals the swap
+/// to the first graphics processor.
 fn note_swap(
     observation: &mut Observation,
     queue: &mut EventQueue<Event>,
