@@ -5,8 +5,8 @@ use crate::decoded::Decoded;
 use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
-/// The effect of a core instruction: load, store or integer operation. Branches and control-register moves have no
-/// special effect, so the processor executes them from the decoded instruction.
+/// The effect of a core instruction: a load, a store or an integer operation. Branches and control-register moves have
+/// no effect of this type, because the processor executes them from the decoded instruction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CoreAction {
     pub(crate) does: Core,
@@ -23,7 +23,6 @@ pub(crate) struct CoreAction {
     pub(crate) immediate: u32,
 }
 
-/// The kinds of effect that a core instruction can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Core {
     Nothing,
@@ -98,7 +97,6 @@ impl CoreAction {
     }
 }
 
-/// The effect of a floating-point instruction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FloatingAction {
     pub(crate) does: Floating,
@@ -107,9 +105,8 @@ pub(crate) struct FloatingAction {
     pub(crate) second: u8,
 }
 
-/// The kinds of effect that a floating-point instruction can have. Kinds that read single-precision operands come
-/// first, then kinds that read double-precision operands. If a source can be the result that leaves a pipe in the same
-/// clock, the kind is [`Floating::Any`].
+/// The kinds of effect that a floating-point instruction can have. The order is: kinds with single-precision operands,
+/// kinds with double-precision operands, then [`Floating::Any`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Floating {
     /// Pipelined multiplication of two single-precision operands.
@@ -132,8 +129,8 @@ pub(crate) enum Floating {
     SubtractDoubles,
     /// Any other operation that reads two double-precision operands.
     Doubles,
-    /// Any operation with mixed precisions, or with a source that can be the result that leaves a pipe in the same
-    /// clock.
+    /// Any operation with mixed precisions, or an operation that can read a result in the clock in which the result
+    /// leaves a pipe.
     Any,
     Nothing,
 }
@@ -190,7 +187,7 @@ pub(crate) struct Action {
 }
 
 impl Action {
-    /// Chooses the effects of a single instruction, or of a pair of instructions if `second` has the core half.
+    /// Chooses the effects of a single instruction, or of a pair whose core half is `second`.
     pub(crate) fn new(number: u8, first: &Decoded, second: Option<&Decoded>) -> Action {
         // Instructions without any effect get no action.
         let floating = Some(first).filter(|first| first.is_floating() && !first.is_idle());

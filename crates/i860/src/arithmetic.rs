@@ -131,7 +131,7 @@ pub(crate) fn to_integer(rounded: f64) -> u32 {
     rounded as i32 as u32
 }
 
-/// Returns the low 53 bits of the product of two significands, like `fmlow`.
+/// Returns the low 53 bits of the product of two significands, as the instruction `fmlow` does.
 pub(crate) fn multiply_low(a: u64, b: u64) -> u64 {
     const FRACTION: u64 = (1 << 53) - 1;
     (a & FRACTION).wrapping_mul(b & FRACTION) & FRACTION

@@ -144,7 +144,6 @@ fn word_of(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
 }
 
-/// The instruction or data that a source line puts into memory.
 #[derive(Clone, Debug)]
 enum Item {
     Instruction {
@@ -167,7 +166,6 @@ enum Item {
 }
 
 impl Item {
-    /// Returns the type of the data, or `None` for an instruction.
     fn data_kind(&self) -> Option<DataKind> {
         match self {
             Self::Instruction { .. } => None,

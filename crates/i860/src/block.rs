@@ -101,14 +101,13 @@ fn is_store(op: Op) -> bool {
 
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 
-/// Initial value of [`Block::held_in`], which differs from the numbers of all states of the instruction cache.
+/// Initial value of [`Block::held_in`]. No state of the instruction cache has this number.
 const NEVER: u64 = u64::MAX;
 
 /// A basic block of instructions and pairs. A block ends at a branch, at an instruction that cannot be executed, or at
 /// the greatest length.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// Address at which the block begins.
     pub(crate) pc: u32,
     /// Pairing mode (single instructions or pairs) at the start of the block.
     mode: Mode,
@@ -125,8 +124,7 @@ pub(crate) struct Block {
     pub(crate) count: usize,
     /// Number of instructions of the block. A pair counts as two instructions. The delay slot counts as well.
     pub(crate) instructions: u64,
-    /// Number of the latest cache state in which the instruction cache held the whole block. The cache numbers its
-    /// states.
+    /// Number of the latest state of the instruction cache in which the cache held the whole block.
     held_in: u64,
     /// Effects of the instructions and pairs, in the order of execution. The effects of the delay slot come last.
     pub(crate) actions: Box<[Action]>,
@@ -156,7 +154,6 @@ impl Access {
     }
 }
 
-/// An instruction or pair that accesses data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AccessingUnit {
     pub(crate) access: Access,
@@ -181,7 +178,6 @@ impl AccessingUnit {
     }
 }
 
-/// Returns, for each cache line of a block, the index of the first instruction or pair on the line.
 fn first_on_lines(units: &[Unit]) -> Box<[u8]> {
     let mut line = None;
     let lines = (0..).zip(units);
@@ -231,7 +227,6 @@ impl Block {
         })
     }
 
-    /// Returns the instructions and pairs of the block that were executed.
     #[inline]
     pub(crate) fn executed(&self, execution: Execution) -> &[Unit] {
         self.units.get(..execution.units + usize::from(execution.slot)).unwrap_or_default()
@@ -254,8 +249,8 @@ impl Block {
         &self.units[number]
     }
 
-    /// Returns an address on the cache line of instruction or pair `number`, and the index of the first instruction or
-    /// pair after this line.
+    /// Returns an address on the cache line that holds instruction or pair `number`, and the index of the first
+    /// instruction or pair after this line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         // Find the last line that begins at or before this instruction.
@@ -280,7 +275,6 @@ impl Block {
         held
     }
 
-    /// Returns true if the block begins at address `pc` in pairing mode `mode`.
     #[inline]
     pub(crate) fn begins(&self, pc: u32, mode: Mode) -> bool {
         self.pc == pc && self.mode == mode

@@ -25,7 +25,7 @@ const fn sets(cache_bytes: u64) -> usize {
     (cache_bytes / ChipSizes::PAPERS.line_bytes) as usize / CACHE_WAYS
 }
 
-/// Tag arrays of the instruction cache and of the data cache.
+/// Tag array of the instruction cache.
 pub(crate) type InstructionTags = CacheTags<{ sets(ChipSizes::PAPERS.instruction_cache_bytes) }>;
 pub(crate) type DataTags = CacheTags<{ sets(ChipSizes::PAPERS.data_cache_bytes) }>;
 
@@ -40,8 +40,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Raises the number of changes above `latest`. All later states of the array then have other numbers than the
-    /// states up to `latest`.
+    /// Gives numbers above `latest` to the current state of the array and to all later states.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }
@@ -51,7 +50,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         (address / LINE_BYTES) as usize % SETS
     }
 
-    /// Returns the tag of the cache line of `address` for the case that the line is clean.
+    /// Returns the tag that the cache line of `address` has while the line is clean.
     #[inline]
     fn tag(address: u32) -> u32 {
         address & !(LINE_BYTES - 1) | VALID

@@ -26,8 +26,7 @@ const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 pub(crate) struct Accesses {
     all: [u32; Accesses::MOST],
     count: usize,
-    /// True if the data cache has held the data of every access of the block so far. False if an access was not
-    /// checked.
+    /// True if every access of the block so far has hit the data cache. False if an access was not checked.
     pub(crate) all_held: bool,
 }
 
@@ -122,8 +121,8 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the table of numbered scoreboard states with `numbers`, the table of a shared store of decoded
-    /// programs. The memoized clocks in the store contain numbers of this table.
+    /// Exchanges the numbering of scoreboard states with `numbers`, the numbering in a shared store of decoded
+    /// programs. The memoized clocks in the store refer to scoreboard states by these numbers.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {

@@ -28,7 +28,6 @@ impl Code {
         Code { blocks: Box::default(), words: CodeMap::new(0..0), changed: false }
     }
 
-    /// Makes an empty store of decoded blocks for the code of a program.
     pub(crate) fn of(program: &Program) -> Code {
         let end = program.base.saturating_add(program.bytes.len() as u32);
         Code { words: CodeMap::new(program.base..end), ..Code::new() }
@@ -41,7 +40,6 @@ impl Code {
         self.blocks.get_mut(place(pc))?.take().filter(|block| block.begins(pc, mode))
     }
 
-    /// Stores a decoded block, which begins at address `pc`.
     #[inline]
     pub(crate) fn put(&mut self, pc: u32, block: Box<Block>) {
         match self.blocks.get_mut(place(pc)) {

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-/// The set of memory words that were decoded. With this set, the processor finds out if a store can have changed
-/// decoded code.
+/// The set of memory words that were decoded. The processor uses this set to detect stores that can change decoded
+/// code.
 #[derive(Debug)]
 pub(crate) struct CodeMap {
     /// Address range of the assembled program, or an empty range without a program.
@@ -24,7 +24,6 @@ impl CodeMap {
         CodeMap { program, is_stored_to: false, range, words: Box::default() }
     }
 
-    /// Returns the lowest and the highest address in a range.
     fn ends(program: &Range<u32>) -> (u32, u32) {
         if program.is_empty() { (u32::MAX, 0) } else { (program.start, program.end - 1) }
     }

@@ -78,8 +78,8 @@ impl Common {
         self.stand_still(until, Freeze::InstructionMiss);
     }
 
-    /// Freezes the processor for the additional clocks of row 1b of the freeze table: an instruction-cache miss begins
-    /// during a line fill of the data cache.
+    /// Freezes the processor for the additional clocks of an instruction-cache miss during a line fill of the data
+    /// cache (row 1b of the freeze table).
     pub(crate) fn await_instruction_behind_data(&mut self) {
         let until = self.now + self.costs.clocks(Freeze::InstructionMissBehindData);
         self.stand_still(until, Freeze::InstructionMissBehindData);
@@ -99,7 +99,7 @@ impl Common {
         }
     }
 
-    /// Freezes the processor for the constant part of the delay in a row of the freeze table.
+    /// Freezes the processor for the constant part of the delay in row `why` of the freeze table.
     #[inline]
     pub(crate) fn charge(&mut self, why: Freeze) {
         self.freeze_until(self.now + self.costs.clocks(why), why);

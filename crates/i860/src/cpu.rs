@@ -28,7 +28,6 @@ pub struct Cpu {
     pub(crate) seeds: SeedTable,
     /// Pairing mode (single instructions or pairs) to use after the delay slot. A return from a trap sets this mode.
     pub(crate) mode_after_slot: Option<Mode>,
-    /// Addresses of the data that the current block has loaded or stored.
     pub(crate) accesses: Accesses,
     /// Cause of the trap that the current instruction or pair has raised. `None` if no trap was raised.
     cause: Option<TrapCause>,
@@ -262,7 +261,6 @@ impl Cpu {
         }
     }
 
-    /// Executes the delay slot of a taken branch.
     #[inline]
     fn slot<B: Bus>(&mut self, block: &Block, target: u32, execution: &mut Execution, bus: &mut B) {
         if block.wrong_slot.is_some() {

@@ -29,9 +29,11 @@ impl DataCache {
         self.0.holds(address)
     }
 
-    /// Finds the first access that is not a cache hit, from access `from` on, before instruction or pair `limit`.
-    /// Returns the index of this access and the index of its instruction or pair. If all these accesses hit, the
-    /// function returns the index of the next access and `None`. Stores that hit mark their lines dirty.
+    /// Finds the first access that misses the cache, from access index `from` on, before instruction or pair `limit`.
+    /// An access that always goes to the bus counts as a miss. Stores that hit mark their lines dirty.
+    ///
+    /// Returns the indices of the missing access and of its instruction or pair. Without a miss, returns the index of
+    /// the first access that was not checked, and `None`.
     #[inline]
     pub(crate) fn held(
         &mut self,

@@ -17,7 +17,7 @@ pub(crate) mod hazard {
     pub(crate) const COUNT: usize = 9;
 }
 
-/// Bits for the classes of hazards that an instruction causes for later instructions.
+/// Bits for the classes of hazards that an instruction can cause for later instructions.
 pub(crate) mod arm {
     pub(crate) const LOAD: u16 = 1 << 0;
     pub(crate) const LONG_LOAD: u16 = 1 << 1;
@@ -36,7 +36,6 @@ pub(crate) mod arm {
 /// Register number of an absent operand.
 pub(crate) const NONE: u8 = 0xFF;
 
-/// A decoded instruction with its properties for the timing model.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Decoded {
     pub(crate) reads: u64,
@@ -102,15 +101,15 @@ impl Decoded {
         self.marks & (mark::ACCESSES | mark::BRANCH) != 0
     }
 
-    /// Returns two booleans, for the first and the second source. A boolean is true if this source is in double
-    /// precision and therefore takes a pair of registers.
+    /// Returns, for the first and the second source, true if this source is in double precision. Such a source takes a
+    /// pair of registers.
     #[inline]
     pub(crate) fn source_widths(&self) -> (bool, bool) {
         (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
     }
 
-    /// Returns true if a source register of a pipelined operation can be its destination register. The operation then
-    /// reads the result that leaves the pipe.
+    /// Returns true if a pipelined operation can have the same register as source and destination. The operation then
+    /// reads the result that leaves the pipe in the same clock.
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
         self.marks & mark::MAY_BYPASS != 0

@@ -16,7 +16,7 @@ pub struct DecodedPrograms {
     pub(crate) numbers: Box<Numbers>,
     /// Programs with their decoded code. The code is `None` while a processor uses it.
     codes: Vec<(Arc<Program>, Option<Code>)>,
-    /// Highest number of a state of an instruction cache, among all processors that have used the store.
+    /// Highest number that a state of an instruction cache has had, in any processor that has used the store.
     pub(crate) cache_states: u64,
 }
 
@@ -49,7 +49,6 @@ impl DecodedPrograms {
         self.place(program).take().unwrap_or_else(|| Code::of(program))
     }
 
-    /// Puts the decoded code of a program back into the store.
     pub(crate) fn put(&mut self, program: &Arc<Program>, code: Code) {
         *self.place(program) = Some(code);
     }

@@ -24,12 +24,11 @@ impl Transfer {
     }
 }
 
-/// State of the external bus and the memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Dram {
     timing: DramTiming,
-    /// First clock at which a read of the open DRAM row can start. Such a read overlaps with the data of the previous
-    /// read.
+    /// First clock at which a read of the open DRAM row can start. The data of the previous read can still arrive at
+    /// this clock.
     free: u64,
     /// Clock at which the transfer of the data of all requests ends. A write, or a request to another DRAM row, starts
     /// at this clock or later.
@@ -70,8 +69,8 @@ impl Dram {
         self.data_end.max(self.free)
     }
 
-    /// Adds the times of the refreshes and of the transfers of other bus masters that take place before a request at
-    /// clock `now`.
+    /// Adds the time of a refresh and of a transfer by another bus master, if they are due before a request at clock
+    /// `now`. Of several refreshes or transfers that are due, only the latest takes time (assumed).
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [

@@ -74,8 +74,8 @@ const fn multiplier_for_adder(source: Source) -> Source {
     }
 }
 
-/// Returns two booleans, for the first and the second source. A boolean is true if this source is in double precision
-/// and therefore takes a pair of registers.
+/// Returns, for the first and the second source, true if this source is in double precision. Such a source takes a pair
+/// of registers.
 pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     let s = i.has(Flags::SOURCE_DOUBLE);
     let r = i.has(Flags::RESULT_DOUBLE);

@@ -5,10 +5,8 @@
 pub(crate) struct Execution {
     /// Number of instructions or pairs that were executed, without the delay slot.
     pub(crate) units: usize,
-    /// True if the delay slot was executed.
     pub(crate) slot: bool,
     /// True if the branch at the end of the block was taken.
     pub(crate) taken: bool,
-    /// True if the last executed instruction or pair trapped.
     pub(crate) trapped: bool,
 }

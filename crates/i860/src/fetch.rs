@@ -31,7 +31,6 @@ impl Fetch {
         Fetch { cache: InstructionTags::new(), line: NO_LINE, arrivals: [0; BEATS as usize], first: 0 }
     }
 
-    /// Returns the number of the cache line of the last fetch.
     #[inline]
     pub(crate) fn line(&self) -> u32 {
         self.line
@@ -63,8 +62,8 @@ impl Fetch {
         ArrivingLine { clocks, first: if clocks == 0 { 0 } else { self.first } }
     }
 
-    /// Makes all later states of the instruction cache have numbers above `latest`, so that states of different
-    /// processors have different numbers.
+    /// Gives all later states of the instruction cache numbers above `latest`, so that states of different processors
+    /// have different numbers.
     pub(crate) fn number_states_from(&mut self, latest: u64) {
         self.cache.number_changes_from(latest);
     }
@@ -74,7 +73,6 @@ impl Fetch {
         self.cache.changes()
     }
 
-    /// Returns true if the instruction cache holds all cache lines of the block.
     #[inline]
     pub(crate) fn holds(&self, block: &mut Block) -> bool {
         block.is_held(&self.cache)

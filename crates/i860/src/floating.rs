@@ -10,8 +10,8 @@ use crate::operands::{Operands, last_product};
 use crate::state::{PipeStage, State, fsr, psr};
 
 impl Cpu {
-    /// Executes a floating-point instruction, alone or as half of a pair. The caller has already read the operands
-    /// `from`.
+    /// Executes a floating-point instruction, alone or as half of a pair. `from` holds the operands, which were already
+    /// read.
     #[inline(always)]
     pub(crate) fn floating<'a>(&mut self, action: &FloatingAction, unit: impl Fn() -> &'a Unit, from: Operands) {
         use Operation::{Add, Multiply, Subtract};

@@ -10,8 +10,8 @@ use pxpl5_sim::parameters::{ParameterInfo, ParameterTable};
 pub struct FreezeRow {
     /// Name of the row in Rust code.
     pub id: Freeze,
-    /// Number of the row in Intel's list of instruction timings, quoted from memory. A letter follows the number if a
-    /// row of Intel's list has several delays.
+    /// Number of the row in Intel's list of instruction timings, as the authors remember the list. A letter follows the
+    /// number if a row of Intel's list has several delays.
     pub number: &'static str,
     /// Description of the condition under which the processor stops issuing instructions.
     pub condition: &'static str,

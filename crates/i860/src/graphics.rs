@@ -5,8 +5,8 @@ use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::Operands;
 use crate::state::PipeStage;
 
-/// Data of the instruction faddp for each pixel size psr.PS. The mask selects the bits that faddp copies into the
-/// register MERGE. The number is the count of bits by which faddp first shifts MERGE.
+/// Mask and shift of the instruction faddp, for each pixel size psr.PS. The instruction first shifts the register MERGE
+/// right by the shift. Then it copies the bits of the sum that the mask selects into MERGE.
 const PIXEL_MERGE: [(u64, u32); 3] =
     [(0xFF00_FF00_FF00_FF00, 8), (0xFC00_FC00_FC00_FC00, 6), (0xFF00_0000_FF00_0000, 8)];
 

@@ -20,8 +20,7 @@ pub enum Op {
     Fld,
     /// `fst`: stores one, two or four floating-point registers.
     Fst,
-    /// `pfld`: pipelined load. The destination register receives the data that a `pfld` three pipelined loads earlier
-    /// has requested.
+    /// `pfld`: pipelined load. The destination register receives the data of the third previous `pfld`.
     Pfld,
     /// `pst`: stores the pixels whose bits in psr.PM are set.
     Pst,

@@ -6,7 +6,6 @@ use crate::instruction::Op;
 use crate::state::{dirbase, epsr, psr};
 
 impl Cpu {
-    /// Executes arithmetic operations, logical operations and shifts.
     #[inline(always)]
     pub(crate) fn integer(&mut self, action: &CoreAction) {
         let a = action.immediate.wrapping_add(self.state.r(action.first));

@@ -55,7 +55,7 @@
 //! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte lines
 //! and pseudo-random replacement. A write miss allocates no line. The TLB has 64 entries.
 //!
-//! All rows are *assumed*. Their numbers are quoted from memory from Intel's list of instruction timings. Tests compare
+//! All rows are *assumed*. They repeat Intel's list of instruction timings as the authors remember it. Tests compare
 //! the model with published figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, and about 48
 //! clocks for a square root. One published figure is a tree-traversal loop of 117 instructions in 106 clocks. The
 //! published description is not sufficient to write the same code. The test runs a loop of the same shape (pairs, odd
@@ -67,9 +67,10 @@
 //! slot. The processor executes a block, and the clock then counts its time.
 //!
 //! A *run* is a part of a block whose instructions and data are all in the caches. A run uses neither the bus nor the
-//! queues nor the replacement sequence. The clocks of a run depend only on the remaining waits of earlier instructions,
-//! on the rest of an arriving instruction line, and on taken branches and traps. The model memoizes these clocks and
-//! reuses them, like FastSim (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization on.
+//! queues nor the replacement sequence. The clocks of a run depend only on three things: the remaining waits of earlier
+//! instructions, the rest of an arriving instruction line, and taken branches and traps. The model memoizes these
+//! clocks and reuses them, like FastSim (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization
+//! on.
 //!
 //! A block is one run, or several runs separated by accesses that leave the cache. The model counts these accesses, and
 //! instructions after a wait of more than 15 clocks, one by one. A block that is not entirely in the instruction cache

@@ -1,5 +1,5 @@
-//! The pipe of pipelined loads (`pfld`). The data of a `pfld` bypass the cache and reach a register when the third
-//! later `pfld` executes.
+//! The pipe of pipelined loads (`pfld`). The data of a `pfld` bypass the cache. The third `pfld` after this load writes
+//! the data to a register.
 
 use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};

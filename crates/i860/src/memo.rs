@@ -46,10 +46,10 @@ pub(crate) struct Numbers {
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard state, if the latest clocks were memoized clocks. `None` means that the
+    /// Number of the current scoreboard state, if the latest clocks were reused from the memo. `None` means that the
     /// [`Scoreboard`] itself holds the state.
     present: Option<Number>,
-    /// Number of executed instructions whose clocks were memoized clocks of an earlier execution.
+    /// Number of executed instructions whose clocks were reused from an earlier execution.
     pub(crate) instructions: u64,
 }
 
@@ -58,7 +58,6 @@ impl Memo {
         Memo { numbers: Box::default(), present: None, instructions: 0 }
     }
 
-    /// Returns the number of the current scoreboard state. `None` means that the [`Scoreboard`] itself holds the state.
     #[inline]
     pub(crate) fn present(&self) -> Option<Number> {
         self.present
@@ -86,7 +85,7 @@ impl Memo {
         Some(number)
     }
 
-    /// Makes the scoreboard state after the memoized run `remembered` the current state. A run is a part of a block.
+    /// Sets the current scoreboard state to the state after the memoized run `remembered`, which is a part of a block.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
@@ -118,10 +117,9 @@ pub(crate) struct ArrivingLine {
 pub(crate) struct Run(u64);
 
 impl Run {
-    /// Makes the key of a run (a part of a block). `entry` is the number of the scoreboard state before the run. `from`
-    /// and `to` are the first and the last position in the block. `taken` is true if the branch was taken, and
-    /// `trapped` if the last instruction trapped. `continues` is true if the first fetch is from a cache line that is
-    /// still arriving.
+    /// Makes the key of a run, which is the part of a block from position `from` to position `to`. `entry` is the
+    /// number of the scoreboard state before the run. `taken` is true if the branch was taken, and `trapped` if the
+    /// last instruction trapped. `continues` is true if the first fetch is from a cache line that is still arriving.
     #[inline]
     pub(crate) fn new(entry: Number, [from, to]: [usize; 2], [taken, trapped, continues]: [bool; 3]) -> Run {
         let flags = u64::from(taken) | u64::from(trapped) << 1 | u64::from(continues) << 2;
@@ -186,9 +184,8 @@ pub(crate) struct RememberedClocks {
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,
-    /// Number of the cache line from which the last fetch of the run came. A run is a part of a block.
+    /// Number of the cache line of the last fetch in the run (a part of a block).
     pub(crate) line: u32,
-    /// Clocks of delay in the run (a part of a block), by cause.
     pub(crate) waited: WaitedClocks,
 }
 

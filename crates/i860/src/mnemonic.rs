@@ -163,7 +163,7 @@ pub(crate) fn templates() -> &'static BTreeMap<String, Instruction> {
     })
 }
 
-/// Iterates over words that cover every form of instruction: all opcodes, sizes, escapes and floating-point operations.
+/// Iterates over words that cover every form of instruction: all opcodes, operand sizes and floating-point operations.
 fn every_word() -> impl Iterator<Item = u32> {
     let floating = (0..2048u32).filter(|low| low & 0x200 == 0).map(|low| 0x12 << 26 | low);
     let core = (0..64u32).filter(|op| *op != 0x12).flat_map(|op| (0..8).map(move |low| op << 26 | low));

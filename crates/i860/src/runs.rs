@@ -21,11 +21,8 @@ const ISSUED: usize = 2;
 /// The progress of the clock in a block: the executed part, and the position up to which clocks are counted.
 struct Course<'a> {
     execution: Execution,
-    /// Number of instructions or pairs that were executed.
     units: usize,
-    /// Index of the block's last instruction or pair.
     last: usize,
-    /// Addresses of all data accesses of the block.
     accesses: &'a [u32],
     /// Number of data accesses whose clocks were counted so far.
     accessed: usize,
@@ -34,9 +31,9 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Returns three flags for the key of a run (a part of a block) that ends at position `to`. The first flag is true
-    /// if the branch at the end was taken, the second if the last instruction trapped. The third flag (`continues`) is
-    /// true if the first fetch is from a cache line that is still arriving.
+    /// Returns three flags for the key of a run, which is the part of a block up to position `to`. The flags state if
+    /// the branch at the end was taken, if the last instruction trapped, and the value `continues`. The value is true
+    /// if the first fetch is from a cache line that is still arriving.
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;
@@ -89,8 +86,6 @@ impl Clock {
         }
     }
 
-    /// Returns the number of the current scoreboard state. A new state gets a new number, or `None` if no number is
-    /// free.
     #[inline]
     fn number(&mut self) -> Option<Number> {
         let memo = self.memo.as_mut()?;

@@ -6,10 +6,11 @@ use crate::freeze::Costs;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::timing::{Config, FREEZES, Freeze};
 
-/// Register number that differs from all source registers and from `NONE`, the number of an absent operand.
+/// Value of `last_result` while no result can delay a multiplication. No source register has this number, and it
+/// differs from `NONE`, the number of an absent operand.
 const NO_RESULT: u8 = 0xFE;
 
-/// A delay that a hazard causes: the clock at which the delay ends, and the row of the freeze table that causes it.
+/// A delay that a hazard causes: the clock at which the delay ends, and the row of the freeze table with the cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Wait {
     pub(crate) until: u64,
@@ -18,8 +19,8 @@ pub(crate) struct Wait {
 
 pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 
-/// First value of [`Left::place`] that denotes a hazard. Lower values denote registers. The highest value denotes the
-/// last floating-point result.
+/// First value of [`Left::place`] that stands for a hazard. Lower values are register numbers. The highest value stands
+/// for the last floating-point result.
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 
@@ -89,7 +90,7 @@ pub(crate) struct Scoreboard {
     scalar_double: bool,
     graphics_result: u64,
     stored: u64,
-    /// A clock at which all waits in the scoreboard have ended.
+    /// A clock by which all waits in the scoreboard have ended.
     latest: u64,
 }
 

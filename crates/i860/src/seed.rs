@@ -102,7 +102,8 @@ impl SeedTable {
     }
 }
 
-/// Returns `result`, or a quiet NaN if `result` is NaN, as for all floating-point operations of the model.
+/// Returns `result`, or a quiet NaN if `result` is NaN. The quiet NaN comes from `operand` if `operand` is NaN,
+/// otherwise it is the default NaN.
 fn quiet(operand: u64, result: u64) -> u64 {
     match (f64::from_bits(result).is_nan(), f64::from_bits(operand).is_nan()) {
         (true, true) => operand | 0x0008_0000_0000_0000,

@@ -6,7 +6,7 @@ pub mod psr {
     pub const BR: u32 = 1 << 0;
     /// BW: break on data write.
     pub const BW: u32 = 1 << 1;
-    /// CC: condition code, set by compares, sums and logical operations.
+    /// CC: condition code, set by compares, additions, subtractions and logical operations.
     pub const CC: u32 = 1 << 2;
     /// LCC: loop condition code, tested by `bla`.
     pub const LCC: u32 = 1 << 3;
@@ -263,7 +263,6 @@ impl State {
         self.psr = self.psr & !psr::PM | mask << psr::PM_SHIFT;
     }
 
-    /// Returns the pixel size psr.PS: 0, 1, 2 for 8, 16, 32 bits. The reserved value 3 counts as 2.
     pub(crate) fn pixel_size(&self) -> u32 {
         ((self.psr & psr::PS) >> psr::PS_SHIFT).min(2)
     }

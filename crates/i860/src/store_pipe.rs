@@ -36,7 +36,6 @@ impl StorePipe {
         }
     }
 
-    /// Starts to write a cache line back to memory at clock `from`.
     pub(crate) fn write_back(&mut self, from: u64, address: u32, common: &mut Common) {
         self.write_back_end = common.bus.write(from, address, LINE_BEATS).last;
     }

@@ -1,14 +1,15 @@
 //! All constants of the timing model.
 //!
 //! Clocks are processor clocks: 25 ns at 40 MHz. *Intel's list* means the table of instruction timings in the
-//! programmer's manual, quoted from memory.
+//! programmer's manual, as the authors remember the table.
 
 pub use crate::freeze::{FREEZES, Freeze, FreezeRow, FreezeRules, N_FREEZES};
 use pxpl5_sim::parameters::ParameterTable;
 
 pxpl5_sim::parameters::parameter_table! {
-    /// The constant part of the delay of each row of [`FREEZES`], in the same order. Intel's list is quoted from
-    /// memory. Unless a published figure narrows a value, its range is therefore one clock less to one clock more.
+    /// The constant part of the delay of each row of [`FREEZES`], in the same order. Intel's list is quoted as the
+    /// authors remember it. Unless a published figure narrows a value, its range is therefore one clock less to one
+    /// clock more.
     pub struct FreezeClocks {
         /// Delay by row 1a of the freeze table: a miss of the instruction cache.
         instruction_miss: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";

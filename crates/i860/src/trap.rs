@@ -55,7 +55,8 @@ pub enum TrapCause {
 pub struct Trap {
     pub cause: TrapCause,
     /// Address of the instruction or pair that has trapped and had no effect. If the instruction was in a delay slot,
-    /// the branch has already changed r1, LCC and its counter, as on the real chip.
+    /// its branch has already changed registers, as on the real chip. These registers are r1 for a call, LCC and the
+    /// counter for `bla`.
     pub pc: u32,
 }
 

@@ -20,7 +20,7 @@ pub const BUDGET: u64 = 10_000;
 /// One conformance vector: a program, the memory before the program runs, and the state expected afterwards.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct TestVector {
-    /// Identifier, unique in its file.
+    /// Identifier of the vector, unique in its file.
     pub id: String,
     /// Name of the group of vectors, within the file, to which this vector belongs.
     #[serde(default)]
@@ -30,7 +30,7 @@ pub struct TestVector {
     pub what: String,
     /// Address of the first word of `code`.
     pub load: u32,
-    /// Instruction words from `load` on.
+    /// Instruction words, which are loaded into memory from address `load` on.
     #[serde(deserialize_with = "hex_list")]
     pub code: Vec<u32>,
     /// Address of the first instruction to execute.
@@ -205,7 +205,7 @@ impl TestVector {
         memory
     }
 
-    /// Runs the program of the vector on a new processor and compares the state after the run.
+    /// Runs the program of the vector on a new processor, and compares the state after the run with the expected state.
     ///
     /// # Errors
     /// Returns the differences in the state, or the reason why the program did not reach its stop address.
@@ -214,7 +214,8 @@ impl TestVector {
         self.check_on(&mut cpu)
     }
 
-    /// Resets a processor, runs the program of the vector on this processor, and compares the state after the run.
+    /// Resets a processor, runs the program of the vector on this processor, and compares the state after the run with
+    /// the expected state.
     ///
     /// # Errors
     /// Returns the same errors as [`TestVector::check`].

@@ -1,6 +1,8 @@
-// An order put together (order_rules.md).
+// Assembles an order, the message with which the master gives work to a slave (order_rules.md). The code copies the first
+// words of the order, then the words of the views.
 //
-// In: r16 where it goes, r17 what it says, r18 words of that (at least 1), r19 its views, r20 words of these.
+// In: r16 destination, r17 first words of the order, r18 their number (at least 1), r19 words of the views, r20 their
+// number.
 
         .align  32
 order:  ld.l    0(r17), r21

@@ -1,13 +1,16 @@
-// The primitives that a view is given, to its kernel in runs of neighbours (sort_rules.md, rule 5).
+// Draws the primitives of one view. The code calls the kernel of the view once for each sequence of consecutive primitives
+// that the view draws (sort_rules.md, rule 5). Such a sequence is called a run.
 //
-// In: as a kernel (r16 first primitive, r17 how many, r18 where commands go, r19 table of bins, r20 parameter block, r2 stack); r21 the
-// primitives' words, r22 the view's bit, r23 the kernel, r24 bytes of a primitive. Out: r18 behind the last command.
+// In: r16 to r20 and r2 as for a kernel: r16 first primitive, r17 number of primitives, r18 destination of the commands,
+// r19 table of bins, r20 parameter block, r2 stack. Also: r21 words of the primitives (written by sort.s), r22 bit of the
+// view in these words, r23 address of the kernel, r24 bytes of a primitive.
+// Out: r18 address after the last command.
 
-// ---- stack frame, below that of the clipper
+// ---- stack frame, below the stack frame of the clipper
 SAVE    = -2560     // return address
-NEXT    = -2556     // first primitive behind the run
-LEFT    = -2552     // how many are left there
-WORDS   = -2548     // their words
+NEXT    = -2556     // first primitive after the run
+LEFT    = -2552     // number of primitives after the run
+WORDS   = -2548     // words of these primitives
 BIT     = -2544
 KERNEL  = -2540
 STEP    = -2536

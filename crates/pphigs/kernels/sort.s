@@ -1,8 +1,9 @@
-// Which of six views around an eye each primitive may touch (sort_rules.md).
+// Finds the views that each primitive may touch, for six views of one eye (sort_rules.md).
 //
-// In: r16 first primitive, r17 how many (at least 1), r18 where their words go, r20 parameter block of triangles of the view along -z, r21
-// and r22 singles: one over the scale of the views' projection, and that scale less a margin; for spheres r23 their parameter block.
-// Out: a word for each, bit 0 to 5 for the views along +x, -x, +y, -y, +z, -z.
+// In: r16 first primitive, r17 number of primitives (at least 1), r18 destination of the result, r20 parameter block for
+// triangles of the view along -z. r21 and r22 are single-precision numbers: 1 / scale of the projection of the views, and
+// the scale minus a margin. For spheres, r23 is the parameter block for spheres.
+// Out: one word for each primitive. Bits 0 to 5 are set for the views along +x, -x, +y, -y, +z, -z.
 
 TRIANGLE_BYTES = 96
 VERTEX_BYTES = 32
@@ -12,7 +13,7 @@ P_ROWS   = 0
 P_ORIGIN = 64
 S_SCALE  = 64
 
-// coordinate `to` of the point in f16 f17 f18 by row k
+// Computes `to` = row k of the view's matrix times the point in f16, f17, f18.
         .macro  row k, to
         fld.l   P_ROWS+16*\k(r20), f8
         fld.l   P_ROWS+16*\k+4(r20), f9
@@ -26,7 +27,7 @@ S_SCALE  = 64
         fadd.ss \to, f11, \to
         .endm
 
-// the point at r5 in units of the eye: right, up, ahead in f20 f21 f22
+// Transforms the point at r5 to the axes of the eye: right in f20, up in f21, ahead in f22.
         .macro  point
         fld.l   0(r5), f16
         fld.l   P_ORIGIN(r20), f8
@@ -44,7 +45,7 @@ S_SCALE  = 64
         fmul.ss f21, f2, f21
         .endm
 
-// the range from low to high to hold v
+// Widens the range from `low` to `high`, so that it contains `v`.
         .macro  widened v, low, high
         pfgt.ss \low, \v, f0
         bnc     low\@
@@ -55,7 +56,8 @@ low\@:  pfgt.ss \v, \high, f0
 high\@:
         .endm
 
-// `bit` into r7 unless the box ends behind the eye or before one of the four sides
+// Sets `bit` in r7 unless the box lies behind the eye or outside one of the four side planes of a view. `reach` is the
+// greatest distance of the box in the direction of the view. A side plane excludes the box if a, b, c or d exceeds `reach`.
         .macro  view bit, reach, a, b, c, d
         pfgt.ss f0, \reach, f0
         bc      no\@
@@ -71,12 +73,13 @@ high\@:
 no\@:
         .endm
 
-// the word of a primitive whose box is f24 f25 across, f26 f27 up, f28 f29 ahead
+// Writes the word of a primitive. Its box extends from f24 to f25 to the right, from f26 to f27 upwards, and from f28 to f29
+// ahead.
         .macro  views
         fsub.ss f0, f25, f5
         fsub.ss f0, f27, f6
         fsub.ss f0, f29, f7
-        fmul.ss f24, f3, f8                 // the sides
+        fmul.ss f24, f3, f8                 // limits of the box times the scale, for the side planes
         fmul.ss f5, f3, f9
         fmul.ss f26, f3, f10
         fmul.ss f6, f3, f11
@@ -131,7 +134,7 @@ another: mov    r16, r5
         fld.l   RADIUS(r16), f8
         fmov.sd f8, f10
         fmul.dd f10, f30, f10
-        fmov.ds f10, f4                     // the radius
+        fmov.ds f10, f4                     // the radius in units of the eye
         fsub.ss f20, f4, f24
         fadd.ss f20, f4, f25
         fsub.ss f21, f4, f26

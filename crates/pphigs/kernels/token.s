@@ -1,19 +1,25 @@
-// What a token asks of a slave: the bin of its region, handed over as a chain of messages (crates/pxpl5-gp/kernels/ring_rules.md, rule 6).
-// Commands stay where TRANSFORM put them; a message is a list of pieces, each an address and a length in words.
+// Answers a token: divides the bin of a region into messages, which the DMA then sends as one chain
+// (crates/pxpl5-gp/kernels/ring_rules.md, rule 6). The commands stay where TRANSFORM wrote them. A message is a list of
+// pieces. A piece is an address and a length in words.
 //
-//   token  r16 region, r17 bins of its context (where commands of spheres begin; then of each region where its entries begin and end), r18
-//          where pieces go, r19 where messages go (first piece, behind the last, length in words, nothing), r20 parameters
-//          out: r16 number of messages
+//   token  In: r16 number of the region, r17 table of the bins of its context, r18 memory for the pieces, r19 memory for
+//          the messages, r20 parameters (P_TRIANGLE to P_NOTHING).
+//          Out: r16 number of messages.
 //
-// Pieces and messages are written and never read here, so that no cache holds them.
+// The first word of the table of bins is the address at which the commands of spheres begin. For each region, two words
+// follow: the addresses of the first entry and of the end of the entries. An entry is the address of a command.
+//
+// A message has four words: the addresses of the first piece and of the end of the pieces, the length in words, and an
+// unused word. This code writes pieces and messages but never reads them, so the data cache does not fill with them.
 
-P_TRIANGLE = 0          // words of a triangle's command, and of a sphere's
+P_TRIANGLE = 0          // words of a triangle's command and of a sphere's command
 P_SPHERE   = 4
-P_BEGIN    = 8          // what begins the region: address, words
-P_AGAIN    = 16         // what begins every message but the first
-P_END      = 24         // what ends the region
-P_NOTHING  = 32         // words of a message that need not be sent
-// MOST words of a message before what ends the region, and WHOLE with that come from the program that assembles it.
+P_BEGIN    = 8          // commands at the start of the region: address, number of words
+P_AGAIN    = 16         // commands at the start of every message after the first message
+P_END      = 24         // commands at the end of the region
+P_NOTHING  = 32         // a message of at most this number of words is not sent
+// The Rust code that assembles this file defines two maxima. A message has at most MOST words without the commands at the
+// end of the region, and at most WHOLE words with these commands.
 
         .macro  piece address, words
         st.l    \address, 0(r18)
@@ -21,7 +27,7 @@ P_NOTHING  = 32         // words of a message that need not be sent
         adds    8, r18, r18
         .endm
 
-// closes a message of r27 words whose first piece is at r30
+// Ends a message of r27 words, whose first piece is at r30.
         .macro  closed
         st.l    r30, 0(r19)
         st.l    r18, 4(r19)
@@ -31,7 +37,7 @@ P_NOTHING  = 32         // words of a message that need not be sent
         mov     r18, r30
         .endm
 
-// begins another one
+// Begins another message, with r27 words so far.
         .macro  opened
         ld.l    P_AGAIN+4(r20), r27
         ld.l    P_AGAIN(r20), r28
@@ -42,12 +48,12 @@ bare\@:
 
 token:  shl     3, r16, r16
         adds    r17, r16, r21
-        ld.l    4(r21), r22             // the next entry
+        ld.l    4(r21), r22             // the next entry of the bin, and the end of the entries
         ld.l    8(r21), r23
         ld.l    0(r17), r24
         ld.l    P_TRIANGLE(r20), r25
         ld.l    P_SPHERE(r20), r26
-        ld.l    P_BEGIN+4(r20), r27     // words of the message
+        ld.l    P_BEGIN+4(r20), r27     // words of the message so far
         ld.l    P_BEGIN(r20), r28
         mov     r18, r30
         mov     r0, r16
@@ -57,7 +63,7 @@ begun:  bte     r22, r23, ending
 entry:  ld.l    0(r22), r29
         adds    4, r22, r22
         mov     r25, r31
-        subu    r29, r24, r0            // triangles' commands lie before those of spheres
+        subu    r29, r24, r0            // the commands of triangles lie before the commands of spheres
         bnc     sized
         mov     r26, r31
 sized:  adds    r31, r27, r28

@@ -1,30 +1,35 @@
-// What meets each of some windows (windows_rules.md).
+// Finds the primitives of windows (windows_rules.md) in three functions:
 //
-//   windows   r16 their upper left pixels (upper half: row; lower half: column), r17 how many (at least 1), r18 where they go, r19 size of
-//             a window (upper half: rows; lower half: columns), r20 the same of the picture, r21 line of the frame that row 0 is, r22 0
-//             where each line is a row, 1 where every second one is
-//   triangles r16 first command, r17 how many (at least 1), r18 their boxes, r19 windows, r20 how many, r21 table of lists as token.s has
-//             it, their ends where they begin, r22 0 or the picture's regions as windows, r23 how many, r24 and r25 as r21 and r22 of
-//             windows; r2 stack
-//   spheres   the same but for r22 to r25
+//   windows    Computes the limits of windows.
+//              In: r16 upper left pixels of the windows (upper half: row, lower half: column), r17 number of windows (at
+//              least 1), r18 destination, r19 size of a window (upper half: rows, lower half: columns), r20 size of the
+//              picture in the same format, r21 line of the frame that is row 0 of the picture, r22 0 if each line is a
+//              row, or 1 if every second line is a row.
+//   triangles  Adds each triangle to the lists of the windows that it touches.
+//              In: r16 first command, r17 number of triangles (at least 1), r18 boxes of the triangles, r19 windows, r20
+//              number of windows, r21 table of lists, r22 regions of the picture in the format of windows, or 0, r23
+//              number of regions, r24 and r25 as r21 and r22 of `windows`, r2 stack.
+//   spheres    Adds each sphere to the lists of the windows that it touches.
+//              In: r16 to r21 as for triangles.
 //
-// The rectangle around all windows stands before the first one, as a window. Lists get addresses of commands.
+// The rectangle around all windows comes before the first window, in the same format. A list has the addresses of commands.
+// The table of lists has the format of the table of bins in token.s. Before the search, the end of each list is its start.
 
-W_LEFT   = 0            // limits of a box that meets the window: x at least and at most, y at least and at most, in 1/16 px of the frame
-W_RIGHT  = 4
+W_LEFT   = 0            // limits in 1/16 px of the frame: a box touches the window if its right end is at least W_LEFT, its left end is
+W_RIGHT  = 4            // at most W_RIGHT, its lower end is at least W_TOP, and its upper end is at most W_BOTTOM
 W_TOP    = 8
 W_BOTTOM = 12
-W_FIRST_COLUMN = 16     // its pixels
+W_FIRST_COLUMN = 16     // first and last column and row of the window's pixels
 W_LAST_COLUMN = 20
 W_FIRST_ROW = 24
 W_LAST_ROW = 28
 W_BYTES  = 32
 BOX_BYTES = 16
-TRIANGLE_BYTES = 120    // of a command
+TRIANGLE_BYTES = 120    // size of a command
 SPHERE_BYTES = 212
-SAVE     = 0            // stack frame
+SAVE     = 0            // stack frame: return address
 
-// the range of word `low` to `high` of what is at r30 to hold r26 to r27
+// Widens the range in the words `low` and `high` of the window at r30. The new range contains the range from r26 to r27.
         .macro  widened low, high
         ld.l    \low(r30), r28
         ld.l    \high(r30), r29
@@ -49,7 +54,7 @@ windows: mov    r18, r30
         st.l    r24, W_LAST_COLUMN(r30)
         st.l    r23, W_FIRST_ROW(r30)
         st.l    r24, W_LAST_ROW(r30)
-        and     0xFFFF, r19, r11            // columns and rows of a window, last ones of the picture
+        and     0xFFFF, r19, r11            // columns and rows of a window, last column and row of the picture
         shr     16, r19, r12
         and     0xFFFF, r20, r13
         shr     16, r20, r14
@@ -104,7 +109,7 @@ frame:  adds    r21, r6, r6
         bri     r1
         nop
 
-// f12 low word = product modulo 2^32; f9 and f11 are 0
+// Computes `to` = a * b modulo 2^32. f9 and f11 must be 0.
         .macro  times a, b, to
         ixfr    \a, f8
         ixfr    \b, f10
@@ -112,7 +117,7 @@ frame:  adds    r21, r6, r6
         fxfr    f12, \to
         .endm
 
-// to `apart` unless the greatest value of edge k over the window at r14 is not negative
+// Jumps to `apart` if the greatest value of edge k within the window at r14 is negative.
         .macro  test k
         ld.l    8+16*\k(r16), r28
         ld.l    12+16*\k(r16), r29
@@ -130,14 +135,15 @@ y\@:    times   r28, r30, r28
         adds    r28, r29, r28
         adds    r28, r30, r28
         subs    r28, r0, r0
-        bc      apart                       // 0 > the value
+        bc      apart                       // the value is negative
         .endm
 
-// r3 is not 0 if the triangle r16, whose box is in r8 to r11, meets the window at r14. Changes r28 to r31.
+// Sets r3 to 1 if a triangle touches the window at r14, otherwise to 0. r16 is the address of the triangle's command, and r8
+// to r11 are its box. Changes r28 to r31.
 meets:  ld.l    W_TOP(r14), r28
         ld.l    W_BOTTOM(r14), r29
         subs    r11, r28, r0
-        bc      apart                       // the least y of one that meets it > the greatest of the box
+        bc      apart                       // the box ends above the window
         subs    r29, r10, r0
         bc      apart
         ld.l    W_LEFT(r14), r28
@@ -154,7 +160,8 @@ meets:  ld.l    W_TOP(r14), r28
 apart:  bri     r1
         mov     r0, r3
 
-// to `otherwise` unless a box in r8 to r11 lies in the limits at 0, 4, 8 and 12 of what is at `of`; lines are compared before columns
+// Jumps to `otherwise` unless the box in r8 to r11 overlaps a rectangle. The four limits of the rectangle begin at `first` of
+// the window at `of`. Lines are compared before columns.
         .macro  within of, first, otherwise
         ld.l    \first+8(\of), r28
         ld.l    \first+12(\of), r29
@@ -170,7 +177,7 @@ apart:  bri     r1
         bc      \otherwise
         .endm
 
-// the command r16 to the list whose end is at r12
+// Adds the command at r16 to the list whose end is stored at r12.
         .macro  entered
         ld.l    0(r12), r28
         nop
@@ -188,9 +195,9 @@ triangles: st.l r1, SAVE(r2)
 triangle: ld.l  8(r18), r10
         ld.l    12(r18), r11
         subs    r6, r10, r0
-        bc      beside                      // beyond the last line
+        bc      beside                      // below the last line of all windows
         subs    r11, r5, r0
-        bc      beside                      // before the first one
+        bc      beside                      // above the first line of all windows
         ld.l    0(r18), r8
         ld.l    4(r18), r9
         ld.l    W_LEFT(r19), r28
@@ -199,7 +206,7 @@ triangle: ld.l  8(r18), r10
         bc      beside
         subs    r9, r28, r0
         bc      beside
-        // a column and a row?
+        // Does the box contain the centres of a column and of a row?
         adds    7, r8, r28
         shra    4, r28, r28
         adds    -9, r9, r29

@@ -36,10 +36,8 @@ enum Format {
     Cff,
 }
 
-/// Name of the software, as cited.
 const TITLE: &str = "pxpl5: a cycle-accurate emulator of Pixel-Planes 5 and its low-latency rendering pipelines";
 
-/// Author of the software, as cited.
 const AUTHOR: &str = "The pxpl5 developers";
 
 const REPOSITORY: &str = env!("CARGO_PKG_REPOSITORY");

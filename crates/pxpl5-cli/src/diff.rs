@@ -34,10 +34,8 @@ pub(crate) struct DiffArgs {
     json: bool,
 }
 
-/// Difference between two pictures of the same file name.
 #[derive(Debug)]
 struct PictureDifference {
-    /// Name of the files.
     name: String,
     /// Width and height in pixels of the first and the second picture.
     sizes: [[u32; 2]; 2],

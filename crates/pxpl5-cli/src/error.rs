@@ -80,7 +80,6 @@ impl From<FileError> for CliError {
     }
 }
 
-/// Returns the exit code for a file that cannot be used.
 const fn code_of(kind: FileErrorKind) -> u8 {
     match kind {
         FileErrorKind::Locked => BUSY,

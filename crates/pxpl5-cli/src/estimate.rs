@@ -1,10 +1,11 @@
 //! Estimates of memory and time before a command starts. [`pxpl5::lab::estimate`] estimates runs. The formulas here
-//! estimate volumes and walks (frames seen along a path).
+//! estimate volumes and walks. A volume is a scene drawn as slices for the spinning volumetric display. A walk is a
+//! sequence of frames along a path of the viewer.
 //!
 //! A volume needs `BASE + slices width height / 2 + SAMPLE drawn + targets width height TARGET samples + PRIMITIVE
 //! primitives` bytes:
 //!
-//! - `drawn = ROWS slices width + AREAS width height` is the number of pixels that surfaces touch.
+//! - `drawn = ROWS slices width + AREAS width height` is the number of pixels that triangles and spheres touch.
 //! - `targets` is the number of slices that all threads together draw at a time.
 //! - The bits of all slices count in full, although the operating system may allocate only pages that are written.
 //!
@@ -37,7 +38,7 @@ pub(crate) struct VolumeWork {
     pub(crate) is_pixel_planes: bool,
 }
 
-/// Quantities that determine the memory and time to compute a walk (frames seen along a path).
+/// Quantities that determine the memory and time to compute a walk of a viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WalkWork {
     pub(crate) frames: u64,
@@ -53,12 +54,13 @@ const PRIMITIVE: f64 = 200.0;
 /// Memory in bytes for each pixel in the buffer of a slice while the slice is drawn: three colour channels and one
 /// stencil bit.
 const TARGET: f64 = 3.125;
-/// Memory in bytes of a pixel that a surface covers, including the unused capacity of the list that stores covered
-/// pixels.
+/// Memory in bytes of a pixel that a triangle or sphere covers, including the unused capacity of the list that stores
+/// covered pixels.
 const SAMPLE: f64 = 12.0;
-/// Estimated number of pixels that surfaces touch in each column of a slice.
+/// Estimated number of pixels that triangles and spheres touch in each column of a slice.
 const ROWS: f64 = 2.0;
-/// Estimated number of additional pixels that surfaces touch, over all slices together, in units of one whole picture.
+/// Estimated number of additional pixels that triangles and spheres touch, over all slices together, in multiples of
+/// the pixels of one slice.
 const AREAS: f64 = 2.0;
 /// Seconds to process one primitive for one slice.
 const SLICE_S: f64 = 30e-9;
@@ -74,13 +76,13 @@ const PLANES_BYTES: f64 = 60e6;
 
 /// Memory in bytes of a texel of a cube face.
 const TEXEL: f64 = 10.0;
-/// Memory in bytes of one frame, for a walk (frames seen along a path).
+/// Memory in bytes of one frame of a walk.
 const FRAME: f64 = 3e3;
-/// Memory in bytes of a primitive of the scene, for a walk (frames seen along a path).
+/// Memory in bytes of a primitive of the scene of a walk.
 const WALKED: f64 = 2e3;
 /// Seconds to process one texel of a cube face.
 const FACE_S: f64 = 15e-9;
-/// Seconds to process one primitive for one frame, for a walk (frames seen along a path).
+/// Seconds to process one primitive for one frame of a walk.
 const FRAME_S: f64 = 65e-9;
 
 /// Slowdown factor on a computer that is busy with other work. Assumed, as for simulation runs.
@@ -92,7 +94,8 @@ pub(crate) fn primitives(scene: &Scene) -> u64 {
 }
 
 impl VolumeWork {
-    /// Returns the work to compute a volume with valid settings, drawn by `threads` threads.
+    /// Returns the quantities that determine the cost of a volume. The settings must be valid, and `threads` threads
+    /// draw the volume.
     pub(crate) fn of(settings: &VolumeSettings, scene: &Scene, threads: usize) -> Self {
         Self {
             slices: settings.display.slices,

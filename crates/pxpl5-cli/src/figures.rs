@@ -67,7 +67,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&figures) } else { text(&figures) })
 }
 
-/// Measures and prints the chosen figures of the main table, one after the other.
+/// Measures and prints the figures `numbers` of the main table of ACCURACY.md, one after the other.
 ///
 /// # Errors
 ///
@@ -128,7 +128,6 @@ fn text(figures: &Figures) -> String {
     text
 }
 
-/// Column headings of a table of figures.
 const HEADER: &str =
     "#           published    simulated  unit             error  interval               provenance what\n";
 

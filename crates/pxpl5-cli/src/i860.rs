@@ -195,7 +195,7 @@ fn load(file: &Path, base: u32) -> Result<Program, String> {
     Ok(Program::of_bytes(base, read(file)?))
 }
 
-/// Runs a file of conformance vectors. Returns the report and the number of failed vectors.
+/// Executes the conformance vectors of a file. Returns the report and the number of failed vectors.
 fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize), String> {
     let text = text_of(file, unpacked(file, read(file)?, MOST_VECTOR_BYTES)?)?;
     let list = vectors::parse(&text).map_err(|e| format!("{}: {e}", file.display()))?;

@@ -111,7 +111,7 @@ fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
 /// setting with fractions, a bisection divides the range into 64 steps.
 const VALUES: u64 = 12;
 
-/// Estimated maximum number of scene sizes that a search simulates: twice the bisection steps of the whole range.
+/// Estimated maximum number of scene sizes that a search simulates: twice the number of bisection steps over all sizes.
 const SIZES: usize = 40;
 
 /// Minimum number of simulated fields. Shorter runs end during the warm-up of every pipeline.
@@ -233,7 +233,6 @@ impl LimitArgs {
     }
 }
 
-/// Returns a goal in words.
 fn goal_text(goal: Goal) -> String {
     match goal {
         Goal::NoMissedRetrace => "every picture that is due is shown in time".to_owned(),
@@ -319,7 +318,7 @@ const fn is_without(limit: Limit) -> bool {
     limit.first_miss.is_none() && limit.triangles == CEILING
 }
 
-/// Returns the name of the scene that is drawn at every size.
+/// Returns the name of the scene that the search draws with different numbers of triangles.
 fn scene(query: &LimitQuery) -> String {
     query.model.as_ref().map_or_else(|| query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned())
 }

@@ -40,7 +40,6 @@ pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
     print(&if args.json { all_json(&machines) } else { all_text(&machines) })
 }
 
-/// A machine preset, with the pipelines that it can run.
 struct Listed {
     preset: &'static Preset,
     machine: MachineConfig,

@@ -73,8 +73,8 @@ impl OutputFolder {
         Self::begin(path, Place::folder(option), added_to(path, results))
     }
 
-    /// Checks that the folder is writable before the simulation begins, because a simulation may take hours. Folders
-    /// created for this check are then removed, so that an interrupted run leaves no empty folder.
+    /// Checks that the folder is writable before the simulation begins, because a simulation may take hours. After the
+    /// check, folders that were created for it are removed, so that an interrupted run leaves no empty folder.
     fn begin(path: &Path, place: Place, listing: Listing) -> Result<Self, CliError> {
         let batch = Batch::new(place.clone());
         let mut folder = Self { path: path.to_path_buf(), place, made: Vec::new(), batch, listing };
@@ -88,7 +88,7 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// Executes `what` in the folder. Meanwhile no other process can remove or change the folder.
+    /// Executes `what` on the output files, while a lock prevents other processes from removing or changing the folder.
     fn in_folder(&mut self, mut what: impl FnMut(&mut Batch) -> io::Result<()>) -> Result<(), CliError> {
         // Another process may remove the folder between its creation and the write.
         let mut tries = 0;
@@ -111,7 +111,6 @@ impl OutputFolder {
         &self.path
     }
 
-    /// Creates the folder and its missing parents.
     fn make(&mut self) -> Result<(), CliError> {
         let missing = self.path.ancestors().take_while(|part| !part.as_os_str().is_empty() && !part.exists());
         let mut made: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
@@ -127,8 +126,8 @@ impl OutputFolder {
         }
     }
 
-    /// Locks the folder against other processes. Returns `None` on a file system without locks, where results without
-    /// protection are better than no results.
+    /// Locks the folder against other processes. Returns `None` on a file system that has no locks. The command then
+    /// writes its results without this protection.
     fn lock(&self) -> Option<File> {
         let folder = File::open(&self.path).ok()?;
         folder.lock().ok()?;
@@ -167,8 +166,8 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Adds the manifest (list of the run's files), which will be renamed before all other files. After a crash between
-    /// two renames, the hashes in the manifest show which files belong to the new run.
+    /// Adds the manifest (list of the run's files) as the first file to be renamed. After a crash between two renames,
+    /// the hashes in the manifest show which files belong to the new run.
     fn put_manifest(&mut self) -> Result<(), CliError> {
         // A new run replaces the previous manifest; derived files extend it.
         let manifest = match &mut self.listing {
@@ -209,8 +208,9 @@ fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     Ok(before)
 }
 
-/// Returns the listing of files that are derived from a results folder, such as a report page. Such files are added to
-/// the folder's manifest only if they are written into the folder `results` itself.
+/// Returns the relation to the manifest for files that are derived from a results folder, such as a report page. These
+/// files are added to the folder's manifest (list of a run's files) only if they are written into the folder `results`
+/// itself.
 fn added_to(folder: &Path, results: &Path) -> Listing {
     let whole = |path: &Path| path.canonicalize().ok();
     match (whole(folder), whole(results)) {
@@ -219,7 +219,7 @@ fn added_to(folder: &Path, results: &Path) -> Listing {
     }
 }
 
-/// Removes the temporary files of an uncommitted folder, and any still empty folders that were created for these files.
+/// Removes the temporary files if nothing was committed, and all empty folders that were created for these files.
 impl Drop for OutputFolder {
     fn drop(&mut self) {
         self.batch.discard();
@@ -232,9 +232,9 @@ impl Drop for OutputFolder {
 #[derive(Debug)]
 pub(crate) struct OutputFile {
     target: Target,
-    /// Batch of one output for a target such as a device or pipe, which exists and is not a regular file.
+    /// Data for a target that exists and is not a regular file, such as a device or a pipe.
     batch: Batch,
-    /// Folder of the output, if it is a regular file. `None` for an existing target of another kind, such as a pipe.
+    /// Folder of the output file. `None` if the target is not a regular file, such as a pipe.
     folder: Option<OutputFolder>,
 }
 

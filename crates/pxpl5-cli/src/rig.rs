@@ -1,5 +1,5 @@
-//! The command `pxpl5 rig`, which measures latency from outside with a simulated pendulum, as I3D95 did, and compares
-//! the result with the system's time stamps.
+//! The command `pxpl5 rig`. A simulated pendulum measures the latency of a system from outside, as in I3D95. The
+//! command compares this latency with the time stamps inside the system.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -73,8 +73,8 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
     if measured.agrees() { Ok(()) } else { Err(CliError::failure(verdict(&measured))) }
 }
 
-/// Returns the checked experiment of the measurement. Pipeline, machine, tracker and seed come from the user. Scene and
-/// motion come from the command.
+/// Returns the checked experiment of the measurement. The user chooses pipeline, machine, tracker and seed. The command
+/// sets scene and motion.
 fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     if let Some(key) = file.keys().find(|key| KEYS_SET_BY_RIG.contains(key) || key.starts_with("motion.")) {
         return Err(CliError::usage(format!(
@@ -86,7 +86,7 @@ fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     Ok(file.resolve()?)
 }
 
-/// Name of a latency, with the function that reads it from the outside or inside measurement.
+/// Name of a latency, with the function that reads it from the measurement from outside or inside.
 type Column = (&'static str, fn(&Side) -> &Statistics);
 
 fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {

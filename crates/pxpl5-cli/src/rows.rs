@@ -11,24 +11,20 @@ use std::path::Path;
 
 const COMPARISON_FILE: &str = "comparison.json";
 
-/// A row of results as pairs of name and value, in the order of the file.
 pub(crate) type Row = Vec<(String, Value)>;
 
-/// The kind of a results file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RowsKind {
-    /// Results of a sweep, with one row for each point.
     Sweep,
-    /// Results of a comparison, with one row for each pipeline. A row has one value for each path in the comparison's
-    /// JSON. Lists of plain numbers are left out.
+    /// Results of a comparison, with one row for each pipeline. Each value of a row is named by its path in the JSON of
+    /// the comparison. Lists of plain numbers are left out.
     Comparison,
 }
 
-/// All rows of a results folder.
 #[derive(Debug)]
 pub(crate) struct ResultRows {
     pub(crate) kind: RowsKind,
-    /// The header of a sweep, or all of a comparison's JSON except its rows.
+    /// Header of a sweep, or the JSON of a comparison without its rows.
     pub(crate) about: Map<String, Value>,
     pub(crate) rows: Vec<Row>,
 }
@@ -74,7 +70,6 @@ pub(crate) fn folder_of(results: &Path) -> &Path {
     folder.map_or(results, |folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
 }
 
-/// Returns the value with this name in a row.
 pub(crate) fn value<'a>(row: &'a Row, name: &str) -> Option<&'a Value> {
     row.iter().find(|(key, _)| key == name).map(|(_, value)| value)
 }
@@ -144,7 +139,7 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
 }
 
 /// Adds all numbers, texts and other plain values within `value` to a row. The name of each value is its JSON path. In
-/// this path, an object of a list has the name of its `cause` or `kind`.
+/// this path, an object in a list is named by its member `cause` or `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
         // A row without a bootstrap keeps the column of rows.csv.
@@ -164,8 +159,8 @@ fn flatten(path: &str, value: Value, row: &mut Row) {
     }
 }
 
-/// Returns the name of an object in a list, which is its `cause` or `kind`. If the `cause` is null, the name is
-/// `interaction`, because the object stands for the interaction of all causes.
+/// Returns the name of an object in a list, which is the value of the member `cause` or `kind`. The name is
+/// `interaction` if `cause` is null, because the object then has the interaction of all causes.
 fn name_of(value: &Value) -> Option<String> {
     let object = value.as_object()?;
     match object.get("cause").or_else(|| object.get("kind"))? {

@@ -94,7 +94,8 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     }
 }
 
-/// Returns the latency and update rate that 10 % more of a resource would give, for each resource of the machine.
+/// Returns the latency and the update rate of the experiment with 10 % more of a resource, for each resource of the
+/// machine.
 fn more(plan: &Plan) -> Result<Vec<WhatIf>, CliError> {
     let experiment = plan.experiment(crate::scenes::load(plan, false)?);
     what_if(&plan.registry, &experiment).map_err(CliError::from)

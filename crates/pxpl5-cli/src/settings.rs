@@ -159,7 +159,8 @@ impl SettingArgs {
     }
 }
 
-/// Returns the key that `--display NAME` sets. Names of rasters set the raster instead, as in earlier versions.
+/// Returns the key that `--display NAME` sets. A name of a raster (correction of pictures during the scan) sets the key
+/// of the raster, as in earlier versions.
 fn display_key(name: Option<&str>) -> &'static str {
     if Raster::ALL.iter().any(|(raster, _)| Some(*raster) == name) { "head.raster" } else { "display" }
 }

@@ -6,12 +6,12 @@
 //!           `--> merge.sh   when all tasks have ended: pxpl5 merge OUT/shard-* --out OUT
 //! ```
 //!
-//! Slurm restarts a task after its node was lost. The restarted task keeps the rows that the earlier task has written.
-//! The earlier task may still run on a node that does not answer. The restarted task then waits, because two processes
-//! must not write into one folder.
+//! Slurm restarts a task whose node was lost. The restarted task keeps the rows that the lost task has written. If the
+//! lost task still runs on a node that does not answer, the restarted task waits. Two processes must not write into one
+//! folder.
 //!
-//! The scripts request time and memory according to estimates of a sample of points, which are spread evenly over the
-//! parameter space ([`Resources`]).
+//! The requested time and memory are estimated from a sample of points, which are spread evenly over the parameter
+//! space ([`Resources`]).
 
 use crate::error::{BUSY, CliError};
 use crate::estimate::Estimate;
@@ -35,8 +35,8 @@ pub(crate) struct Jobs<'a> {
     pub(crate) threads: u64,
 }
 
-/// Seconds of work in one task. A longer task would delay the end of the sweep too much. A shorter task would not be
-/// worth the time to start it.
+/// Seconds of work in one task. Longer tasks would delay the end of the sweep. Shorter tasks would not be worth the
+/// time to start a task.
 const TASK_S: f64 = 900.0;
 /// Maximum number of tasks in an array: Slurm's default (`MaxArraySize` 1001).
 const MOST_TASKS: u64 = 1_000;
@@ -76,7 +76,7 @@ struct Sample {
 struct Resources {
     tasks: u64,
     threads: u64,
-    /// Time limit of one task in minutes. The prefix `merge` marks the same values for the job that merges the rows.
+    /// Time limit of one task in minutes. Members with the prefix `merge` are for the job that merges the rows.
     minutes: u64,
     megabytes: u64,
     merge_minutes: u64,
@@ -99,7 +99,6 @@ impl Sample {
         }
     }
 
-    /// Returns the estimated cost of the whole sweep on a number of threads.
     fn whole(self, threads: usize) -> Estimate {
         let threads = threads.max(1) as f64;
         Estimate { bytes: self.most_bytes * threads, seconds: self.mean_s * self.points as f64 / threads }
@@ -115,7 +114,6 @@ fn spread(points: u64, most: u64) -> impl Iterator<Item = u64> {
     (0..points.min(most)).map(move |n| (u128::from(n) * u128::from(step) % u128::from(points.max(1))) as u64)
 }
 
-/// Returns the greatest common divisor.
 const fn common_factor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_factor(b, a % b) }
 }
@@ -162,7 +160,7 @@ fn even_tasks(wanted: u64, points: u64) -> u64 {
     (wanted..=most).find(is_even).or_else(|| (1..wanted).rev().find(is_even)).unwrap_or(wanted)
 }
 
-/// Result of writing the scripts: the requested resources and the path of the script that submits the jobs.
+/// Resources that the scripts request, and the path of the script that submits the jobs.
 #[derive(Debug)]
 pub(crate) struct Written {
     resources: Resources,

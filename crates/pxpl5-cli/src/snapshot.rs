@@ -32,7 +32,6 @@ pub(crate) struct SnapshotArgs {
     restore: Option<PathBuf>,
 }
 
-/// Options for the execution of an experiment. These options do not change the result.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct How<'a> {
     /// Number of worker threads for pixels. `None` means one for each core.
@@ -45,7 +44,7 @@ pub(crate) struct How<'a> {
     pub(crate) quiet: bool,
 }
 
-/// The outcome of a run. If the run was too short for statistics, the outcome has the error as well.
+/// Outcome of a run, and an error if the run was too short for statistics.
 #[derive(Debug)]
 pub(crate) struct Simulated {
     pub(crate) outcome: Outcome,

@@ -104,7 +104,6 @@ pub(crate) struct SweepCommand {
     pub(crate) verb: &'static str,
     /// Number of points in parallel.
     pub(crate) parallel: usize,
-    /// Value of the option --threads.
     pub(crate) threads: Option<u64>,
 }
 
@@ -135,7 +134,6 @@ impl SweepFolderArgs {
         if failed >= total { Err(CliError::failure(format!("no point could be {}", command.verb))) } else { Ok(()) }
     }
 
-    /// Returns the command line that resumes this sweep.
     fn again(&self, command: &SweepCommand) -> String {
         let mut words = vec![format!("pxpl5 {}", command.name), quoted(&self.file.display().to_string())];
         words.extend(["--out".to_owned(), quoted(&self.out.display().to_string())]);
@@ -175,7 +173,7 @@ fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliE
     if args.folder.quiet { Ok(()) } else { print(&written.text()) }
 }
 
-/// Returns the warnings about the experiments at the first and the last point of the sweep.
+/// Returns the warnings about unsupported settings in the experiments at the first and the last point of the sweep.
 fn supposed(sweep: &Sweep) -> Vec<String> {
     let ends = [0, sweep.space().points() - 1].map(|point| sweep.plan(point).map(|plan| plan.warnings()));
     let mut all: Vec<String> = ends.into_iter().flatten().flatten().collect();

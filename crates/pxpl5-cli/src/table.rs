@@ -41,7 +41,6 @@ const ROWS: [TableRow; 13] = [
     ("all over periods", window),
 ];
 
-/// Returns the table as text.
 pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
     let rows = ROWS.iter().map(|(name, cell)| (*name, runs.iter().map(|(report, _)| cell(report)).collect()));
     let mut rows: Vec<(&str, Vec<String>)> = rows.collect();

@@ -6,8 +6,8 @@ use pxpl5::Plan;
 use pxpl5::scene::Scene;
 use std::sync::Arc;
 
-/// Length of a short run in display fields: one second. If a pipeline can show a picture within this number of fields,
-/// no warning is given, even for a shorter run.
+/// Length of a short run in display fields: one second. No warning is given if a pipeline can show a picture within
+/// this number of fields, even if the run itself has fewer fields.
 const SHORT_RUN: u64 = 60;
 
 /// Returns a warning if a run of `fields` display fields is expected to show no picture after the warm-up. The

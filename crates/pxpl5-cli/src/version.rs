@@ -1,6 +1,5 @@
 //! Version and commit of the command, for `pxpl5 -V` and for the origin of every output.
 
-/// Version of the command.
 pub(crate) use pxpl5::measure::program::VERSION;
 
 /// Version and shortened commit, as shown to users.

@@ -13,14 +13,15 @@ use std::sync::Arc;
 /// [`BufferContents`](crate::BufferContents) share such a list.
 pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
 
-/// Smallest number of kept regions above which the buffer searches for regions that newer regions cover completely. The
-/// search compares single pixels, so it would be too slow for every retrace.
+/// Number of kept regions above which the buffer searches for regions that newer regions cover completely. The search
+/// compares single pixels, so a search at every retrace would take too long.
 const FEW: usize = 128;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Buffer {
     held: Vec<StoredRegion>,
-    /// List of the regions in `held` for readers of pictures, or `None` after `held` has changed.
+    /// The regions in `held` as a list that pictures can share. `None` from a change of `held` until a picture needs
+    /// the list.
     shared: Option<Regions>,
     search_above: usize,
     /// Indices in `held` of the regions that are still arriving. The list is short, because a port receives one region
@@ -78,8 +79,8 @@ impl Buffer {
         self.scans.begin(field);
     }
 
-    /// Records that the region with index `place` is complete. Of two complete regions with the same pixels, the newer
-    /// region hides the older region. Returns the index of the older region if region `place` hides such a region.
+    /// Records that the region with index `place` is complete. The region hides an older complete region that fills
+    /// exactly the same pixels. Returns the index of the hidden region, or `None` if there is no such region.
     pub(crate) fn hide_below(&mut self, place: usize) -> Option<usize> {
         self.arriving.retain(|other| *other != place);
         let newest = self.newest.entry(cut(&self.held[place].region.target)).or_insert(place);
@@ -194,8 +195,7 @@ mod tests {
         }
     }
 
-    /// Returns the target of a region. `random` selects one of four kinds. Regions of different kinds fill different
-    /// pixels.
+    /// Returns the target of a region for the test. `random` selects one of four combinations of lines and grid.
     fn target(picture: u64, random: u64) -> CopyTarget {
         let cut = |region_width, region_height| RegionGrid { width: 640, height: 240, region_width, region_height };
         let (lines, grid) = [

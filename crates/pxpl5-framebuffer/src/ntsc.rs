@@ -33,7 +33,6 @@ impl NtscDisplay {
         &self.boards
     }
 
-    /// Handles an event on a board and passes the board's outputs to `context`.
     fn board_event(&mut self, board: usize, event: FrameBufferEvent, context: &mut DisplayContext) {
         self.boards[board].handle(event, self.context.at(context.now()));
         for (time, output) in self.context.drain_outputs() {
@@ -41,7 +40,6 @@ impl NtscDisplay {
         }
     }
 
-    /// Returns the sum of a counter over all boards.
     fn sum(&self, count: fn(&FrameBuffer) -> u64) -> u64 {
         self.boards.iter().map(count).sum()
     }

@@ -54,9 +54,9 @@ pub enum FrameBufferFault {
     /// The pixels were meant for another board.
     #[error("pixels for node {} came to the frame buffer at node {}", found.0, expected.0)]
     WrongBoard {
-        /// Port of this board.
+        /// Ring port of this frame buffer.
         expected: NodeId,
-        /// Frame buffer port in the message of the sender.
+        /// Ring port of the frame buffer that the sender has stated in the message.
         found: NodeId,
     },
     /// A swap request asks for a buffer that is neither 0 nor 1.

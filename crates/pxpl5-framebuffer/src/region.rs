@@ -21,14 +21,11 @@ pub(crate) struct RegionWrite {
     arrived: [Time; MAX_PARTS],
 }
 
-/// Pixels of one line of a region. All pixels of a segment arrived in the same message.
+/// Adjacent pixels of one line of a region, which arrived in the same message.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
-    /// Line of the frame that contains the pixels.
     pub(crate) y: u32,
-    /// Column of the first pixel of the segment.
     pub(crate) x: u32,
-    /// Number of pixels in the segment.
     pub(crate) length: u32,
     /// Index of the segment's first pixel in the region's image.
     pub(crate) index: u32,
@@ -51,7 +48,6 @@ impl Segment {
 }
 
 impl RegionWrite {
-    /// Creates a region of which no message has arrived.
     pub(crate) fn new(pixels: &RegionPixels, video: &Video) -> Result<Self, FrameBufferFault> {
         let target = pixels.target;
         let outside = FrameBufferFault::Region { target, frame: [video.width(), video.height()] };

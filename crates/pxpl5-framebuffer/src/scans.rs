@@ -39,11 +39,11 @@ impl Scans {
         pair.older.rows().filter(|row| !self.shows_row(*row, pair)).count() as u64
     }
 
-    /// Returns true if a fast test proves that the older region was shown completely. The test handles the even rows
-    /// and the odd rows of the region separately. For each of these two groups, the test needs a field in which the
-    /// beam passes the first and the last pixel of the group between two instants. These instants are the write of the
-    /// older region and the write of the newer region. The beam then passes all other pixels of the group between these
-    /// instants as well.
+    /// Returns true if a fast test proves that the older region was shown completely. The test treats the even rows and
+    /// the odd rows of the region as two groups.
+    ///
+    /// For each group, a field must show the first and the last pixel between the write of the older region and the
+    /// write of the newer region. The beam then also shows all other pixels of the group between these two writes.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };
@@ -82,11 +82,11 @@ fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item 
     first.into_iter().chain(last)
 }
 
-/// Iterates over the end pixels of each part of a row that arrived in one message. Each item has the position of a
-/// pixel and the arrival time of its word. The region must be complete.
+/// Iterates over the first and the last pixel of each part of a row that arrived in one message. Each item has the
+/// position of the pixel and the arrival time of its word. The region must be complete.
 ///
-/// The end pixels suffice to compare the arrival of a part with the beam, because words and beam advance at constant
-/// rates. Between two messages there is a pause.
+/// If the beam passes these two pixels in time, it also passes the pixels between them in time. The reason is that the
+/// beam and the words of a message advance at constant rates.
 fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
     region.row(row, word).flat_map(move |segment| {
         [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))

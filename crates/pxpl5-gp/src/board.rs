@@ -29,7 +29,7 @@ pub enum GpEvent {
     /// The status signal of another board has changed. A status signal carries one number, for example the count of a
     /// frame buffer's swaps. The event belongs to phase `Arrive` of the event queue.
     Status {
-        /// Port of the board whose status signal has changed.
+        /// Ring port of the board whose status signal has changed.
         from: NodeId,
         /// New value of the status signal.
         value: u64,
@@ -285,8 +285,8 @@ impl GpBoard {
         self.fault.as_ref()
     }
 
-    /// Removes the records of stages that the programs have made, and passes the records to `take` in the order of
-    /// their making.
+    /// Removes the records of stages that the programs have made, and passes the records to `take`, the oldest record
+    /// first.
     pub fn drain_marks(&mut self, take: impl FnMut(Mark)) {
         let marks = &mut self.shared.borrow_mut().marks;
         if !marks.is_empty() {
@@ -354,8 +354,8 @@ impl GpBoard {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
-    /// Returns the name of the condition for which the board waits. Deadlock reports contain this name. If the two
-    /// programs wait, the function returns the condition of the foreground program.
+    /// Returns the name of the condition for which the board waits, for deadlock reports. If both programs wait, the
+    /// function returns the condition of the foreground program.
     #[must_use]
     pub fn blocked(&self) -> Option<&'static str> {
         Some(self.wait()?.what)

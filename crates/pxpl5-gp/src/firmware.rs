@@ -28,7 +28,7 @@ pub enum Fault {
     /// The program has received a message that it does not expect.
     #[error("node {}: unexpected message {found}", node.0)]
     Protocol {
-        /// Port of the board that received the message.
+        /// Ring port of the board that received the message.
         node: NodeId,
         /// Description of the unexpected message.
         found: String,
@@ -43,7 +43,7 @@ pub enum Fault {
 pub struct Received {
     /// Arrival time of the last word of the message.
     pub arrived: Time,
-    /// Port of the sender.
+    /// Ring port of the board that sends the message.
     pub source: NodeId,
     /// Content of the message: words, commands or pixels.
     pub body: Body,
@@ -61,7 +61,6 @@ pub(crate) struct Batch {
     pub(crate) links: Vec<ChainLink>,
 }
 
-/// One message of a chain of messages that the DMA sends together.
 #[derive(Debug)]
 pub(crate) struct ChainLink {
     pub(crate) message: Message,
@@ -197,8 +196,7 @@ impl Shared {
         Cause::Acceptance
     }
 
-    /// If the DMA is free, removes and returns the batch of messages that waits longest, and records the receivers of
-    /// the batch.
+    /// If the DMA is free, removes the oldest waiting batch of messages, records its receivers, and returns the batch.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
         // All messages of the batch now wait for their acceptance.
@@ -338,8 +336,8 @@ impl Gp {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
-    /// Returns true if the bins of `context` (one of two sets of bins) can occupy `bytes` bytes of memory beside the
-    /// bins of the other set.
+    /// Returns true if the bins of `context` can occupy `bytes` bytes of memory beside the bins of the other context. A
+    /// context is one of two sets of bins.
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
         bytes <= self.shared.borrow().memory.room_for_bins(context)

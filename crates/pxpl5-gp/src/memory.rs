@@ -53,7 +53,7 @@ impl fmt::Display for Account {
     named(*region)
 )]
 pub struct OutOfMemory {
-    /// Port of the board.
+    /// Ring port of the board.
     pub gp: NodeId,
     /// Purpose of the requested memory.
     pub account: Account,

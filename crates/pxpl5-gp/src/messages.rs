@@ -170,7 +170,7 @@ mod tests {
     use crate::{CodeVersion, GpBoard, GpEvent, GpOutput, GpTiming};
     use pxpl5_sim::{Phase, TestBench, Time};
 
-    /// Echoes each message.
+    /// Sends each message back to its sender.
     async fn echo(gp: Gp) -> Result<(), Fault> {
         loop {
             let received = gp.receive().await;

@@ -28,10 +28,10 @@ pub enum CodeVersion {
 }
 
 impl CodeVersion {
-    /// All versions, the slowest first.
+    /// All versions of the code, the slowest version first.
     pub const ALL: [Self; 3] = [Self::Unoptimised, Self::Compiled, Self::Scheduled];
 
-    /// Returns the name of the version in experiment files.
+    /// Returns the name by which experiment files choose this version of the code.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -55,7 +55,7 @@ pub enum ProcessorFault {
     /// The program caused a processor trap.
     #[error("graphics processor at node {}: {trap}", gp.0)]
     Trap {
-        /// Port of the board.
+        /// Ring port of the board.
         gp: NodeId,
         /// Cause and address of the trap.
         trap: Trap,
@@ -63,7 +63,7 @@ pub enum ProcessorFault {
     /// The program used up its instruction budget before it returned.
     #[error("graphics processor at node {}: no return within {budget} instructions, at {address:#010x}", gp.0)]
     Endless {
-        /// Port of the board.
+        /// Ring port of the board.
         gp: NodeId,
         /// Address of the instruction that would have been executed next.
         address: u32,
@@ -73,7 +73,7 @@ pub enum ProcessorFault {
     /// An access to data at an address without memory.
     #[error("graphics processor at node {}: no memory for {words} words at {address:#010x}", gp.0)]
     Unmapped {
-        /// Port of the board.
+        /// Ring port of the board.
         gp: NodeId,
         /// Address of the first word of the access.
         address: u32,
@@ -83,7 +83,7 @@ pub enum ProcessorFault {
     /// The memory is too small for the outputs of the two bin contexts (two sets of bins).
     #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
-        /// Port of the board.
+        /// Ring port of the board.
         gp: NodeId,
         /// Number (0 or 1) of the bin context that requested memory. A bin context is one of two sets of bins.
         context: u8,
@@ -96,7 +96,7 @@ pub enum ProcessorFault {
     /// The program has no label with the name of the requested entry.
     #[error("graphics processor at node {}: the program has no label `{label}`", gp.0)]
     NoEntry {
-        /// Port of the board.
+        /// Ring port of the board.
         gp: NodeId,
         /// Name of the missing label.
         label: String,
@@ -107,7 +107,6 @@ pub enum ProcessorFault {
 /// address.
 const RETURN: u32 = 0x0800;
 
-/// Returns the range of memory addresses that an assembled program occupies.
 fn extent(program: &Program) -> Range<u32> {
     program.base..program.base.saturating_add(program.bytes.len() as u32)
 }
@@ -153,7 +152,6 @@ const LINK: usize = 1;
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,
-    /// Configuration of the i860: the timing of its instructions and of its memory.
     core: i860::Config,
     cpu: Cpu,
     memory: Memory,
@@ -166,7 +164,6 @@ pub struct Processor {
     programs: Vec<Arc<Program>>,
     /// Address range of the output of each bin context (one of two sets of bins). `None` if no range is reserved.
     outputs: [Option<Range<u32>>; 2],
-    /// Code addresses of the breakpoints.
     breakpoints: BTreeSet<u32>,
     /// Breakpoint hits recorded since the last [`Processor::take_hits`].
     hits: Vec<BreakpointHit>,
@@ -178,7 +175,7 @@ pub struct Processor {
 /// call therefore does not stop at a breakpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BreakpointHit {
-    /// Port of the board.
+    /// Ring port of the board.
     pub gp: NodeId,
     /// Address of the instruction at the breakpoint.
     pub address: u32,
@@ -277,7 +274,6 @@ impl Processor {
         self.memory.0.words(address, words).map_err(|_| self.unmapped(address, words))
     }
 
-    /// Reads one word of memory.
     pub(crate) fn word(&self, address: u32) -> Result<Word, ProcessorFault> {
         let bytes = self.memory.0.bytes().get(address as usize..).and_then(<[u8]>::first_chunk);
         bytes.map(|bytes| Word::from_le_bytes(*bytes)).ok_or_else(|| self.unmapped(address, 1))

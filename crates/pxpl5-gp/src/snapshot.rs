@@ -44,7 +44,7 @@ pub struct ProgramSnapshot {
 pub struct WaitingMessageInfo {
     /// Arrival time of the last word of the message.
     pub arrived: Time,
-    /// Port of the sender.
+    /// Ring port of the board that sends the message.
     pub source: NodeId,
 }
 

@@ -85,7 +85,7 @@ mod tests {
 
     const SCHEDULED: Option<CodeVersion> = Some(CodeVersion::Scheduled);
 
-    /// Work whose i860 code is a loop with this number of turns. For `None`, the code traps.
+    /// Work whose i860 code is a loop with this number of iterations. For `None`, the code traps.
     struct Turns(Option<u32>);
 
     impl Work for Turns {

@@ -29,10 +29,10 @@ const MEANS_MS: [u64; 5] = [0, 10, 20, 30, 40];
 /// (TR94).
 const JITTERS_MS: [u64; 4] = [0, 10, 20, 30];
 
-/// Numbers, as in [`FIGURES`], of the published latencies of fly-throughs.
+/// Numbers, in [`FIGURES`], of the published figures that are latencies of fly-throughs.
 const FLY_THROUGHS: [&str; 3] = ["7", "7b", "7c"];
 
-/// Mean and standard deviation of the latency in one figure.
+/// Mean and standard deviation of one published latency of a fly-through.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FlyThroughLatency {
     /// Number of the figure, as in [`FIGURES`].

@@ -29,7 +29,7 @@
 //! - `sphere view` is the extra cost of a scene compared with the same scene without spheres.
 //! - `pass` is the remainder: the time to reset the bins, and the time to load code into the caches.
 //!
-//! Each of `structure`, `sphere view` and `pass` is the mean of the scenes' means.
+//! Each of `structure`, `sphere view` and `pass` is averaged over each scene, then over the scenes.
 //!
 //! The time of a message is the mean over all messages that a board receives and sends around these passes. Under
 //! PPHIGS (the graphics library that runs Rendering Control) the board is a slave, and each message includes the cost
@@ -69,9 +69,9 @@ const VIEWS: u64 = 4;
 /// Time between two successive head poses in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
-/// Half the side of the square that a triangle covers at a distance of 1 m, in metres. The measurement of the clipper
-/// uses such triangles. The corners of the triangle lie up to 4,477 pixels outside the picture's corners. Assumed: any
-/// size beyond the guard band has the same effect.
+/// Size in metres of the triangles that measure the clipper. Each triangle covers a square whose sides have twice this
+/// length at a distance of 1 m. The corners of the triangle lie up to 4,477 pixels outside the picture's corners.
+/// Assumed: any size beyond the guard band has the same effect.
 const CLIPPED_M: f32 = 2.0;
 
 /// Size of a clump: the number of triangles that Slats transforms at a time (published in TR94).
@@ -92,20 +92,22 @@ const MEMORY: u64 = 8 << 20;
 /// Times of primitives in nanoseconds, measured by executing code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CodeTimes {
-    /// Time to transform a triangle that is not clipped: mean of the scenes' means.
+    /// Time to transform a triangle that is not clipped, averaged over each scene and then over the scenes.
     pub triangle_ns: f64,
     /// Smallest and largest of the scenes' mean times per triangle.
     pub triangle_range_ns: [f64; 2],
-    /// Time to transform a sphere: mean of the scenes' means.
+    /// Time to transform a sphere, averaged over each scene and then over the scenes.
     pub sphere_ns: f64,
     /// Time to write one entry into a bin.
     pub entry_ns: f64,
     /// Additional time of a clipped triangle: the time to cut the triangle, and to process all resulting triangles
     /// except one.
     pub guard_ns: f64,
-    /// Time to begin a pass over the display list, without its structures: mean of the scenes' means.
+    /// Time to begin a pass over the display list, without its structures. The time is averaged over each scene and
+    /// then over the scenes.
     pub pass_ns: f64,
-    /// Time to transform one more structure of the display list for one eye: mean of the scenes' means.
+    /// Time to transform one more structure of the display list for one eye, averaged over each scene and then over the
+    /// scenes.
     pub structure_ns: f64,
     /// Additional time per eye for a structure that contains spheres: mean over the scenes with spheres.
     pub sphere_view_ns: f64,
@@ -113,7 +115,7 @@ pub struct CodeTimes {
     pub edit_ns: f64,
     /// Time to send one bin entry, for a slave that has the token.
     pub token_entry_ns: f64,
-    /// Time to process a message, or a chain of messages: mean of the scenes' means.
+    /// Time to process a message, or a chain of messages, averaged over each scene and then over the scenes.
     pub message_ns: f64,
     /// Smallest and largest of the scenes' mean times per message.
     pub message_range_ns: [f64; 2],
@@ -122,11 +124,11 @@ pub struct CodeTimes {
 /// Number of iterations of [`CodeTimes::improve`]. Each iteration leaves only a small part of the previous error.
 const ROUNDS: usize = 30;
 
-/// One pass over triangles: number of unclipped triangles, number of clipped triangles, number of bin entries, time in
-/// nanoseconds.
+/// Result of one pass over triangles: number of unclipped triangles, number of clipped triangles, number of bin
+/// entries, time in nanoseconds.
 type Sample = [f64; 4];
 
-/// One pass over spheres: number of spheres, number of bin entries, time in nanoseconds.
+/// Result of one pass over spheres: number of spheres, number of bin entries, time in nanoseconds.
 type SphereSample = [f64; 3];
 
 fn picture(of: CodeUse) -> Picture {

@@ -35,7 +35,7 @@ pub struct Differences {
     pub settings: Vec<Changed>,
     /// Results that differ. Times of the host computer are left out.
     pub results: Vec<Changed>,
-    /// Number of results that are equal.
+    /// Number of results that are equal in both reports.
     pub equal: usize,
 }
 

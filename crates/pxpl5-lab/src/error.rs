@@ -5,8 +5,8 @@ use pxpl5_sim::parameters::{FileError, SettingError};
 use thiserror::Error;
 use tracking::rig::RigError;
 
-/// An error that prevents a study. A study is a comparison, a search for a limit, a published figure, or a measurement
-/// with the latency rig.
+/// An error that prevents a study. A study is a comparison, a search for a limit, the measurement of a published
+/// figure, or a measurement with the latency rig.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -24,7 +24,7 @@ pub enum StudyError {
         /// Number of display fields in the settings.
         found: u64,
     },
-    /// The query has no seeds.
+    /// The comparison has no seeds.
     #[error("expected at least one seed, found none")]
     NoSeed,
     /// The registry has no pipeline that takes part in comparisons.
@@ -67,9 +67,9 @@ pub enum StudyError {
         path: String,
         /// First key or option that differs.
         key: String,
-        /// Value of this comparison.
+        /// Value of the differing key in this comparison.
         expected: String,
-        /// Value in the file.
+        /// Value of the differing key in the file.
         found: String,
     },
     /// The folder holds rows of an interrupted comparison, and the user did not allow a resume.

@@ -108,7 +108,7 @@ const BLOCK_S: f64 = 5.6e-6;
 const LOAD_S: f64 = 2.8e-5;
 /// Seconds to simulate one primitive of a picture as i860 code. Assumed, from the speeds in the README.
 const PRIMITIVE_AS_CODE_S: f64 = 2.7e-5;
-/// Number of simulations of an experiment with a tracked head: a dry run, which measures when head poses are seen, and
+/// Number of simulations of an experiment with a tracked head: a dry run, which measures the prediction interval, and
 /// the run itself.
 const RUNS_OF_HEAD: f64 = 2.0;
 /// Seconds to evaluate the pixel errors of a field.
@@ -196,13 +196,13 @@ impl RunWork {
         WORD_S * ((self.block * self.block) as f64 + BLOCK_WORDS)
     }
 
-    /// Estimates memory and time by the formulas in the module's documentation.
+    /// Estimates memory and time of the experiment by the formulas in the documentation of [`crate::estimate`].
     #[must_use]
     pub fn estimate(&self) -> Estimate {
         Estimate { bytes: self.bytes(), seconds: BUSY * self.core_seconds() }
     }
 
-    /// Estimates the peak memory in bytes.
+    /// Estimates the peak memory of the experiment in bytes.
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let fields = self.fields as f64;
@@ -218,7 +218,7 @@ impl RunWork {
         BASE + pictures + GP * self.gps as f64 + lists + kept + errors
     }
 
-    /// Estimates the run time in seconds on one idle core.
+    /// Estimates the run time of the experiment in seconds on one idle core.
     #[must_use]
     pub fn core_seconds(&self) -> f64 {
         let (fields, eyes, primitives) = (self.fields as f64, self.eyes as f64, self.primitives as f64);
@@ -255,11 +255,11 @@ pub enum Study {
     },
 }
 
-/// CPU seconds of all figures. This constant and the following constants are fitted to measurements with the build
-/// profile `dist` on one core of 3 GHz (25 November 2026).
+/// CPU seconds to measure all published figures. This constant and the following constants are fitted to measurements
+/// with the build profile `dist` on one core of 3 GHz (25 November 2026).
 const FIGURES_S: f64 = 36.0;
-/// CPU seconds of one frame of an application scene. An interpretation that is also simulated with events adds the
-/// fraction `READINGS_BEST` of this time.
+/// CPU seconds to rank all interpretations for one frame of an application scene. Each interpretation that is also
+/// simulated with events adds the fraction `READINGS_BEST` of this time.
 const READINGS_FRAME_S: f64 = 0.0172;
 const READINGS_BEST: f64 = 0.1;
 /// CPU seconds to simulate the published figures at all levels of modelling. The next two constants are the CPU seconds
@@ -267,8 +267,8 @@ const READINGS_BEST: f64 = 0.1;
 const LEVELS_S: f64 = 56.0;
 const LEVELS_EXPERIMENT_S: f64 = 0.52;
 const SPEEDS_S: f64 = 23.0;
-/// Peak memory of the study of all figures in bytes. This constant and the next two were measured with two threads and
-/// rounded up.
+/// Peak memory in bytes to measure all published figures. This constant and the next two were measured with two threads
+/// and rounded up.
 const FIGURES_BYTES: f64 = 300e6;
 const READINGS_BYTES: f64 = 60e6;
 const LEVELS_BYTES: f64 = 800e6;

@@ -300,8 +300,8 @@ impl Default for ExperimentFile {
     }
 }
 
-/// Returns the leaves of a TOML value with their paths and byte positions. An empty table counts as a leaf, so that the
-/// result contains the table.
+/// Returns the values of a nested TOML table with their paths and byte positions. An empty table counts as a value, so
+/// that the table is not lost.
 fn flat(
     path: String,
     value: Value,
@@ -322,7 +322,7 @@ fn flat(
     entries.collect()
 }
 
-/// Returns the byte position of every key within a TOML table, by path.
+/// Returns the byte position of every key within a TOML table, by the path of the key.
 fn starts(path: &str, table: &toml::de::DeValue<'_>) -> Vec<(String, usize)> {
     let entries = table.as_table().into_iter().flatten();
     let nested = entries.flat_map(|(key, value)| {
@@ -344,12 +344,10 @@ fn not_toml(error: &toml::de::Error, text: &str, name: &str) -> SettingError {
     invalid(&place(text, name, at), error.message())
 }
 
-/// Creates the error of a text that is not valid TOML.
 fn invalid(place: &str, reason: impl Display) -> SettingError {
     SettingError::combination(format_args!("not TOML: {reason}")).at(place)
 }
 
-/// Returns the line number of a byte position, counted from 1.
 fn line(text: &str, at: usize) -> usize {
     1 + text.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count()
 }

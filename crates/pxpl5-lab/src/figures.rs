@@ -51,7 +51,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("figure {id}: {reason}")]
 pub struct FigureError {
-    /// Number of the figure.
+    /// Number of the figure in ACCURACY.md.
     pub id: String,
     /// Reason why the experiment yields no result.
     pub reason: String,
@@ -64,7 +64,7 @@ pub struct Figures {
     pub rows: Vec<FigureRow>,
     /// Rows of the main table, measured with the times of executed i860 code, without intervals.
     pub of_code: Vec<FigureRow>,
-    /// Effects of the unpublished parameters on each figure. Figures that depend only on scenes are left out.
+    /// Interval of each figure while the unpublished parameters vary. Figures that depend only on scenes are left out.
     pub intervals: Vec<Interval>,
     /// Figures of papers about other systems than Pixel-Planes 5.
     pub families: Vec<FigureFamily>,
@@ -92,7 +92,7 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
 }
 
 /// Measures all figures in parallel, with their intervals. `finished` is called with the number of finished steps and
-/// the number of all steps. A step is the measurement of one figure of the main table, or of one other field of
+/// the number of all steps. A step is the measurement of one figure of the main table, or of another member of
 /// [`Figures`].
 ///
 /// # Errors
@@ -152,7 +152,6 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     Ok(Figures { rows, of_code, intervals, families, groups, readings, application_times: application_times? })
 }
 
-/// Measures one figure under common settings (`bench`) and returns its row.
 fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, FigureError> {
     match bench.measure(figure.id) {
         Ok(measured) => Ok(figure.row(measured)),

@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-/// Result of one run. If no frame was shown, all results (from `frames` on) are zero.
+/// Size and result of one run. If no frame was shown, the members from `frames` on are zero.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Point {
     /// Number of triangles and spheres in the scene.
@@ -32,7 +32,7 @@ pub struct Point {
 /// Sizes of the test scenes in triangles, for a machine of 50 graphics processors (GPs) and 5 renderers.
 const TRIANGLES: [u32; 7] = [12, 100, 1_000, 10_000, 100_000, 300_000, 1_000_000];
 
-/// Sizes of the scenes in triangles for the series of machines: a typical scene of 1994, and the built-in head.
+/// Sizes of the scenes, in triangles, that machines of all sizes draw: a typical scene of 1994, and the built-in head.
 const SCENES: [u32; 2] = [10_000, 59_592];
 
 /// Sizes of the machines: number of GPs and number of renderers. Each machine draws each of the [`SCENES`].
@@ -42,11 +42,12 @@ const MACHINES: [(usize, usize); 9] = [(2, 5), (4, 5), (13, 5), (24, 5), (50, 5)
 /// each.
 const MEMORY_BYTES: u64 = 1 << 30;
 
-/// Time to process a triangle in nanoseconds: on its graphics processor, and on a renderer for the 1.35 regions that
-/// the triangle touches. The number of fields of a run is computed from these times.
+/// Time to process a triangle in nanoseconds. The first time is for the graphics processor. The second time is for
+/// renderers, over the 1.35 regions that a triangle touches. The number of fields of a run is computed from these
+/// times.
 const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 
-/// Number of frames that a run must be long enough to show.
+/// Minimum number of frames that a run shows.
 const FRAMES: u64 = 30;
 
 /// Returns the number of display periods that a run needs to show [`FRAMES`] stereo frames.
@@ -97,7 +98,7 @@ fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, E
     })
 }
 
-/// Runs scenes from 12 to a million triangles on 50 GPs and 5 renderers.
+/// Simulates scenes of 12 to a million triangles on a machine of 50 GPs and 5 renderers.
 ///
 /// # Errors
 ///
@@ -106,7 +107,7 @@ pub fn by_triangles() -> Result<Vec<Point>, ExperimentError> {
     TRIANGLES.into_iter().map(|triangles| run(triangles, 50, 5)).collect()
 }
 
-/// Runs 10,000 and 59,592 triangles on machines of 2 to 50 GPs and 1 to 20 renderers.
+/// Simulates scenes of 10,000 and 59,592 triangles on machines of 2 to 50 GPs and 1 to 20 renderers.
 ///
 /// # Errors
 ///
@@ -136,7 +137,7 @@ const SEEDS: u64 = 30;
 /// Number of display fields in a run of an application scene: 300 frames at 30 Hz, and the warm-up.
 const FIELDS: u64 = 616;
 
-/// Runs `mig`, `molecules` and `head` on `small-hmd`, `medium` and `large`.
+/// Simulates the scenes `mig`, `molecules` and `head` on the machine presets `small-hmd`, `medium` and `large`.
 ///
 /// # Errors
 ///
@@ -169,7 +170,7 @@ fn application(scene: &'static str, machine: &'static str) -> Result<Application
     Ok(Application { scene, machine, latency_fields: [fields.mean, fields.sd], updates_hz: hz, frames })
 }
 
-/// Runs one seed of the head motion. Returns the latency of each frame in fields, and the frames per second.
+/// Simulates the head motion of one seed. Returns the latency of each frame in fields, and the frames per second.
 fn run_seed(experiment: &Experiment, seed: u64) -> Result<(Vec<f64>, f64), String> {
     let outcome = experiment.clone().seed(seed).run().map_err(|error| error.to_string())?;
     let pictures = outcome.complete_pictures();

@@ -14,7 +14,8 @@ use tracking::motion::{
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
-/// Maximum speed of the motion `pan` in degrees per second, well above the peak rate of a head, 370.
+/// Maximum speed of the motion `pan` in degrees per second. The peak rate of a human head is far lower, 370 degrees per
+/// second.
 const FASTEST_PAN: f64 = 10_000.0;
 
 /// Forms of all motions that [`motion`] and [`walk`] accept, for help texts and errors.
@@ -132,8 +133,8 @@ fn no_path(motion: &str) -> SettingError {
     ))
 }
 
-/// Creates the error of an unknown name. The message states the most similar of the valid names first, then `forms`: all
-/// names, or names with their parameters.
+/// Creates the error of an unknown name. The message states the most similar of the valid names first, then `forms`:
+/// all names, or names with their parameters.
 pub(crate) fn unknown<'a>(what: &str, found: &str, names: impl Iterator<Item = &'a str>, forms: &str) -> SettingError {
     let SettingError { nearest, .. } = SettingError::unknown_path(what, found, names);
     SettingError::combination(format_args!(

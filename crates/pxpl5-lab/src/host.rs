@@ -20,7 +20,7 @@ impl Workstation {
     /// queue is full, the simulating thread computes the pixels of the next region itself.
     pub const WAITING_REGIONS: usize = 256;
 
-    /// Creates a host with one worker thread for each core.
+    /// Creates a host with one worker thread for each core of the computer.
     #[must_use]
     pub fn new() -> Self {
         Self::with_threads(std::thread::available_parallelism().map_or(1, usize::from))
@@ -55,14 +55,13 @@ impl Host for Workstation {
     }
 }
 
-/// A pool of threads that compute pixels. At the end of a run, the thread of the simulation also computes regions until
-/// the queue of regions is empty.
+/// A pool of threads that compute pixels. At the end of a run, the simulating thread helps until no region waits.
 #[derive(Debug)]
 struct PixelThreads {
     regions: Sender<Arc<dyn PixelSource>>,
     waiting: Receiver<Arc<dyn PixelSource>>,
     threads: Vec<JoinHandle<u64>>,
-    /// Number of regions whose pixels the thread of the simulation computed itself.
+    /// Number of regions whose pixels the simulating thread computed.
     own: u64,
 }
 

@@ -90,7 +90,8 @@ impl Interval {
         [low.min(self.readings[0]), high.max(self.readings[1])]
     }
 
-    /// Returns the minimum and maximum of the figure over all parameters, without other interpretations.
+    /// Returns the minimum and maximum of the figure while only the parameters vary. The interpretation of the papers
+    /// stays the same.
     #[must_use]
     pub const fn of_parameters(&self) -> [f64; 2] {
         [self.one_at_a_time[0].min(self.joint[0]), self.one_at_a_time[1].max(self.joint[1])]
@@ -98,7 +99,7 @@ impl Interval {
 }
 
 /// Times per triangle in nanoseconds of the machines for Slats. The times were fitted to the largest numbers of
-/// triangles in the papers (figures 12 and 14). Any time within its range reproduces the figure exactly.
+/// triangles in the papers (rows 12 and 14 of ACCURACY.md). Any time within the range reproduces the figure exactly.
 const FITTED: [(&str, u64, (u64, u64)); 2] =
     [("slats:gp.triangle_ns", 30_000, (29_800, 30_100)), ("slats-1995:gp.triangle_ns", 55_800, (55_400, 56_300))];
 
@@ -170,8 +171,8 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     intervals
 }
 
-/// Figures of a tracker combined with a pipeline. Their experiments are simulated with events, whichever level is
-/// requested.
+/// Figures of a tracker combined with a pipeline. Their experiments are simulated with events, also at the analytic
+/// level.
 const WITH_A_TRACKER: [&str; 2] = ["19", "19b"];
 
 /// Paths of the machine parameters without a source. These parameters vary for figures that need a simulation with
@@ -187,8 +188,8 @@ fn with_events(bench: &Bench, id: &'static str) -> Option<Interval> {
     Some(interval(id, nominal, &ends, vec![nominal], &variations))
 }
 
-/// Returns the values of a figure at both ends of each range, one parameter at a time. An experiment without a result
-/// gets the value `nominal`.
+/// Returns the values of a figure at both ends of each parameter's range, while all other parameters keep their
+/// presets. An experiment without a result gets the value `nominal`.
 fn ends_with_events(bench: &Bench, id: &str, variations: &[Variation], nominal: f64) -> Vec<f64> {
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     crate::parallel::map(&ends, |(v, value)| {
@@ -228,8 +229,9 @@ pub(crate) fn photodiode_line() -> Option<Variation> {
     Some(Variation { path: line.path, value, range, provenance: line.info.provenance })
 }
 
-/// Combines two designs of experiments into the interval of one figure. `ends` has the figure's values at both ends of
-/// each parameter's range, one parameter after the other. `joint` has the figure's values on the random machines.
+/// Combines the results of two designs of experiments into the interval of one figure. `ends` has the figure's values
+/// at both ends of each parameter's range, one parameter after the other. `joint` has the figure's values on the random
+/// machines.
 fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, variations: &[Variation]) -> Interval {
     joint.sort_by(f64::total_cmp);
     Interval {
@@ -257,7 +259,7 @@ impl Interval {
     }
 }
 
-/// Returns the element nearest to a quantile of sorted values. `share` is the quantile, from 0 to 1.
+/// Returns a quantile of sorted values: the value nearest to the position `share`, from 0 (first) to 1 (last).
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() - 1) as f64 * share).round() as usize]
 }
@@ -275,7 +277,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Smallest relative change of a figure for which a parameter is listed.
+/// Smallest relative change of a figure for which the causing parameter is listed.
 const VISIBLE: f64 = 1e-3;
 
 fn effects(variations: &[Variation], ends: &[f64], nominal: f64) -> Vec<Effect> {
@@ -293,8 +295,7 @@ fn effect(v: &Variation, ends: [f64; 2], nominal: f64) -> Effect {
 }
 
 impl Effect {
-    /// Returns the largest relative change of a figure that a parameter causes, compared with the figure's nominal
-    /// value.
+    /// Returns the largest change of a figure that a parameter causes, relative to the figure's value for the presets.
     fn reach(&self, nominal: f64) -> f64 {
         bounds(self.ends.iter().map(|end| (end / nominal - 1.0).abs()))[1]
     }
@@ -316,7 +317,7 @@ mod tests {
     use super::*;
     use crate::figures::{Figure, FigureValue};
 
-    /// Returns the row of figure 2, published as 31.2 ms. The analytic level gives an interval of 20 to 22 ms, and 21
+    /// Returns row 2 of ACCURACY.md, published as 31.2 ms. The analytic level gives an interval of 20 to 22 ms, and 21
     /// ms for the presets.
     fn row_of_figure_2(simulated: f64) -> FigureRow {
         let figure: &Figure = FIGURES.iter().find(|figure| figure.id == "2").expect("listed");

@@ -1,7 +1,8 @@
 //! Searches for limits: the largest number of triangles that a pipeline can draw in time.
 //!
 //! A limit is found by simulation, not by a formula. Some pipelines have a closed-form formula (the analytic level).
-//! This formula only gives hints: the size at which the search starts, and sizes that may miss the goal.
+//! This formula only gives hints: the number of triangles at which the search starts, and numbers that may miss the
+//! goal.
 //!
 //! ```text
 //!   analytic level --about this many; least margin at these--> Hints
@@ -9,8 +10,8 @@
 //! ```
 //!
 //! A larger scene can reach a goal that a smaller scene misses. The reason is that a nearly empty clump (group of
-//! triangles) costs as many messages as a full clump. The search therefore also tries sizes below the result of the
-//! bisection, and the smallest miss counts. [`most`] states the guarantee.
+//! triangles) costs as many messages as a full clump. The search therefore also tries smaller numbers than the result
+//! of the bisection. The smallest number that misses counts. [`most`] states the guarantee.
 
 mod over;
 mod search;
@@ -46,10 +47,11 @@ pub struct LimitQuery {
     pub level: Level,
 }
 
-/// A model that is decimated evenly to each number of triangles. The search stops at the model's own number.
+/// A scene whose triangles are reduced evenly to each number that a search tries. The largest number is the scene's own
+/// number of triangles.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Settings of the model's scene. The number of triangles in these settings is ignored.
+    /// Settings of the model's scene. The search ignores the number of triangles in these settings.
     pub choice: SceneChoice,
     /// The model with all of its primitives.
     pub whole: Arc<Scene>,
@@ -83,15 +85,15 @@ impl Model {
     }
 }
 
-/// Ratio of NTSC's rates to round rates: 59.94 Hz to 60 Hz.
+/// Ratio of the field rate of NTSC to the rounded rate: 59.94 Hz to 60 Hz.
 const NTSC: f64 = 0.999;
 
 /// Maximum number of triangles that a search tries.
 pub const CEILING: u32 = 1_000_000;
 
-/// Maximum number of sizes (numbers of triangles) whose margin to the goal the analytic level computes.
+/// Maximum number of scene sizes (numbers of triangles) for which formulas compute the margin to the goal.
 const MARGINS: u32 = 1_000;
-/// Maximum number of doubtful sizes that a search tries: numbers of triangles with a small margin to the goal.
+/// Maximum number of scene sizes that a search tries because formulas predict a small margin to the goal.
 const DOUBTFUL: usize = 8;
 
 /// Minimum number of pictures after the warm-up. With fewer pictures the update rate is unknown, and the goal counts as
@@ -224,7 +226,7 @@ impl LimitQuery {
     }
 
     /// Returns a number that is greater if the goal is easier to reach: the update rate, the negative latency, or the
-    /// negative time of the first copy. Only the comparison of two numbers of triangles has a meaning.
+    /// negative time of the first copy. The number is only useful for comparing scene sizes.
     fn margin(&self, triangles: u32) -> Option<f64> {
         let summary = self.summary(triangles).ok()?;
         match self.criterion.goal {
@@ -234,7 +236,6 @@ impl LimitQuery {
         }
     }
 
-    /// Returns the maximum number of triangles that the search tries.
     fn ceiling(&self) -> u32 {
         let of_model = self.model.as_ref().map(|model| model.whole.triangles().len());
         of_model.map_or(CEILING, |triangles| u32::try_from(triangles).unwrap_or(CEILING).min(CEILING))

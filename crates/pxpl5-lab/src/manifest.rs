@@ -1,7 +1,7 @@
 //! The manifest of an output folder, which lists the files of the last command that wrote there.
 //!
 //! A folder may hold files of several runs and files of the user. The manifest distinguishes these files. Readers trust
-//! only files that are listed and unchanged. The next run removes each listed file that the run does not write again.
+//! only files that are listed and unchanged. The next run removes all listed files that it does not write again.
 
 use pxpl5_measure::program;
 use pxpl5_run::Fingerprint;
@@ -110,7 +110,7 @@ impl Manifest {
         }
     }
 
-    /// Returns the name of the command that wrote the files.
+    /// Returns the name of the command that wrote the files of the manifest.
     #[must_use]
     pub fn command(&self) -> &str {
         &self.command
@@ -168,7 +168,7 @@ impl Manifest {
         if entry.is_of(&bytes) { Ok(Some(bytes)) } else { Err(changed("other contents")) }
     }
 
-    /// Declares that this manifest replaces the previous manifest (`before`). Returns the old files to remove. An old
+    /// Replaces the previous manifest `before` by this manifest. Returns the old files that must be removed. An old
     /// file is removed if the new run does not write the file, and if the file has not changed since it was written.
     #[must_use]
     pub fn replace(&mut self, before: &Self, folder: &Path) -> Vec<PathBuf> {

@@ -11,19 +11,19 @@ pub struct PipelineFigure {
     pub name: &'static str,
     /// Paper and figure number.
     pub source: &'static str,
-    /// Caption: the pipeline, and the effect to look for in the drawing.
+    /// Caption of the drawing: the pipeline, and the effect that the drawing shows.
     pub shows: &'static str,
     /// Text of the experiment file.
     pub experiment: &'static str,
-    /// Number of display fields that are drawn. If `None`, the drawing chooses the number.
+    /// Number of display fields that are drawn. If `None`, the drawing function chooses the number.
     pub fields: Option<u64>,
 }
 
-/// The papers' diagrams of pipelines. The papers name no scenes. The scenes are chosen so that the durations of the
-/// stages have the published relations to each other. Figure 4 also needs a chosen number of triangles and time per
-/// triangle. TRANSFORM, RENDER and COPY then take 15.6 ms each, as in row 5 of ACCURACY.md.
+/// The papers' diagrams of pipelines. The papers name no scenes. This project chose scenes for which the durations of
+/// the stages have the published ratios. For TR94's figure 4, this project also chose the number of triangles and the
+/// time per triangle. TRANSFORM, RENDER and COPY then take 15.6 ms each, as in row 5 of ACCURACY.md.
 ///
-/// Figures 3 and 4 show TR94's theory. Like rows 3 and 5 of ACCURACY.md, both figures follow the rules in the text of
+/// TR94's figures 3 and 4 show theory. Like rows 3 and 5 of ACCURACY.md, both figures follow the rules in the text of
 /// TR94. A renderer with a finished region continues with the next region (`finished = "store"`). By default renderers
 /// wait, which agrees with TR94's measurements.
 pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
@@ -83,7 +83,7 @@ impl PipelineFigure {
         Ok(plan.experiment(plan.load_scene()?).run()?)
     }
 
-    /// Returns the title above the drawing.
+    /// Returns the title of the diagram, which stands above the drawing.
     #[must_use]
     pub fn title(&self) -> String {
         format!("{} ({})", self.shows, self.source)

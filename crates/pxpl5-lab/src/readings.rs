@@ -18,5 +18,5 @@ mod rank;
 pub use fit::{FigureFit, Fit};
 pub use rank::{LeaveOneOut, Readings, run};
 
-/// Numbers of the Rendering Control figures that an interpretation changes, or could change.
+/// Numbers, in ACCURACY.md, of the Rendering Control figures that depend on the interpretation of the papers.
 pub const FIGURES: [&str; 12] = ["3", "4", "4b", "5", "6", "7", "7b", "7c", "16", "16b", "16c", "17"];

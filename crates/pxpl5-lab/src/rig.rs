@@ -42,7 +42,7 @@ pub struct Rig {
     pub tracker: TrackerConfig,
     /// Seed of the tracker's noise.
     pub seed: u64,
-    /// Number of passes of the pendulum through its low point to measure, at least 2.
+    /// Number of measured passes of the pendulum through its low point, at least 2.
     pub passes: usize,
 }
 
@@ -69,7 +69,7 @@ impl Rig {
     }
 
     /// Measures the latency under several lines of the screen in one run, and returns the run too. Photodiodes change
-    /// nothing on the machine, so each measurement is that of a run with this photodiode alone.
+    /// nothing on the machine, so each measurement equals the measurement of a run with only this photodiode.
     ///
     /// # Errors
     ///
@@ -176,13 +176,13 @@ fn behind_the_retrace(record: &Record, instant: Time) -> u64 {
     instant.since(record.tick(record.display().period_at(instant))).0
 }
 
-/// Returns the head pose that makes dark frames: the lamp is behind the viewer.
+/// Returns the head pose for dark frames, in which the lamp is behind the viewer.
 fn away() -> Pose {
     Pose { position: DVec3::ZERO, orientation: rotation::about_y(FRAC_PI_2) }
 }
 
-/// Returns a scene with a white wall straight ahead (along -z) that fills the view. The scene's own viewer looks away
-/// from the wall. The wall has two triangles, the smallest number for a rectangle.
+/// Returns a scene with a white wall (the lamp) straight ahead (along -z) that fills the view. The scene's own viewer
+/// looks away from the wall. The wall has two triangles, the smallest number for a rectangle.
 fn lamp() -> Scene {
     const CORNERS: [[f32; 2]; 4] = [[-1.6, -1.6], [1.6, -1.6], [1.6, 1.6], [-1.6, 1.6]];
     let vertex = |[x, y]: [f32; 2]| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
@@ -256,9 +256,9 @@ impl Photodiode {
         self.samples.push((at.0, is_light));
     }
 
-    /// Returns the sample of two periods ago if the screen cannot have changed since then. In this case the picture
-    /// need not be read again. The screen does not change while the ring carries no message. Two periods ago, the
-    /// display lit the same line. The state of the ring is recorded one period later than the sample of the screen.
+    /// Returns the sample of two periods ago if the ring has carried no message since then. In this case, the screen
+    /// cannot have changed, so that the picture need not be read again. The display lights each line in every second
+    /// period. The state of the ring is recorded one period later than the sample of the screen.
     fn unchanged(&self) -> Option<bool> {
         let [.., before, _, _, _, now] = self.ring[..] else { return None };
         let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;
@@ -266,7 +266,6 @@ impl Photodiode {
     }
 }
 
-/// Returns the mean of red, green and blue of a pixel.
 fn brightness(picture: &RgbImage, x: u32, y: u32) -> u32 {
     picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3
 }
@@ -291,8 +290,8 @@ fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outc
     }
 }
 
-/// Returns, for each report of the pendulum's low point, the first complete picture with the head pose of this report.
-/// The pictures come from the pipeline's records.
+/// Returns one picture for each report of the pendulum's low point: the first complete picture with the head pose of
+/// the report. The pictures come from the pipeline's records.
 fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<Vec<PictureTimes>, StudyError> {
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
     let arrived_at: BTreeMap<ViewNumber, Time> =

@@ -24,13 +24,13 @@ use serde_json::Value;
 use std::fmt::Display;
 use std::sync::Arc;
 
-/// The data that repeat a run up to a field, and the hashes that verify the repeated run.
+/// A checkpoint: the data that repeat a run up to a field, and the hashes that verify the repeated run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshot {
     /// Name and version of the JSON layout.
     pub schema: String,
-    /// Version of the program that wrote the snapshot.
+    /// Version of the program that wrote the checkpoint.
     pub version: String,
     /// Name of the machine's preset.
     pub machine: String,
@@ -40,13 +40,13 @@ pub struct Snapshot {
     pub level: String,
     /// Seed of the head motion.
     pub seed: u64,
-    /// Number of the field that begins at the instant of the snapshot. No event of this field has happened yet.
+    /// Number of the field that begins at the instant of the checkpoint. No event of this field has happened yet.
     pub field: PeriodNumber,
-    /// Instant of the snapshot in picoseconds.
+    /// Instant of the checkpoint in picoseconds.
     pub time_ps: u64,
-    /// Trace hash of all events before the snapshot.
+    /// Trace hash of all events before the checkpoint.
     pub trace_hash: String,
-    /// Number of events before the snapshot.
+    /// Number of events before the checkpoint.
     pub events: u64,
     /// Hash of the scene's contents.
     pub scene_hash: String,
@@ -59,7 +59,7 @@ impl Snapshot {
     /// Name and version of the JSON layout.
     pub const SCHEMA: &'static str = "pxpl5-snapshot/1";
 
-    /// Creates a snapshot of a machine that has just reached the retrace at which a field begins.
+    /// Creates a checkpoint of a machine that has just reached the retrace at which a field begins.
     #[must_use]
     pub fn of_machine(
         plan: &Plan,
@@ -84,15 +84,14 @@ impl Snapshot {
         }
     }
 
-    /// Creates a snapshot of a run of an experiment that was built in code.
+    /// Creates a checkpoint of a run of an experiment that was built in code.
     ///
-    /// The file of the snapshot does not describe such an experiment, so [`Snapshot::resume`] needs the same experiment
-    /// as its argument.
+    /// The file of the checkpoint does not describe such an experiment, so [`Snapshot::resume`] needs the same
+    /// experiment as its argument.
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] unless the run has just reached the start of a period
-    /// ([`Stepper::step_period`]).
+    /// Returns a [`SettingError`] unless the run has just reached the start of a period ([`Stepper::step_period`]).
     pub fn of_stepper(stepper: &Stepper) -> Result<Self, SettingError> {
         let (experiment, machine, field) = (stepper.experiment(), stepper.machine(), stepper.period());
         let start = machine.record().tick(field);
@@ -118,7 +117,7 @@ impl Snapshot {
     }
 
     /// Repeats the run of an experiment up to the saved period, and returns the run at this point. Error messages call
-    /// the snapshot's file `file`.
+    /// the checkpoint's file `file`.
     ///
     /// # Errors
     ///
@@ -136,7 +135,7 @@ impl Snapshot {
         Ok(stepper)
     }
 
-    /// Returns the text of the snapshot's file.
+    /// Returns the text of the checkpoint's file.
     #[must_use]
     pub fn to_text(&self) -> String {
         let sealed = Sealed { snapshot: self.clone(), checksum: self.checksum() };
@@ -145,7 +144,7 @@ impl Snapshot {
         text
     }
 
-    /// Reads the text of a snapshot's file. Error messages call the file `file`.
+    /// Reads the text of a checkpoint's file. Error messages call the file `file`.
     ///
     /// # Errors
     ///
@@ -182,7 +181,7 @@ impl Snapshot {
     ///
     /// # Errors
     ///
-    /// Returns a [`FileError`] if this version cannot read the experiment, or if the snapshot has no experiment file.
+    /// Returns a [`FileError`] if this version cannot read the experiment, or if the checkpoint has no experiment file.
     pub fn experiment(&self, file: &str) -> Result<ExperimentFile, FileError> {
         self.experiment_with(crate::registry(), file)
     }
@@ -200,7 +199,7 @@ impl Snapshot {
         ExperimentFile::with(registry).and_parse(experiment, &text).map_err(|error| foreign(file, error))
     }
 
-    /// Compares the hash of `scene` with the hash in the snapshot.
+    /// Compares the hash of `scene` with the hash in the checkpoint.
     ///
     /// # Errors
     ///
@@ -209,8 +208,8 @@ impl Snapshot {
         self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
     }
 
-    /// Compares the trace hash and the number of events of `machine` with the values in the snapshot. The machine must
-    /// have repeated the run up to the saved field.
+    /// Compares the trace hash and the number of events of `machine` with the values in the checkpoint. The machine
+    /// must have repeated the run up to the saved field.
     ///
     /// # Errors
     ///
@@ -230,17 +229,15 @@ impl Snapshot {
     }
 }
 
-/// Creates the error of a file that is no snapshot.
 fn no_snapshot(file: &str, reason: String) -> FileError {
     FileError::because(FileErrorKind::Syntax, format_args!("this is not a checkpoint: {reason}")).in_file(file)
 }
 
-/// Creates the error of a snapshot whose experiment cannot be repeated.
 fn foreign(file: &str, reason: impl Display) -> FileError {
     FileError::because(FileErrorKind::Foreign, reason).in_file(file)
 }
 
-/// A snapshot with its checksum, in the form that is written to the file.
+/// A checkpoint with its checksum, in the form that is written to the file.
 #[derive(Serialize, Deserialize)]
 struct Sealed {
     #[serde(flatten)]

@@ -16,7 +16,7 @@ pub struct Suitability {
     pub lacks: Option<String>,
 }
 
-/// Tests every pipeline of a registry on a machine. A scene of one triangle is loaded, and all programs start.
+/// Tests every pipeline of a registry on a machine. The test loads a scene of one triangle and starts all programs.
 ///
 /// # Panics
 ///

@@ -98,7 +98,7 @@ impl Sweep {
         &self.base
     }
 
-    /// Returns the folder of the sweep's file. Relative file names in the settings refer to this folder.
+    /// Returns the folder of the sweep's experiment file. Relative file names in the settings refer to this folder.
     fn folder(&self) -> PathBuf {
         self.base.sweep.as_ref().map(|sweep| sweep.folder.clone()).unwrap_or_default()
     }

@@ -14,7 +14,7 @@ pub struct WhatIf {
     pub key: &'static str,
     /// The value of the setting on the unchanged machine.
     pub from: u64,
-    /// The value of the setting on the changed machine: 10 % better, and changed by at least one step.
+    /// Value of the setting on the changed machine: 10 % better, but at least one step of the setting better.
     pub to: u64,
     /// Mean latency in milliseconds without (first) and with (second) the change. `None` if no picture was complete.
     pub latency_ms: [Option<f64>; 2],
@@ -53,8 +53,8 @@ impl Knob {
         }
     }
 
-    /// Returns the old value of the setting, the new value, and the machine with 10 % more of the resource. Returns
-    /// `None` if the machine cannot have more of the resource.
+    /// Returns the old value of the setting, the new value, and the machine with the new value, which has 10 % more of
+    /// the resource. Returns `None` if the machine cannot have more of the resource.
     fn more(&self, config: &MachineConfig) -> Option<(u64, u64, MachineConfig)> {
         let from = self.value(config)?;
         let to = if self.is_time { from.min((from * 10).div_ceil(11)) } else { from + (from / 10).max(1) };

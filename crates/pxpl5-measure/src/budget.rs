@@ -45,7 +45,7 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// Returns the mean over the pictures of several runs, each run weighted by its number of pictures.
+    /// Returns the mean stage times over the pictures of several runs, each run weighted by its number of pictures.
     #[must_use]
     pub fn pooled(budgets: impl Iterator<Item = Self>) -> Self {
         let known: Vec<Self> = budgets.filter(|budget| budget.n > 0).collect();
@@ -96,10 +96,10 @@ pub(crate) struct BudgetSum {
 }
 
 /// Number of poses that are kept in addition to the pose of the newest picture. These older poses are needed because a
-/// slow display memory shows older views than a fast display memory.
+/// display memory that is rarely drawn shows older views than a display memory that is often drawn.
 const OLDER_POSES: usize = 64;
 
-/// Poses of the head that a pipeline requested, by the numbers of their views.
+/// Head poses that a pipeline requested. The key of a pose is the number of the view that is drawn for the pose.
 pub(crate) type Poses = BTreeMap<ViewNumber, SampledPose>;
 
 pub(crate) const STAGES: usize = 6;
@@ -124,7 +124,6 @@ impl BudgetSum {
         }
     }
 
-    /// Returns the mean time of each latency stage.
     pub(crate) fn result(self) -> Budget {
         let n = self.stages_ms[0].count();
         let means = self.stages_ms.map(|samples| samples.statistics().mean);
@@ -134,12 +133,12 @@ impl BudgetSum {
     }
 }
 
-/// Returns the poses that the head of a run still has in memory.
+/// Returns the head poses for which views were drawn, as far as the run has not discarded these poses.
 pub(crate) fn poses(run: &FinalResults<'_>) -> Poses {
     run.head.map(|head| head.sampled()).unwrap_or_default().into_iter().map(|s| (s.number, s)).collect()
 }
 
-/// Returns the duration of each stage, for every complete picture whose measured pose is still in memory.
+/// Returns the duration of each stage in milliseconds, for each complete picture whose head pose is still in memory.
 pub(crate) fn of_pictures<'a>(
     run: &FinalResults<'_>,
     poses: &Poses,

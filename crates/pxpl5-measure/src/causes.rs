@@ -21,7 +21,7 @@ pub struct ErrorCauses {
     pub interaction_px: f64,
 }
 
-/// Contribution of one cause to the error.
+/// One cause of error, and its contribution to the mean error of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorPart {
     /// The cause that was turned off.

@@ -20,7 +20,7 @@ impl Content {
     }
 }
 
-/// The primitives that rays can hit: all structures of the scene in the world's frame.
+/// The primitives that rays can hit: all structures of the scene in world coordinates.
 ///
 /// Structures fixed to the head are left out, because such structures are always displayed at the right position.
 #[derive(Debug, Default)]
@@ -37,7 +37,8 @@ struct Body {
     spheres: Vec<(DVec3, f64)>,
 }
 
-/// A group of consecutive triangles with a bounding sphere. Consecutive triangles of a mesh are mostly neighbours.
+/// A group of consecutive triangles with a bounding sphere, so that a ray can skip the group. Consecutive triangles of
+/// a mesh are mostly neighbours.
 #[derive(Debug)]
 struct Patch {
     centre: DVec3,

@@ -40,15 +40,14 @@ pub struct CriticalPath {
     pub parts: Vec<PathPart>,
     /// The wait with the largest share, as a sentence.
     pub limited_by: String,
-    /// Waits of the last followed picture as text. The first wait ends at the screen, and each other wait is earlier.
+    /// Waits of the last followed picture as text, from the screen back to the start of TRANSFORM.
     pub chain: Vec<String>,
 }
 
-/// Largest number of pictures whose chains of waits are followed back from the screen to TRANSFORM. Even a long run
-/// still has all records of its last 24 pictures.
+/// Largest number of pictures whose chains of waits are followed back from the screen to TRANSFORM. A long run discards
+/// old records, but keeps all records of its last 24 pictures.
 pub const PICTURES_FOLLOWED: usize = 24;
 
-/// Largest number of waits of a chain that are printed.
 const LINKS_PRINTED: usize = 16;
 
 impl CriticalPath {

@@ -25,7 +25,8 @@ pub struct DepthPicture {
 }
 
 impl DepthPicture {
-    /// Creates a picture from the depth of each pixel, in metres along the axis of the view.
+    /// Creates the depths of a picture. `depth` returns the depth of the pixel (x, y), in metres along the axis of the
+    /// view.
     #[must_use]
     pub fn from_fn(width: u32, height: u32, depth: impl Fn(u32, u32) -> f32) -> Self {
         let depth = &depth;
@@ -59,8 +60,8 @@ struct SeenRow {
     /// Depth of each pixel's content, seen from the old pose. Infinity if the content is behind the eye of the new
     /// pose.
     old_depth: Vec<f32>,
-    /// First column and first row of the screen at or after each position, within the limits of the rows that are
-    /// drawn.
+    /// First column at or to the right of `x`, limited to the columns of the screen. The list `next_row` has the first
+    /// row at or below `row`, limited to the rows that are drawn.
     next_column: Vec<i32>,
     next_row: Vec<i32>,
 }
@@ -84,7 +85,6 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Computes the lists for the pairs of pixels in the rows `above` and `below`.
     fn join(&mut self, above: &SeenRow, below: &SeenRow) {
         smaller(&mut self.near, &above.old_depth, &below.old_depth);
         larger(&mut self.far, &above.old_depth, &below.old_depth);
@@ -117,7 +117,7 @@ pub(crate) struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Writes the pixels of the rows `targets` of the field, seen from another pose. Rows are counted within the field.
+    /// Writes the rows `targets` of the field, as seen from the pose `now`. Rows are counted within the field.
     ///
     /// Pixels without content become black. Returns the number of these pixels.
     pub(crate) fn move_rows(&self, now: &Pose, targets: Range<u32>, out: &mut RgbImage) -> u64 {
@@ -182,10 +182,11 @@ impl Drawing<'_> {
         }
     }
 
-    /// Returns the rows of the field whose pixels can lie in some rows of the moved field.
+    /// Returns the rows of the picture whose pixels can appear in the rows `targets`, as seen from the pose `now`. Rows
+    /// are counted within the field.
     ///
-    /// For both ends of a target row, the source rows at the smallest and at the largest depth are computed. The
-    /// sources of all points of the target row lie between these rows, because projections keep lines straight.
+    /// The four corners of the target rows are projected into the picture, at the smallest and at the largest depth.
+    /// All sources lie between these projections, because projections keep lines straight.
     fn source_rows(&self, now: &Pose, targets: &Range<u32>) -> Range<u32> {
         let all = 0..self.rows.count(self.picture.height());
         if *targets == all {
@@ -218,7 +219,7 @@ impl Drawing<'_> {
     }
 }
 
-/// Nearest content found so far for each pixel of some rows.
+/// Nearest content found so far for each pixel of the rows that are drawn.
 struct Target {
     width: u32,
     rows: Range<u32>,
@@ -455,8 +456,8 @@ mod tests {
         }
     }
 
-    /// A step of t metres to the right moves a plane at z metres by f t / z pixels to the left. A near plane in front of
-    /// a far plane hides f t (1 / near - 1 / far) columns.
+    /// A step of t metres to the right moves a plane at z metres by f t / z pixels to the left. A near plane in front
+    /// of a far plane hides f t (1 / near - 1 / far) columns.
     #[test]
     fn a_step_moves_planes_by_f_t_by_z_and_opens_the_difference() {
         let focal = HmdView::ntsc().focal_px();

@@ -16,13 +16,13 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    /// Returns true if two views, drawn for the moments `self` and `other`, give the same picture.
+    /// Returns true if two views with the poses and times `self` and `other` give the same picture.
     pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
         self.pose == other.pose && self.objects_at == other.objects_at
     }
 }
 
-/// The source of a displayed pixel.
+/// The pose or the poses for which a displayed pixel was drawn.
 #[derive(Clone, Debug)]
 pub(crate) enum Drawn {
     View(Moment),
@@ -34,16 +34,16 @@ pub(crate) enum Drawn {
     },
     /// A picture that the display shifts during scan-out (raster offset).
     ShiftedRaster(Moment, DVec2),
-    /// Faces of a cube around the eye, read in the latched (sampled and held) direction of the head. The nearest scene
-    /// point in all display memories is visible.
+    /// Six faces of a cube around the eye, read in the direction that the display latched (sampled and held). The pixel
+    /// shows the nearest scene point of all display memories.
     Faces(FacesSeen),
 }
 
 /// The display memories and the direction from which a pixel of an address recalculation display was read.
 #[derive(Clone, Debug)]
 pub(crate) struct FacesSeen {
-    /// For each display memory, starting with the lowest: the eye's pose in the latched direction, and a flag for each
-    /// structure of the scene. The flag is true if the memory holds the structure.
+    /// For each display memory, in ascending order: the eye's pose in this memory, turned to the latched direction, and
+    /// a flag for each structure of the scene. The flag is true if the memory holds the structure.
     pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
     /// Instant for which the latched direction was predicted.
     pub(crate) aimed_at: Time,

@@ -94,13 +94,13 @@ enum Content {
     Ideal(Estimator),
     /// A device moves pictures to the newest pose of the head.
     Reprojected(Reprojector),
-    /// A video of the real world is delayed with the pictures. Video and pictures show the pose at which the head was
-    /// measured.
+    /// A video of the real world is delayed with the pictures. Video and pictures show the measured pose of the head.
     DelayedVideo,
 }
 
 impl Showing {
-    /// Returns the device that moves pictures, with the rates that the device needs on a display.
+    /// Returns the device that moves pictures, with the numbers of pixels and poses per second that the device needs on
+    /// `display`. Returns `None` if no device moves pictures.
     fn device(self, display: &dyn Display) -> Option<Device> {
         let setting = match self {
             Self::RasterOffset => Reprojection::VDRT,
@@ -325,10 +325,11 @@ impl Evaluation {
         }
     }
 
-    /// Checks at many screen positions of a field if the content that should be visible lies beyond the edge of the
-    /// drawn picture.
+    /// Checks at many screen positions of a field if the content for a position lies beyond the edge of the drawn
+    /// picture. Such a position stays empty.
     ///
-    /// If pictures are moved with depth, only the evaluated pixels are checked, and this method checks none.
+    /// If pictures are moved with depth, this method does nothing, because the evaluation of the pixel errors makes the
+    /// same check.
     fn look_for_edges(&self, run: &FinalResults<'_>, field: PeriodNumber, eye: &mut EyeSum) {
         let display = run.record.display();
         let view = &self.evaluator.view;
@@ -366,7 +367,6 @@ struct Pixel {
     light: Time,
 }
 
-/// Errors collected so far.
 #[derive(Debug)]
 struct Collected {
     grid: [Distribution; 2],
@@ -377,8 +377,8 @@ struct Collected {
     eye: EyeSum,
 }
 
-/// Number of pixel errors that are kept, divided by the number of fields that are kept. For
-/// [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields, the kept errors take 4 MiB in pixels and 4 MiB in degrees.
+/// Limit of the number of pixel errors that are kept individually, divided by the limit of the number of kept fields.
+/// For [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields, the kept errors take 4 MiB in pixels and 4 MiB in degrees.
 const KEPT_OF_GRID: usize = 8;
 
 impl Collected {

@@ -37,7 +37,7 @@ impl fmt::Debug for FieldMisregistration {
 
 /// Errors over a grid of pixels and all fields of the result window.
 ///
-/// Only pixels of pictures that were complete, in time and shown within the result window are evaluated. The fields
+/// Only pixels of pictures that were complete, in time and shown within the result window are evaluated. The members
 /// `behind`, `empty`, `incomplete` and `before` count the remaining pixels. Statistics of no pixels are NaN (null in
 /// JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -62,13 +62,13 @@ pub struct PixelErrors {
     pub before: u64,
     /// Errors of each field, in the order of time.
     ///
-    /// A run that keeps only statistics has the first [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields here.
+    /// If a run keeps only statistics, the list has only its first [`KEPT_SAMPLES`](pxpl5_run::KEPT_SAMPLES) fields.
     #[serde(skip)]
     pub by_field: Vec<FieldMisregistration>,
     /// Error of each evaluated pixel, in pixels.
     ///
-    /// A run that keeps only statistics has the first 20,971 fields here. Percentiles of longer runs have a relative
-    /// error of at most 1/2048.
+    /// If a run keeps only statistics, the list has only the pixels of its first 20,971 fields. Percentiles of longer
+    /// runs have a relative error of at most 1/2048.
     #[serde(skip)]
     pub all_px: Vec<f64>,
 }
@@ -92,7 +92,7 @@ pub(crate) fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32
 /// Numbers of columns and rows of the positions that are checked against the edge of the picture.
 const LATTICE: (u32, u32) = (16, 12);
 
-/// Returns the pixels of [`LATTICE`] in a display period, with the times at which the pixels are lit.
+/// Returns the pixels of the grid [`LATTICE`] in a display period, with the times at which the pixels are lit.
 pub(crate) fn lattice(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
     spread(display, period, LATTICE)
 }
@@ -116,10 +116,11 @@ pub enum Showing {
     Plain,
     /// The raster is shifted during scan-out (VDRT).
     RasterOffset,
-    /// An ideal reference that uses no picture: each pixel shows the view predicted for the time at which it is lit.
+    /// An ideal display without pictures, for comparison. Each pixel shows the view that is predicted for the instant
+    /// at which the pixel is lit.
     ///
-    /// The prediction uses all tracker reports that the host has at that time. The reference is computed after the run
-    /// and costs no simulated time.
+    /// The prediction uses all tracker reports that the host has at that time. The pixels are computed after the run
+    /// and cost no simulated time.
     Ideal,
     /// A device moves each picture to the newest pose.
     Reprojected(Reprojection),

@@ -6,8 +6,8 @@ use pxpl5_run::{KEPT_SAMPLES, Reprojection};
 use pxpl5_sim::Time;
 use serde::Serialize;
 
-/// Results in addition to the pixel errors. These results exist if pixels are lit for more than an instant, or if a
-/// device moves pictures.
+/// Smear of the lit pixels, and results of a device that moves pictures. The report exists if pixels are lit for more
+/// than an instant, or if a device moves pictures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EyeReport {
     /// Distance that the content of a pixel moves across the screen while the pixel is lit, in pixels. `None` if pixels
@@ -30,10 +30,11 @@ pub struct ReprojectionReport {
     pub pose_age_ms: Percentiles,
     /// Number of checked pixels. For each of these pixels, the evaluation searched the picture for the pixel's content.
     pub looked_at: u64,
-    /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was checked.
+    /// Share of the checked pixels, 0 to 1, whose content lies beyond the edge of the picture. `None` if no pixel was
+    /// checked.
     pub empty_share: Option<f64>,
-    /// Share of the checked pixels, 0 to 1, whose content is hidden in the picture. `None` unless the device uses
-    /// depth.
+    /// Share of the checked pixels, 0 to 1, whose content is hidden by nearer objects in the picture. `None` unless the
+    /// device uses depth.
     pub disoccluded_share: Option<f64>,
 }
 
@@ -47,7 +48,6 @@ pub(crate) struct Device {
     pub(crate) has_depth: bool,
 }
 
-/// Sums from which an [`EyeReport`] is computed.
 #[derive(Debug)]
 pub(crate) struct EyeSum {
     smear: Option<Distribution>,
@@ -81,7 +81,7 @@ impl EyeSum {
         }
     }
 
-    /// Adds a checked pixel, for whose content the evaluation has searched the picture.
+    /// Counts a pixel whose content the evaluation has searched in the picture.
     pub(crate) fn looked_at(&mut self, is_beyond: bool, is_hidden: bool) {
         self.looked_at += 1;
         self.beyond += u64::from(is_beyond);

@@ -23,7 +23,8 @@ pub struct HeadSum {
 }
 
 impl HeadSum {
-    /// Creates the observer, for [`Experiment::observed_by`](pxpl5_run::Experiment::observed_by).
+    /// Creates the streaming observer. This function is the argument of
+    /// [`Experiment::observed_by`](pxpl5_run::Experiment::observed_by).
     #[must_use]
     pub fn begin() -> Box<dyn StreamingObserver> {
         Box::<Self>::default()
@@ -46,7 +47,6 @@ impl StreamingObserver for HeadSum {
     }
 }
 
-/// Results of a [`HeadSum`].
 #[derive(Clone, Debug)]
 pub(crate) struct HeadResults {
     pub(crate) end_to_end: Budget,

@@ -1,5 +1,5 @@
-//! Results that concern the head. They come from the streaming observer, or else from the records of the run that are
-//! still in memory.
+//! Results that concern the head. The source is the streaming observer of the run. Without an observer, the source is
+//! the records that the run still has in memory.
 
 use crate::budget::{Budget, BudgetSum, of_pictures, poses};
 use crate::error_observer::ErrorSum;
@@ -63,7 +63,7 @@ fn evaluated(outcome: &Outcome, showing: Showing, without: Option<Cause>) -> (Pi
 }
 
 impl EyeReport {
-    /// Evaluates a run with a head in the display mode `showing`.
+    /// Returns the report of a run with a head, for the display mode `showing`.
     ///
     /// Returns `None` for a run without a head, and for a display without persistence and without reprojection.
     #[must_use]
@@ -110,7 +110,6 @@ impl Budget {
 }
 
 impl Turns {
-    /// Returns the rotation latencies of a run.
     pub(crate) fn of(outcome: &Outcome) -> Self {
         if let Some(said) = HeadResults::from_observer(outcome) {
             return said.turns.clone();

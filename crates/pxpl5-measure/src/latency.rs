@@ -3,7 +3,7 @@
 use pxpl5_run::{DefinedStatistics, LATENCY_PARTS, LatencyParts, Outcome, Samples};
 use std::fmt;
 
-/// Returns the latency parts of the complete pictures in the result window. Pictures without records in memory
+/// Returns the latency parts of the complete pictures in the result window. Pictures whose records were discarded
 /// ([`pxpl5_run::Keep`]) are left out.
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
@@ -21,7 +21,7 @@ pub(crate) fn latency_part_statistics(outcome: &Outcome) -> Vec<LatencyPartStati
     named.collect()
 }
 
-/// Statistics of one part of the latency.
+/// One part of the latency of pictures, with its statistics.
 #[derive(Clone, PartialEq, serde::Serialize)]
 pub struct LatencyPartStatistics {
     /// Name of the part, as in [`LATENCY_PARTS`].
@@ -44,13 +44,14 @@ impl fmt::Debug for LatencyPartStatistics {
     }
 }
 
-/// Latency of one surface, or of a pair of surfaces, until an event.
+/// Latency of one surface, or of a pair of surfaces, until the end of COPY, until the swap, or until the pixels are
+/// lit.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SurfaceStatistics {
-    /// Label of the surface (`left`, `right`), or `pair`. A pair lasts from the first TRANSFORM until both surfaces
-    /// reach the event.
+    /// Label of the surface (`left`, `right`), or `pair`. The latency of a pair lasts from the first TRANSFORM until
+    /// both surfaces have reached the end `until`.
     pub of: String,
-    /// Name of the final event: `end_of_copy`, `swap` or `light`.
+    /// Name of the end of the latency: `end_of_copy`, `swap` or `light`.
     pub until: &'static str,
     /// Statistics of the latency in milliseconds, and the definition of the latency.
     #[serde(flatten)]

@@ -7,16 +7,17 @@ use tracking::view::HmdView;
 /// Error over time in the middle of the picture, caused by a constant latency. The curve has one point per NTSC field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatencyCurve {
-    /// Time from the drawn pose until the picture is lit, in milliseconds.
+    /// Time from the instant of the drawn pose until the picture is lit, in milliseconds.
     pub latency_ms: u64,
     /// Points of the curve: time in seconds and error in pixels.
     pub points: Vec<(f64, f64)>,
 }
 
 impl LatencyCurve {
-    /// Computes the curve over `seconds`. At time t the display shows the head's pose at t - `latency_ms`.
+    /// Computes the curve for the first `seconds` seconds of `motion`. At time t the display shows the head's pose at t
+    /// - `latency_ms`.
     ///
-    /// The error is the displacement of a point `distance_m` metres ahead of the head.
+    /// The error is the displacement on the screen of a point `distance_m` metres ahead of the head.
     #[must_use]
     pub fn of(motion: &dyn Motion, latency_ms: u64, seconds: u64, distance_m: f64) -> Self {
         let view = HmdView::ntsc();
@@ -29,7 +30,7 @@ impl LatencyCurve {
         Self { latency_ms, points: points.collect() }
     }
 
-    /// Returns the mean error in pixels.
+    /// Returns the mean of the errors at all points of the curve, in pixels.
     #[must_use]
     pub fn mean_px(&self) -> f64 {
         self.points.iter().map(|p| p.1).sum::<f64>() / self.points.len().max(1) as f64

@@ -13,7 +13,7 @@ use pxpl5_wire::SurfaceId;
 
 /// Common measurements of an [`Outcome`].
 pub trait Measured {
-    /// Returns all results as numbers.
+    /// Returns the report of the run, which has all results as numbers with units.
     fn report(&self) -> Report;
 
     /// Returns the value of the quantity with the name `name`, one of [`QUANTITIES`](crate::QUANTITIES). Returns `None`
@@ -26,8 +26,8 @@ pub trait Measured {
     /// [`SettingError`] with the most similar name if no quantity is called `name`.
     fn quantity(&self, name: &str) -> Result<Option<f64>, SettingError>;
 
-    /// Returns the latency parts of the complete pictures in the result window. Pictures without records in memory are
-    /// left out.
+    /// Returns the latency parts of the complete pictures in the result window. Pictures whose records were discarded
+    /// are left out.
     fn latency_parts(&self) -> Vec<LatencyParts>;
 
     /// Returns the latencies of each eye and of the pair of eyes. Empty if the eyes share one TRANSFORM.

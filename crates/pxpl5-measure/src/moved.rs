@@ -18,11 +18,11 @@ use tracking::view::HmdView;
 pub(crate) enum Moved {
     /// The pixel shows content of a picture, with the pose for which the picture was drawn.
     Shows(Content, Drawn),
-    /// No content, because the screen shows no picture there that can be evaluated, for example an incomplete picture.
+    /// No picture that can be evaluated covers the pixel. For example, the picture at the pixel is incomplete.
     NotComplete(Seen),
-    /// No content, because the position lies beyond the edge of the picture.
+    /// No content, because the pixel's content lies beyond the edge of the drawn picture.
     Beyond,
-    /// No content, because a nearer object hides the content in the picture.
+    /// No content, because a nearer object hides the content in the drawn picture.
     Hidden,
 }
 
@@ -30,7 +30,8 @@ pub(crate) enum Moved {
 /// because the pose depends on the position if parts of a picture have different poses.
 const STEPS: usize = 4;
 
-/// Returns the content of a pixel that is lit from the time `at`, after the picture has been moved to the pose `now`.
+/// Returns the content of a pixel that is lit from the time `at` on, after the picture has been moved to the pose
+/// `now`.
 pub(crate) fn moved(
     (evaluator, shown, run): (&Evaluator, &Shown, &FinalResults<'_>),
     (by, now): (Warp, &Pose),

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 /// (null in JSON).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Percentiles {
-    /// Number of values.
+    /// Number of numbers in the set.
     pub n: u64,
-    /// Arithmetic mean of the values.
+    /// Arithmetic mean of the numbers.
     #[serde(deserialize_with = "number_or_nan")]
     pub mean: f64,
     /// Median: the smallest value that is at least as large as half of the values.
@@ -21,7 +21,7 @@ pub struct Percentiles {
     /// 99th percentile: the smallest value that is at least as large as 99 % of the values.
     #[serde(deserialize_with = "number_or_nan")]
     pub p99: f64,
-    /// Largest value.
+    /// Largest number of the set.
     #[serde(deserialize_with = "number_or_nan")]
     pub max: f64,
 }

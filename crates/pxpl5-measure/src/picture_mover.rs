@@ -75,8 +75,8 @@ impl<'a> PictureMover<'a> {
         (0..width).step_by(length as usize).map(move |x| x..(x + length).min(width))
     }
 
-    /// Writes the moved rows of a field by depth, if the field shows one picture of one pose. Returns false without
-    /// writing if the field shows several pictures, or if a row has several poses.
+    /// Writes the rows of a field, moved by the depths of their pixels, if the field shows one picture of one pose.
+    /// Returns false without writing if the field shows several pictures, or if a row has several poses.
     fn move_whole_rows(
         &self,
         reprojector: &Reprojector,
@@ -106,8 +106,8 @@ impl<'a> PictureMover<'a> {
         true
     }
 
-    /// Returns the moment for which all pixels of a field were drawn. Returns `None` if the pixels were drawn for
-    /// different moments, or if a pixel shows no complete picture.
+    /// Returns the pose and the time for which all pixels of a field were drawn. Returns `None` if the pixels differ in
+    /// pose or time, or if a pixel shows no complete picture.
     fn only_moment(&self, screen: &RgbImage, field: PeriodNumber) -> Option<Moment> {
         let display = self.run.record.display();
         let mut only: Option<Moment> = None;

@@ -188,7 +188,7 @@ pub static QUANTITIES: [Quantity; 57] = [
     of_run("critical_path.other", PATH, |_, r| Some(r.critical_path.as_ref()?.share(Resource::Other))),
 ];
 
-/// Returns a number of pictures due, or NaN if no picture was due.
+/// Returns the number that `count` reads from the result of the due pictures, or NaN if no picture was due.
 fn of_due(summary: &Summary, count: fn(&DuePictures) -> u64) -> f64 {
     summary.due.map_or(f64::NAN, |due| count(&due) as f64)
 }
@@ -218,13 +218,13 @@ impl Measure {
         QUANTITIES.iter().filter(is_count).map(Self).collect()
     }
 
-    /// Name of the number of pictures that were due.
+    /// Name of the quantity that counts the due pictures.
     pub const DUE: &'static str = "pictures_due";
 
-    /// Name of the number of due pictures that were not shown.
+    /// Name of the quantity that counts the due pictures that were not shown.
     pub const NOT_SHOWN: &'static str = "missed_retraces";
 
-    /// Name of the number of evaluated pixels.
+    /// Name of the quantity that counts the evaluated pixels.
     pub const EVALUATED: &'static str = "error_px.n";
 
     /// Returns the name of the quantity, which includes the unit.

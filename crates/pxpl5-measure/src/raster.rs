@@ -40,8 +40,8 @@ impl<'a> Vdrt<'a> {
         Self { estimator, display }
     }
 
-    /// Returns the raster offset of a field whose picture was drawn for the pose `drawn_for`. The calls must have
-    /// fields in ascending order.
+    /// Returns the raster offset of a field whose picture was drawn for the pose `drawn_for`. Successive calls must
+    /// have ascending fields.
     pub fn offset(&mut self, field: PeriodNumber, drawn_for: &Pose) -> RasterOffset {
         offset(&mut self.estimator, self.display, field, drawn_for)
     }
@@ -85,8 +85,8 @@ enum MovedBy<'a> {
 impl<'a> RasterOffsets<'a> {
     /// Returns the corrections for a run's pictures, or `None` if the head's display shows pictures as drawn.
     ///
-    /// Under VDRT a field has no offset if the field shows no picture, or if the picture was not drawn for a single
-    /// pose.
+    /// If the display shifts the raster (VDRT), some fields have no offset: fields without a picture, and fields whose
+    /// picture was drawn for several poses.
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let head = outcome.head()?;
@@ -113,8 +113,8 @@ impl<'a> RasterOffsets<'a> {
 
     /// Returns the raster offset in one display period.
     ///
-    /// Returns `None` if nothing is shown, or if the picture was not drawn for a single pose. Also returns `None` if
-    /// another device moves pictures.
+    /// Returns `None` if nothing is shown, or if the picture was not drawn for a single pose. Also returns `None` if a
+    /// device moves pictures to the newest pose instead.
     #[must_use]
     pub fn field(&self, field: PeriodNumber) -> Option<&RasterOffset> {
         let MovedBy::Offsets(offsets) = &self.moved_by else { return None };

@@ -61,7 +61,7 @@ impl Evaluator {
         })
     }
 
-    /// Returns the point of the scene that a drawn pixel shows.
+    /// Returns the point of the scene that the pixel at the position `place` shows.
     pub(crate) fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
@@ -83,22 +83,22 @@ impl Evaluator {
         }
     }
 
-    /// Returns the error of a picture position that is lit at the time `at`, relative to the correct position of its
-    /// content at this time.
+    /// Returns the distance from the position `place` to the correct position of the content that is displayed at
+    /// `place`. The correct position is the position at the time `at`, when the pixel is lit.
     ///
     /// Returns `None` if the content is behind the eye.
     pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Option<Misregistration> {
         self.error_of(place, &self.content(drawn, place), at)
     }
 
-    /// Returns the error of the content `content`, which is displayed at the screen position `place`. Returns `None` if
-    /// the content is behind the eye.
+    /// Returns the distance from the position `place`, where `content` is displayed, to the correct position of
+    /// `content` at the time `at`. Returns `None` if the content is behind the eye.
     pub(crate) fn error_of(&self, place: DVec2, content: &Content, at: Time) -> Option<Misregistration> {
         self.error_between(place, content, at, at)
     }
 
-    /// Returns the pixel error of content at a screen position, with the head's pose at one time and the moving objects
-    /// at another time.
+    /// Returns the distance from the position `place` to the correct position of `content`. The correct position has
+    /// the head at the time `head_at` and moving objects at the time `objects_at`.
     pub(crate) fn error_between(
         &self,
         place: DVec2,
@@ -119,9 +119,9 @@ impl Evaluator {
 pub(crate) enum Warped {
     /// The visible content, with its position in the picture.
     Seen(Content, DVec2),
-    /// No content, because the position lies beyond the edge of the picture.
+    /// No content, because the content lies beyond the edge of the drawn picture.
     Beyond,
-    /// No content, because a nearer object hides the content in the picture.
+    /// No content, because a nearer object hides the content in the drawn picture.
     Hidden,
 }
 
@@ -129,7 +129,8 @@ pub(crate) enum Warped {
 const NEARER: f64 = 1e-4;
 
 impl Evaluator {
-    /// Returns the content of a picture at a screen position, after the picture is moved to a pose by its depth.
+    /// Returns the content at the screen position `place` after each pixel of a picture was moved to the pose `now` by
+    /// its depth.
     pub(crate) fn warped(&self, drawn: &Moment, now: &Pose, place: DVec2) -> Warped {
         let ahead = now.orientation * self.direction(place);
         let met = self.contents.met(now.position, ahead, drawn.objects_at);
@@ -149,8 +150,8 @@ impl Evaluator {
         -drawn.pose.view_of(content).z
     }
 
-    /// Returns the point at which a ray meets the background of a picture. The background is a plane at the scene's
-    /// distance.
+    /// Returns the point at which a ray from the pose `now` meets the background of a picture. The background is a
+    /// plane at the distance `distance_m` from the pose of the picture.
     fn on_background(&self, drawn: &Moment, now: &Pose, ahead: DVec3) -> Option<Content> {
         let axis = drawn.pose.orientation * DVec3::NEG_Z;
         let begin = (now.position - drawn.pose.position).dot(axis);
@@ -168,8 +169,8 @@ impl Evaluator {
         }
     }
 
-    /// Returns the smear of content: the distance that the content moves across the screen between two times, in
-    /// pixels.
+    /// Returns the smear of a content, which is the distance that the content moves across the screen between two
+    /// times, in pixels.
     ///
     /// Returns `None` if the content is behind the eye.
     pub(crate) fn way_px(&self, content: &Content, from: Time, to: Time) -> Option<f64> {
@@ -181,7 +182,7 @@ impl Evaluator {
     }
 }
 
-/// Interpolates poses and times between two moments. `part` is 0 at `from` and 1 at `to`.
+/// Interpolates between the poses and times `from` and `to`. `part` is 0 at `from` and 1 at `to`.
 fn between(from: &Moment, to: &Moment, part: f64) -> Moment {
     let begin = from.objects_at.0 as f64;
     let end = to.objects_at.0 as f64;
@@ -216,7 +217,7 @@ impl<'a> Registration<'a> {
         Some(Self { evaluator: Evaluator::new(&run, head), shown: Shown::of_run(&run, head), run })
     }
 
-    /// Returns the error of a pixel in a field that scans the pixel's line.
+    /// Returns the error of the pixel (`x`, `y`). The field `field` must scan the line of the pixel.
     ///
     /// Returns `None` if the picture shown was not complete in time, or if its content is behind the eye.
     #[must_use]

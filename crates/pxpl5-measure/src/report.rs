@@ -122,7 +122,7 @@ pub struct Report {
     pub utilisation: Option<Utilisation>,
     /// Chain of waits that make up the latency of the last complete pictures. `None` if no picture was complete.
     pub critical_path: Option<CriticalPath>,
-    /// Hash of all events of the run and of this report's statistics, up to the field `arp`.
+    /// Hash of all events of the run, and of the statistics of this report up to the member `arp`.
     pub trace_hash: String,
     /// Number of events that the simulation handled.
     pub events: u64,
@@ -188,8 +188,8 @@ fn hmd_of(outcome: &Outcome) -> HmdConfig {
 }
 
 impl Report {
-    /// Returns the number of region lines that were overwritten before the display showed them. `None` if the display
-    /// does not count such lines.
+    /// Returns the number of lines of regions that were overwritten before the display showed these lines. `None` if
+    /// the display does not count such lines.
     #[must_use]
     pub fn lines_never_shown(&self) -> Option<u64> {
         let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);

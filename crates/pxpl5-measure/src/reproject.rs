@@ -77,7 +77,7 @@ pub(crate) fn fill_row(
     empty
 }
 
-/// Writes some pixels of one row of a moved picture. Returns the number of pixels without a source.
+/// Writes the pixels `xs` of the row `y` of a moved picture. Returns the number of pixels without a source.
 pub(crate) fn move_row(
     source: &RgbImage,
     rows: Rows,

@@ -56,7 +56,7 @@ impl Resource {
         }
     }
 
-    /// Returns a text that describes the work of the resource while a picture waits for the resource.
+    /// Returns a description of the work for which a picture waits at this resource.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {

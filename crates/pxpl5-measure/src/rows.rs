@@ -1,4 +1,4 @@
-//! Rows of a picture that a display period lights: all rows, or those of one field.
+//! Rows of a picture that a display period lights: all rows, or the rows of one field.
 
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
@@ -11,10 +11,8 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    /// All rows of a picture.
     pub(crate) const ALL: Self = Self { first: 0, distance: 1 };
 
-    /// Returns the rows that a display lights in a period.
     pub(crate) fn lit(display: &dyn Display, period: PeriodNumber) -> Self {
         let (first, distance) = display.rows_lit(period);
         Self { first, distance }
@@ -30,7 +28,7 @@ impl Rows {
         height.saturating_sub(self.first).div_ceil(self.distance)
     }
 
-    /// Returns the row of the picture that is lit row number `number`, counted from 0.
+    /// Returns the row of the picture at index `number` of the lit rows, counted from 0.
     pub(crate) const fn row(self, number: u32) -> u32 {
         self.first + number * self.distance
     }

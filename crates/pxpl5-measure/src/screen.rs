@@ -1,11 +1,11 @@
-//! The region whose pixels are on the screen at any instant, derived from the arrivals of a run.
+//! The region whose pixels are on the screen at any instant, derived from the records of arrived regions.
 
 use pxpl5_machine::Arrival;
 use pxpl5_run::{FinalResults, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// Contents of a run's first surface over time, from the arrivals of regions that were added and not discarded.
+/// Arrivals of regions on a run's first surface. These arrivals give the region that a pixel shows at any time.
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
@@ -65,7 +65,7 @@ impl Screen {
         }
     }
 
-    /// Discards the arrivals of regions whose pixels had been overwritten by later arrivals at `instant`.
+    /// Discards the arrivals of regions that later arrivals had replaced on the screen by `instant`.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         for region in self.cuts.iter_mut().flat_map(|cut| &mut cut.regions) {
             let there = region.partition_point(|arrived| arrived.0 <= instant);

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use tracking::view::HmdView;
 
-/// The picture that a pixel shows, classified for evaluation.
+/// The picture at a pixel, classified for the evaluation of pixel errors.
 #[derive(Clone, Debug)]
 pub(crate) enum Seen {
     /// The pixel shows nothing yet, or its source is unknown.
@@ -33,7 +33,7 @@ pub(crate) struct Shown {
     /// Pictures that were complete in time, with the first period that showed each picture. `None` for pictures during
     /// the warm-up.
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
-    /// Number of pictures of the run that were added so far.
+    /// Number of pictures of the run that were added, including incomplete pictures.
     pictures: usize,
     /// The result window. The pixels of pictures outside the result window are not evaluated.
     ///
@@ -41,11 +41,12 @@ pub(crate) struct Shown {
     /// covers them.
     window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
-    /// Display memories and latched directions of an address recalculation display.
+    /// State of the display memories. `None` if the display is not an address recalculation display.
     faces: Option<LatchedFaces>,
 }
 
-/// The moment for which a view was drawn, and the arrival time of the last tracker report that the host had received.
+/// The pose and time for which a view was drawn, and the arrival time of the last tracker report that the host had
+/// received.
 #[derive(Clone, Copy, Debug)]
 struct Viewed {
     known: Time,
@@ -94,7 +95,7 @@ impl Shown {
 
     /// Discards the data of pictures that no later period can show.
     ///
-    /// Views that use later reports are kept, because their pictures may still arrive.
+    /// Views that were made after the last period with final results are kept, because their pictures may still arrive.
     pub(crate) fn forget(&mut self, run: &FinalResults<'_>) {
         let instant = run.record.tick(run.until);
         self.screen.discard_before(instant);
@@ -113,7 +114,8 @@ impl Shown {
         self.screen.targets().count() + self.views.len() + self.complete.len() + self.moments.len() + of_faces
     }
 
-    /// Returns the views before the newest view that are visible at `instant` or may become visible later.
+    /// Returns the views whose pictures are on the screen at `instant` or may still be shown, without the views that
+    /// were made after `instant`.
     ///
     /// For an address recalculation display, the result has the views of all updates whose records are in memory.
     fn still_seen(&self, run: &FinalResults<'_>, instant: Time) -> BTreeSet<ViewNumber> {

@@ -66,7 +66,8 @@ impl StepSum {
 }
 
 impl OfMemory {
-    /// Adds the latency of a display memory's content to the results, measured when the middle of a field is lit.
+    /// Adds the latency of the content that a display memory shows in a field. The latency ends when the middle of the
+    /// field is lit.
     fn push(&mut self, run: &FinalResults<'_>, scan: &FaceScan, shown: &ShownUpdate, field: PeriodNumber) {
         let due = shown.note.due_at;
         // The measurement is looked up once for each update, because a long run may discard the view of an update that

@@ -24,7 +24,7 @@ pub struct TooHeavy {
 }
 
 impl TooHeavy {
-    /// Returns the warning for an experiment, or `None` if the load was acceptable.
+    /// Returns the warning that the load of an experiment was too heavy, or `None` if the load was acceptable.
     #[must_use]
     pub fn of(experiment: &Experiment, due: &DuePictures) -> Option<Self> {
         if !due.is_too_heavy() {
@@ -56,7 +56,6 @@ const fn ending(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-/// Writes the warning in one line.
 impl fmt::Display for TooHeavy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { due, not_shown, triangles, advice, .. } = self;

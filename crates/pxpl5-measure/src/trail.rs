@@ -26,7 +26,6 @@ impl Step {
     }
 }
 
-/// One stage of a picture's work on one board.
 #[derive(Clone, Copy, Debug)]
 struct StageWork {
     node: NodeId,
@@ -46,7 +45,8 @@ const NEAR: Span = Span::from_us(20);
 /// same time.
 const SLACK: u64 = 4;
 
-/// Number of earlier arrivals among which the cause of a wait is searched: several pictures of 40 regions (assumed).
+/// Largest number of earlier arrivals of regions in which the search for the cause of a wait looks (assumed). This
+/// number covers several pictures of 40 regions.
 const ARRIVALS_SEARCHED: usize = 512;
 
 /// Largest number of steps that are followed for one picture. The part of the latency before these steps is assigned to
@@ -67,13 +67,14 @@ pub(crate) struct Trail<'a> {
     surface_of_port: BTreeMap<NodeId, SurfaceId>,
     /// EDIT, TRANSFORM and SEND stages on each board.
     stages: Vec<StageWork>,
-    /// Earliest start of RENDER on any board, for each picture and surface.
+    /// Earliest start of RENDER on any renderer, for each picture and surface.
     render_begins: BTreeMap<(PictureNumber, Option<SurfaceId>), Time>,
     render_ends: Vec<(Time, PictureNumber, Option<SurfaceId>)>,
     swaps: Vec<Time>,
 }
 
-/// Current position while a picture is followed backwards.
+/// Current position while a picture is followed backwards. The number in a variant is an index in the list `arrivals`,
+/// `drawn` or `stages`.
 #[derive(Clone, Copy, Debug)]
 enum At {
     /// At the start of a region's transfer to a display.
@@ -86,7 +87,8 @@ enum At {
     Begin,
 }
 
-/// The steps found so far, from the end of the latency backwards. There is no gap between two steps.
+/// Steps found so far, from the end of the latency backwards. Each step ends at the instant at which the step before it
+/// in the list begins.
 struct Way {
     steps: Vec<Step>,
     cursor: Time,
@@ -290,8 +292,8 @@ impl<'a> Trail<'a> {
         At::Arrival(place)
     }
 
-    /// Assigns the time of a region's transfer to resources. Time beyond the minimum for the pixels is a wait for ring
-    /// channels.
+    /// Assigns the time of a region's transfer to resources. Time beyond the minimum that the pixels need counts as a
+    /// wait for ring channels.
     fn charge_copy(&self, way: &mut Way, arrival: &Arrival, drawn: Option<usize>) {
         let begin = arrival.begins_at(self.message);
         let board = Some(self.record.ports().board(arrival.target.frame_buffer));
@@ -361,8 +363,8 @@ impl<'a> Trail<'a> {
         self.to_transform(way, picture, surface)
     }
 
-    /// Continues at the earlier work for which the region's commands had to wait on the renderer. This work is the
-    /// commands of the previous region, or a copy that waited for room.
+    /// Continues at the earlier work on the same renderer for which the region's commands had to wait. This work is the
+    /// commands of the previous region, or a copy that waited for room in the backing store.
     fn before_next_region(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let held = Span(way.cursor.0.saturating_sub(region.copy_at.0));
@@ -386,7 +388,8 @@ impl<'a> Trail<'a> {
         own.checked_sub(1).map(|before| of[before])
     }
 
-    /// Returns the part of an interval in which at least one graphics processor was in TRANSFORM for a picture.
+    /// Returns the part of the time from `from` to `to` in which at least one graphics processor executed TRANSFORM for
+    /// a picture.
     fn transform_beside(&self, picture: PictureNumber, surface: Option<SurfaceId>, from: Time, to: Time) -> Span {
         let of = self.transforms(picture, surface);
         let begin = of.iter().map(|work| work.begin).min().unwrap_or(to).max(from);

@@ -4,7 +4,7 @@ use pxpl5_run::{FinalResults, RotationLatency, Samples, Statistics};
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// One part of the rotation latency.
+/// One part of the latency from a rotation of the head until the middle pixel is lit, with its statistics.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RotationPart {
     /// Name of the part, as in [`RotationLatency`](pxpl5_run::RotationLatency).

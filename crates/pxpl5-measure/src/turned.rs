@@ -48,7 +48,7 @@ impl LatchedFaces {
         self.history = FaceHistory::held(run.record, run.notes).unwrap_or_default();
     }
 
-    /// Discards orientations that use reports before an instant.
+    /// Discards orientations that were predicted from tracker reports before an instant.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         self.turns.get_mut().known.retain(|(report, _), _| *report >= instant);
     }
@@ -58,7 +58,7 @@ impl LatchedFaces {
         self.turns.borrow().known.len()
     }
 
-    /// Switches to the orientations that the run would have had without one cause of error.
+    /// Switches to the head orientations that the run would have had without one cause of error.
     pub(crate) fn disable_cause(&mut self, cause: Cause) {
         self.without = Some(cause);
         self.turns = RefCell::new(Turns::new(&self.head, self.without));

@@ -172,7 +172,6 @@ impl PortUtilisation {
 }
 
 impl fmt::Display for Utilisation {
-    /// Prints one line for each kind of board.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { gps, renderers, ring, ports, .. } = self;
         writeln!(

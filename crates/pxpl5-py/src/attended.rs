@@ -23,7 +23,6 @@ impl Progress {
         self.done.fetch_max(done, Ordering::Relaxed);
     }
 
-    /// Requests that the work stop.
     pub(crate) fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
     }
@@ -33,7 +32,6 @@ impl Progress {
         Arc::clone(&self.stopped)
     }
 
-    /// Returns true after a call of [`Self::stop`].
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }

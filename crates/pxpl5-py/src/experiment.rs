@@ -225,8 +225,8 @@ impl Experiment {
     }
 }
 
-/// Greatest number of fields of a run that pauses in every field, so that progress is reported and Ctrl-C takes effect
-/// soon. A longer run does not pause.
+/// Greatest number of fields for which a run pauses in every field. The pauses let the run report progress, and let
+/// Ctrl-C take effect soon. A longer run does not pause.
 const LOOKED_AT: u64 = 20_000;
 
 fn run(

@@ -13,7 +13,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Greatest number of computed pictures that wait until Python reads them.
+/// Greatest number of computed pictures that wait for Python to read them.
 const WAITING: usize = 4;
 
 /// An iterator over the pictures of a run, one for each display period. A separate thread runs the experiment.
@@ -104,7 +104,6 @@ pub(crate) fn film_bytes(
     result?.map_err(exception)
 }
 
-/// Converts an error of a film to an exception.
 fn exception(error: PictureError) -> PyErr {
     match error {
         PictureError::Run(_) | PictureError::Experiment(ExperimentError::Run { .. }) => failed_run(error),

@@ -5,7 +5,6 @@ use crate::policy::Asked;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// The Python functions that a run calls.
 #[derive(Clone, Default)]
 pub(crate) struct PythonFunctions {
     /// Function that computes the head's motion. `None` if no Python function computes the motion.

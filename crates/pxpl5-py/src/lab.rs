@@ -131,7 +131,6 @@ pub(crate) fn compare<'py>(
     python(py, &comparison.map_err(wrong_study)?)
 }
 
-/// Returns the exception for an error of a comparison.
 fn wrong_study(error: StudyError) -> PyErr {
     use StudyError::{Damaged, File, OtherSettings, Unfinished};
     match error {

@@ -98,9 +98,10 @@ impl Motion {
         Self::read(text, columns.unwrap_or_default(), end, name)
     }
 
-    /// Creates a recorded motion from arrays: anything that ``numpy.asarray`` takes. ``times_s`` has shape (n,), with rising times in seconds from the start
-    /// of the run. ``positions`` has shape (n, 3), in metres. ``quaternions`` has shape (n, 4) with w, x, y, z.
-    /// Positions are interpolated linearly and orientations by slerp. ``end`` is as in :meth:`recording`.
+    /// Creates a recorded motion from arrays: anything that ``numpy.asarray`` takes. ``times_s`` has shape (n,), with
+    /// rising times in seconds from the start of the run. ``positions`` has shape (n, 3), in metres. ``quaternions``
+    /// has shape (n, 4) with w, x, y, z. Positions are interpolated linearly and orientations by slerp. ``end`` is as
+    /// in :meth:`recording`.
     ///
     /// Raises :class:`pxpl5.SettingError` with the line number of the invalid sample. The first sample has line number
     /// 2.
@@ -148,8 +149,8 @@ impl Motion {
         Ok(PyArray2::from_owned_array(py, poses))
     }
 
-    /// Returns the time in seconds at which the motion ends, if no run may continue after it. Returns None for a motion
-    /// without an end.
+    /// Returns the time in seconds at which the motion ends, if no run may continue after this time. Returns None for a
+    /// motion without an end.
     #[getter]
     fn ends_s(&self) -> Option<f64> {
         self.moving.ends_ps().map(seconds)

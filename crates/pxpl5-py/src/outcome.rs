@@ -53,8 +53,8 @@ impl Outcome {
         run.ok_or_else(|| wrong_setting("the analytic level has no events"))
     }
 
-    /// Returns the value that the function `at` reads from the outcome of the run. The function does not compute the
-    /// report of the run.
+    /// Returns the value that the function `at` reads from the outcome of the run. In contrast to `results`, this
+    /// method does not compute the report of the run.
     fn look<T: Send>(&self, py: Python<'_>, at: impl Fn(&pxpl5::Outcome) -> T + Send + Sync) -> PyResult<T> {
         let looked = py.detach(|| {
             let outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);

@@ -27,7 +27,6 @@ impl Picture {
         Ok(Self { pixels: PyArray3::from_owned_array(py, pixels).unbind(), texts })
     }
 
-    /// Returns a copy of the picture's pixels.
     fn copied(&self, py: Python<'_>) -> PyResult<RgbImage> {
         let pixels = self.pixels.bind(py);
         let height = pixels.dims()[0];

@@ -159,7 +159,7 @@ impl Processor {
         Ok("exhausted")
     }
 
-    /// Executes one instruction, or two in dual-instruction mode. The instruction in the slot of a delayed branch is
+    /// Executes one instruction, or two in dual-instruction mode. The instruction in the delay slot of a branch is
     /// executed together with the branch. Returns the new program counter.
     ///
     /// Raises :class:`pxpl5.RunError` for a trap.

@@ -364,7 +364,7 @@ struct StructureState {
     culls_back_faces: bool,
 }
 
-/// A hinge of a structure, in the units of [`Hinge`].
+/// A hinge (axis of rotation) of a structure, as `pickle` stores the hinge. The units are those of [`Hinge`].
 #[derive(Serialize, Deserialize)]
 struct HingeState {
     point: [f32; 3],

@@ -28,7 +28,6 @@ pub(crate) struct MachineThread {
 }
 
 impl MachineThread {
-    /// Starts a thread and begins the run on it.
     pub(crate) fn start(
         py: Python<'_>,
         experiment: pxpl5::Experiment,
@@ -81,7 +80,6 @@ impl MachineThread {
         found.ok_or_else(|| failed_run("the run is finished: expected a stepper before finish()"))
     }
 
-    /// Runs the machine to the end of the experiment and returns the outcome.
     pub(crate) fn finish(&self, py: Python<'_>) -> PyResult<Result<pxpl5::Outcome, Box<ExperimentError>>> {
         let found = self.ask(py, |stepper, _| stepper.take().map(|stepper| stepper.finish().map_err(Box::new)))?;
         found.ok_or_else(|| failed_run("the run is finished: expected a stepper before finish()"))
@@ -153,7 +151,7 @@ pub(crate) struct Stepper {
 }
 
 impl Stepper {
-    /// Executes a step and returns the reason for its end.
+    /// Executes a step of the run on the thread of the machine. Returns the reason for the end of the step in words.
     fn step(
         &self,
         py: Python<'_>,
@@ -186,7 +184,7 @@ impl Stepper {
         self.step(py, |stepper, _| stepper.step_period())
     }
 
-    /// Runs until the next line of the first surface begins to be lit. Returns the same texts as :meth:`run_to_ps`.
+    /// Runs until the first surface begins to light its next line. Returns the same texts as :meth:`run_to_ps`.
     fn step_line(&self, py: Python<'_>) -> PyResult<String> {
         self.step(py, |stepper, _| stepper.step_line())
     }
@@ -231,8 +229,8 @@ impl Stepper {
         )
     }
 
-    /// Returns the state of a processor or a renderer as a dictionary. The result is None for another board, and for a
-    /// board that the machine does not have.
+    /// Returns the state of a processor or a renderer as a dictionary. The result is None for a board of any other
+    /// kind, and for a board that the machine does not have.
     ///
     /// Raises :class:`pxpl5.SettingError` for an unknown kind of board.
     fn board<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {

@@ -43,8 +43,8 @@ impl Sweep {
     }
 
     /// Simulates some of the points on one thread. After ``seconds`` no further point is started, but the first point
-    /// is always simulated. Returns, for each simulated point, its row as a line of JSON and the time that it took in
-    /// seconds.
+    /// is always simulated. Returns, for each simulated point, its row as a line of JSON and the seconds that its
+    /// simulation took.
     fn rows(&self, py: Python<'_>, points: Vec<u64>, seconds: f64) -> PyResult<Vec<(String, f64)>> {
         let sweep = Arc::clone(&self.sweep);
         let at_most = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);

@@ -15,7 +15,6 @@ use serde_json::{Map, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A column of a table with its name, its description and its values.
 pub(crate) struct Column {
     pub(crate) name: String,
     /// Description of the column's values with their unit. The description becomes the metadata `about` of the Arrow
@@ -157,7 +156,6 @@ pub(crate) fn table_of_columns(columns: &Bound<'_, PyAny>) -> PyResult<Table> {
     }
 }
 
-/// Returns values of Python as a column of one type.
 fn typed(name: &str, kind: &str, values: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
     let values: PyResult<ArrayRef> = match kind {
         "Int64" => values.extract().map(|values: Vec<Option<i64>>| Arc::new(Int64Array::from(values)) as ArrayRef),
@@ -384,7 +382,6 @@ fn text(column: &ArrayRef, row: usize) -> String {
     whole.or(flag).or(words).unwrap_or_default()
 }
 
-/// Converts one value of a column to a Python object.
 fn cell<'py>(py: Python<'py>, column: &ArrayRef, row: usize) -> PyResult<Bound<'py, PyAny>> {
     if column.is_null(row) {
         return Ok(py.None().into_bound(py));

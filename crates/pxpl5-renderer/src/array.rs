@@ -25,8 +25,8 @@ pub trait PixelArray {
     /// The illegal instruction and the rest of the list are not executed. Faults are counted.
     fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault>;
 
-    /// Executes those commands of a list that touch the selected region. Returns one entry for each region whose pixels
-    /// the list copies to a frame buffer.
+    /// Executes a list of commands, and can skip commands that change no pixel of the region. Returns one entry for
+    /// each region that the list copies to a frame buffer.
     ///
     /// An illegal instruction ends the execution, as on the hardware. Pixels drawn before the illegal instruction stay.
     /// The final pixel memory is the same as after [`Self::execute`], but the Enable register can differ. `room` is

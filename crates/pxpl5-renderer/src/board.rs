@@ -1,5 +1,5 @@
-//! The renderer board. On one side are the input FIFO and the controller, and on the other side is the output port to
-//! the frame buffers.
+//! The renderer board: an input FIFO for commands, a controller that executes the commands, and an output port to the
+//! frame buffers.
 
 use crate::command::CommandKind;
 use crate::contents::{MAX_CONTEXTS, changes_pixels, words_before_clear};
@@ -38,8 +38,8 @@ pub enum RendererEvent {
 /// An output of a renderer board.
 #[derive(Debug)]
 pub enum RendererOutput {
-    /// The renderer has accepted an announced message. The sender must know when the last word of the message enters
-    /// the FIFO.
+    /// The renderer has accepted an announced message. The sender needs the time at which the last word of the message
+    /// enters the FIFO.
     Accept {
         /// Time at which the last word of the message is in the FIFO. Each word takes one word time of the channel,
         /// plus the wait for room in the FIFO.
@@ -79,8 +79,8 @@ pub struct Renderer {
     cycle: Span,
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
-    /// True if regions without primitives are cached and commands that touch no pixel are left out. These are two
-    /// optimizations.
+    /// True while two optimizations are on: the board caches the pixels of regions without primitives, and skips
+    /// commands that touch no pixel.
     caches_empty_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
@@ -90,15 +90,14 @@ pub struct Renderer {
     /// regions to the backing store can be in progress.
     unstored: VecDeque<PendingCopy>,
     storing: bool,
-    /// Copies whose regions are in the backing store. Each copy waits for the end of an earlier transfer to a frame
-    /// buffer, or for the command that releases the region.
+    /// Copies whose regions are in the backing store. Each copy waits until an earlier transfer to a frame buffer ends,
+    /// or until a command releases the region.
     stored: VecDeque<PendingCopy>,
     /// Command lists received so far. `None` until [`Renderer::watch_fifo`] is called.
     sent: Option<SentLists>,
     /// Regions whose copy commands have started since the last call of `drain_drawn`.
     drawn: Vec<DrawnRegion>,
     stats: RendererStats,
-    /// True if a region has waited for room in the backing store.
     waited_for_room: bool,
 }
 
@@ -131,7 +130,7 @@ struct ContextLog {
 }
 
 impl ContextLog {
-    /// Removes all lists from the log. Computations of copied regions keep their own reference to the lists.
+    /// Removes all lists from the log. Jobs that compute copied regions keep their own references to the lists.
     fn clear(&mut self) {
         self.cleared = true;
         match Arc::get_mut(&mut self.lists) {
@@ -434,8 +433,8 @@ impl Renderer {
         self.drawn.drain(..)
     }
 
-    /// Returns pixel memory in its state after all received command lists. In each region context, lists before the
-    /// last clear have no effect.
+    /// Returns pixel memory as it is after the execution of all received command lists. In each region context, lists
+    /// before the last clear have no effect.
     ///
     /// Returns `None` if no context has received lists that change pixels. This is the case, for example, if the
     /// computation of pixels is off.

@@ -17,14 +17,14 @@
 //!
 //! # Words and clocks
 //!
-//! | kind | words | clocks | published or assumed |
+//! | kind | words | clocks | published or assumed clocks |
 //! |---|---|---|---|
-//! | triangle (Gouraud) | 30 | 258 | 267 (TR94, 150,000 a second); budget 256 |
-//! | Phong triangle | 32 | 292 | the same; budget 262 to 292. The object's colour costs 28 |
-//! | sphere | 53 | 810 (Slats 748) | assumed "a little dearer than a triangle"; see [`SphereCommand`] |
+//! | triangle (Gouraud) | 30 | 258 | 267 at 150,000 a second (TR94); the published steps need 256 |
+//! | Phong triangle | 32 | 292 | the same rate; the published steps need 262 to 292, with 28 for the object's colour |
+//! | sphere | 53 | 810 (748 for Slats) | assumed "a little dearer than a triangle"; see [`SphereCommand`] |
 //! | Phong sphere | 38 | 504 | the same |
 //! | shade | 89 | 3,790 = 95 us | assumed 4,000 to 8,000 (100 to 200 us); see [`Shade`] |
-//! | clear | 5 | 62 (Slats 58) | |
+//! | clear | 5 | 62 (58 for Slats) | |
 //! | select region | 2 | 6 | |
 //!
 //! The transaction level uses the same times ([`crate::RendererTiming`]).
@@ -284,13 +284,12 @@ impl Command {
     }
 }
 
-/// Returns the error for valid instructions that differ from the program of a command. `label` is the opcode of the
-/// command's kind.
+/// Returns the error for instructions that begin with the label of a kind of command, but differ from the program of
+/// this kind. `label` is the opcode of the kind.
 fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
     DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
 }
 
-/// Name of a field of pixel memory that a layout does not have.
 pub(crate) struct MissingField(&'static str);
 
 fn encode_all(program: &[ArrayInstruction], out: &mut Vec<Word>) {

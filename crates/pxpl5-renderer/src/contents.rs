@@ -6,17 +6,16 @@ use pxpl5_wire::CommandRun;
 /// Largest number of region contexts (parts of pixel memory that each hold one region).
 pub const MAX_CONTEXTS: usize = 8;
 
-/// Returns true if a command list can change pixels. Such a list contains a command that neither selects nor copies a
-/// region.
+/// Returns true if a command list can change pixels. Only lists of select and copy commands change no pixels.
 pub(crate) fn changes_pixels(runs: &[CommandRun]) -> bool {
     let kinds = [CommandKind::SelectRegion, CommandKind::CopyRegion];
     runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))
 }
 
-/// Returns the number of words before the clear command of a list, if the list clears its region context before other
-/// work. Returns `None` for other lists.
+/// Returns the number of words before the clear command of a list that clears its region context before it draws.
+/// Returns `None` for other lists.
 ///
-/// Once the clear command has started, all earlier drawing in this part of pixel memory is erased.
+/// The clear command erases all earlier drawing in this part of pixel memory.
 pub(crate) fn words_before_clear(runs: &[CommandRun]) -> Option<u64> {
     let mut words = 0;
     for run in runs {

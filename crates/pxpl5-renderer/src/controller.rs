@@ -94,7 +94,6 @@ impl Controller {
         self.quadratic = quadratic;
     }
 
-    /// Returns the stored quadratic expression, with the array's upper left pixel as origin.
     pub(crate) fn localise_quadratic(&self) -> Quadratic {
         let q = self.quadratic;
         let x = i64::from(self.left);

@@ -24,7 +24,7 @@ pub(crate) struct CommandBatch {
     pub(crate) span_each: Option<Span>,
 }
 
-/// Future times at which the FIFO's state changes. These times are computed when words arrive or when a copy ends.
+/// Times at which the FIFO's state will change. These times are computed when words arrive or when a copy ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
     /// Time at which the last word of the arriving message enters the FIFO. `None` while this time is unknown.
@@ -45,8 +45,8 @@ struct HeldCommand {
 /// An interval is at least as long as the transfer of a command's words over the channel.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
-    /// Index of the first word that gets room in the FIFO only when the first command of this sequence starts. The
-    /// index counts all words since the start of the simulation, from 0.
+    /// Index of the first word that must wait for the start of this sequence's first command, because the FIFO is full
+    /// before. Words are counted from 0 since the start of the simulation.
     made_room_for: u64,
     left_at: Time,
     count: u64,
@@ -55,8 +55,8 @@ struct Departure {
 }
 
 impl Departure {
-    /// Returns the index, within this sequence, of the command whose start makes room for the word with index `word`.
-    /// If no command of the sequence makes room for this word, the function returns the last index.
+    /// Returns the index, within this sequence, of the command whose start makes room for word `word`. If the sequence
+    /// makes no room for this word, the function returns the last index.
     ///
     /// `word` must be at least `made_room_for`.
     const fn last_for(&self, word: u64) -> u64 {
@@ -67,7 +67,6 @@ impl Departure {
         if place < self.count { place } else { self.count - 1 }
     }
 
-    /// Returns the rest of this sequence after its first `commands` commands.
     fn behind(self, commands: u64) -> Self {
         Self {
             made_room_for: self.made_room_for + commands * self.words_each,
@@ -83,13 +82,13 @@ impl Departure {
 struct StartTimes(VecDeque<Departure>);
 
 impl StartTimes {
-    /// Returns the time at which all words with indices `first` to `last` have entered the FIFO. The result is at least
-    /// `soonest`.
+    /// Returns the time at which the words with indices `first` to `last` have all entered the FIFO. The result is at
+    /// least `soonest`.
     ///
-    /// Each word waits until the FIFO has room for it, and then takes one word time on the channel. `first` must be at
-    /// least the `first` of the previous call. Of each sequence of commands that start at equal intervals, only the
-    /// last command that makes room matters. The reason is that an interval is at least as long as the transfer of a
-    /// command's words.
+    /// Each word waits until the FIFO has room for this word, and then takes one word time on the channel. `first` must
+    /// be at least the `first` of the previous call. In a sequence of commands that start at equal intervals, only the
+    /// last command that makes room matters. The words that earlier commands admit have then already passed, because an
+    /// interval is at least as long as the transfer of a command's words.
     #[inline]
     fn entered(&mut self, first: u64, last: u64, soonest: Time, word: Span) -> Time {
         self.discard_before(first);
@@ -104,7 +103,6 @@ impl StartTimes {
         complete
     }
 
-    /// Removes the commands whose starts made room only for words before `first`.
     #[inline]
     fn discard_before(&mut self, first: u64) {
         while self.0.get(1).is_some_and(|next| next.made_room_for <= first) {
@@ -142,9 +140,10 @@ pub(crate) struct InputFifo {
     watched: Option<Watched>,
 }
 
-/// Longest execution time of a command that counts as the selection of the region to copy. A command that takes more
-/// time counts as drawing. If the controller waits before the selection, the drawing of the region ends at the start of
-/// this wait. A selection takes 6 clocks of 40 MHz, which are 150 ns.
+/// Longest execution time of a command that only selects the region to copy (6 clocks of 40 MHz, 150 ns).
+///
+/// If at most this time lies between a wait of the controller and a copy command, the region was already drawn before
+/// the wait. Work that takes longer counts as drawing.
 const SELECTION: Span = Span::from_ns(1_000);
 
 /// Times of the last blocking command (copy of a region) and of the commands before it.
@@ -153,8 +152,8 @@ pub(crate) struct Block {
     /// End time of the previous blocking command. From this time on, the controller could execute the commands between
     /// the two blocking commands.
     pub(crate) begun_at: Time,
-    /// End time of the last command before this blocking command. If the controller waited for the selection of the
-    /// region to copy, the selection does not count.
+    /// Time at which the drawing before this blocking command ended. A wait before the copy command, and the selection
+    /// of the region after this wait, do not count as drawing.
     pub(crate) finished_at: Time,
     /// Start time of this blocking command.
     pub(crate) start: Time,
@@ -236,8 +235,8 @@ impl InputFifo {
         }
     }
 
-    /// Adds commands to the message that the next call of [`Self::message`] announces. Commands must be added in the
-    /// order of their words in the message.
+    /// Adds commands to the next message. Commands must be added in the order of their words in the message. A call of
+    /// [`Self::message`] then computes the arrival of the message.
     pub(crate) fn take(&mut self, work: CommandBatch) {
         self.in_transit.push_back(work);
     }
@@ -294,7 +293,6 @@ impl InputFifo {
         Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
     }
 
-    /// Removes the entries of the word record for times before `now`.
     pub(crate) fn discard_before(&mut self, now: Time) {
         if let Some(Watched { entered, left, .. }) = &mut self.watched {
             entered.discard_before(now);
@@ -302,7 +300,6 @@ impl InputFifo {
         }
     }
 
-    /// Returns the changes of the FIFO's content since the last call. The changes are not sorted by time.
     pub(crate) fn take_changes(&mut self) -> Vec<(Time, i64)> {
         self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
@@ -312,7 +309,6 @@ impl InputFifo {
         self.free_at.is_some_and(|free_at| free_at > now)
     }
 
-    /// Returns true while a blocking command (the copy of a region) runs.
     pub(crate) const fn is_blocked(&self) -> bool {
         self.free_at.is_none()
     }
@@ -358,9 +354,8 @@ impl InputFifo {
     /// [`InputFifo::arrival`] and [`InputFifo::start`], called for each command.
     ///
     /// The FIFO must not be watched. Each command must fit in the FIFO, must not block, and must take at least as long
-    /// as the transfer of its words. Under these conditions, each command after the first starts at the end of the
-    /// previous command. The reason is that the command's first word finds room at the latest at the start of the
-    /// previous command. The last word has therefore arrived when the previous command ends.
+    /// as the transfer of its words. The words of each command then arrive while the previous command executes. Each
+    /// command after the first therefore starts at the end of the previous command.
     fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,
@@ -434,7 +429,7 @@ impl InputFifo {
         }
     }
 
-    /// Starts a command that has arrived completely, at the time `free_at` or at its arrival, whichever is later.
+    /// Starts a command that has arrived completely. The start time is `free_at` or the arrival, whichever is later.
     /// Returns the start time if the command blocks.
     fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);

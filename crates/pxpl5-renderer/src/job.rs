@@ -16,7 +16,7 @@ pub struct ArrayPool {
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
 
-/// The pixel array and the word buffer of one thread that computes pixels.
+/// The pixel array and the word buffer that one thread uses to compute pixels.
 struct ArrayAndWords {
     array: Lanes,
     /// Buffer for the words of command lists. The thread reuses the buffer to avoid allocations.
@@ -26,7 +26,6 @@ struct ArrayAndWords {
 /// Cache key of a region without primitives. The key contains all data that affect the pixels of the region.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct EmptyRegion {
-    /// Words of all commands of the region except copy commands.
     words: Vec<Word>,
     cleared: bool,
     size: [u32; 2],
@@ -133,7 +132,6 @@ impl PixelJob {
         (self.content == CopyContent::Colour).then_some(region)
     }
 
-    /// Returns the number of columns and rows of the region. Each number is at most 128, the size of the array.
     fn size(&self) -> [u32; 2] {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         [width, height]
@@ -162,8 +160,9 @@ impl PixelJob {
         self.content.of(colours, || self.depths(array))
     }
 
-    /// Executes words, and returns the pixels of the last output to the frame buffer of this job. An illegal
-    /// instruction ends the list, as on the hardware. Pixels drawn before the illegal instruction stay.
+    /// Executes a list of words, and returns the pixels that its last output instruction sends to the frame buffer of
+    /// this job. An illegal instruction ends the list, as on the hardware. Pixels drawn before the illegal instruction
+    /// stay.
     fn execute(&self, array: &mut Lanes, words: &[Word]) -> Option<OutputRegion> {
         self.copied(array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs))
     }
@@ -192,7 +191,6 @@ impl PixelSource for PixelJob {
     }
 }
 
-/// The depth of the far plane in 24 bits.
 const DEPTH_FARTHEST: Word = (1 << Z_BITS) - 1;
 
 /// Pixels of a copied region while the computation of pixels is off. All these pixels are zero.

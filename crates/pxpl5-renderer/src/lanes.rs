@@ -40,8 +40,8 @@ pub struct Lanes {
     templates: Templates,
     controller: Controller,
     columns: PixelColumns,
-    /// Indices of the columns (arrays of words) for the most recently used context, which is a region in pixel memory.
-    /// `None` if no context was used.
+    /// Indices of the columns (arrays of words) of the context that was used last. A context is the part of pixel
+    /// memory that holds one region. `None` if no context was used.
     selected: Option<ContextColumns>,
     enable: Enable,
     backing: Vec<Option<Box<[u64]>>>,
@@ -50,8 +50,8 @@ pub struct Lanes {
 }
 
 impl Lanes {
-    /// Creates an array in which all bits are zero. The array recognizes the commands of `layout` and executes them
-    /// fast.
+    /// Creates an array in which all bits are zero. The array recognizes the commands of `layout`, and executes these
+    /// commands faster than single instructions.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())
@@ -118,12 +118,11 @@ impl Lanes {
     }
 }
 
-/// State of the array while it draws a command list.
 struct Drawing<'a> {
     array: &'a mut Lanes,
     /// Words of commands that were collected, but not executed yet.
     words: &'a mut Vec<Word>,
-    /// Regions copied so far. After a fault, this field holds the fault, and no more commands are drawn.
+    /// Regions copied so far, or the fault that ended the drawing.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,
 }
 

@@ -17,7 +17,7 @@ pub struct ContextPlan {
     pub name: &'static str,
     /// Number of contexts. Each context holds one region in pixel memory.
     pub contexts: u8,
-    /// Bits of pixel memory that each context (region in the array) takes.
+    /// Number of bits of pixel memory for each context, which holds one region.
     pub context_bits: u8,
     /// Field of the colour in each context: 24 bits, 0xRRGGBB.
     pub colour: Operand,
@@ -34,8 +34,6 @@ pub struct ContextPlan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout(ContextPlan);
 
-/// Layout of Rendering Control with Phong shading: one region with 24 bits of colour, 24 bits of Z and 36 bits of
-/// normal. The remaining 124 bits are scratch memory.
 const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     name: "rendering control, Phong",
     contexts: 1,
@@ -46,8 +44,6 @@ const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(84, 124)),
 };
 
-/// Layout of Slats: four regions, each with 24 bits of colour and 20 bits of Z. All regions share 32 bits of scratch
-/// memory.
 const SLATS: ContextPlan = ContextPlan {
     name: "Slats",
     contexts: 4,
@@ -58,8 +54,6 @@ const SLATS: ContextPlan = ContextPlan {
     scratch: Some(Operand::absolute(176, 32)),
 };
 
-/// Layout of Slats with equal parts: four regions, each with 24 bits of colour, 24 bits of Z and 4 unused bits. There
-/// is no scratch memory.
 const SLATS_QUARTERS: ContextPlan = ContextPlan {
     name: "Slats in quarters",
     contexts: 4,
@@ -71,9 +65,9 @@ const SLATS_QUARTERS: ContextPlan = ContextPlan {
 };
 
 impl Layout {
-    /// Returns the layout of Rendering Control with Phong shading: one region.
+    /// Returns the layout of Rendering Control with Phong shading, which has one region.
     ///
-    /// The layout has 24 bits of colour, 24 bits of Z, 36 bits of normal and 124 bits of scratch memory.
+    /// The 208 bits are 24 bits of colour, 24 bits of Z, 36 bits of normal and 124 bits of scratch memory.
     #[must_use]
     pub const fn rendering_control_phong() -> Self {
         Self(RENDERING_CONTROL_PHONG)
@@ -116,7 +110,7 @@ impl Layout {
         )))
     }
 
-    /// Returns the unchecked plan with the fields of the layout.
+    /// Returns the fields of the layout as a plan, from which a similar layout can be made.
     #[must_use]
     pub const fn plan(&self) -> &ContextPlan {
         &self.0

@@ -21,14 +21,13 @@ const ROW: usize = REGION_SIZE as usize;
 /// Number of adjacent pixels in each group of a vector that covers several rows. The next group lies one row below.
 pub(crate) const FOUR: usize = 4;
 
-/// The fastest vector unit that new pixel arrays may choose, as the unit's index in [`Vectors`].
 static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
 
 /// A set of vector instructions for which the loops of this crate are compiled. All sets give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Vectors {
-    /// No vector instructions beyond those that every processor of the compiler's target has.
+    /// Only the vector instructions that every processor of the compiler's target has.
     Portable,
     /// WebAssembly with simd128: two vectors of four 32-bit numbers.
     Simd128,
@@ -55,10 +54,10 @@ impl Vectors {
         Self::ALL[..=most].iter().rev().copied().find(|vectors| vectors.present()).unwrap_or(Self::Portable)
     }
 
-    /// Makes this vector unit the fastest unit that new pixel arrays of this process choose by default.
-    ///
-    /// The tests in `tests/hashes.rs` use the limit to run whole experiments on each unit. Existing arrays keep their
+    /// Sets the fastest vector unit that new pixel arrays of this process choose by default. Existing arrays keep their
     /// units.
+    ///
+    /// The tests in `tests/hashes.rs` use this limit to run whole experiments on each unit.
     pub fn at_most(self) {
         MOST.store(self as u8, Ordering::Relaxed);
     }
@@ -90,7 +89,7 @@ impl Vectors {
 pub(crate) struct PresentVectors(Vectors);
 
 impl PresentVectors {
-    /// Returns `wanted` if the running computer has this unit, otherwise [`Vectors::Portable`].
+    /// Returns the vector unit `wanted` if the running computer has this unit, otherwise [`Vectors::Portable`].
     pub(crate) fn or_portable(wanted: Vectors) -> Self {
         Self(if wanted.present() { wanted } else { Vectors::Portable })
     }
@@ -184,7 +183,7 @@ pub(crate) trait SimdVector: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct PortableVector([i32; 8]);
 
-/// A mask of four lanes for each number of four bits. A lane is all ones if the corresponding bit of the number is set.
+/// Table of masks for four lanes, indexed by a number of four bits. Lane i is all ones if bit i of the number is set.
 /// Processors without AVX2 need this table, because they cannot shift each lane by its own count.
 const FOUR_LANES: [[i32; 4]; 16] = {
     let mut out = [[0; 4]; 16];
@@ -339,7 +338,7 @@ impl SimdVector for PortableVector {
 mod tests {
     use super::*;
 
-    /// A loop that shifts all lanes of a vector left and right.
+    /// A test loop that shifts all lanes of a vector left and right.
     struct Shifts {
         values: [u32; 16],
         by: u32,
@@ -380,7 +379,7 @@ mod tests {
     /// Results of the operations of a vector unit, each with the name of the operation.
     type Done = Vec<(&'static str, Vec<u32>)>;
 
-    /// A loop that applies every operation to integers in all lanes, and to rows of pixels.
+    /// A test loop that applies every operation to integers in all lanes, and to rows of pixels.
     struct Everything {
         a: [u32; 16],
         b: [u32; 16],

@@ -20,9 +20,9 @@ pub struct RendererSnapshot {
     pub copying: Option<CopyOrder>,
     /// True while the controller executes commands other than copies.
     pub executing: bool,
-    /// Region that the most recently started commands draw. The value becomes `None` when the region's copy command
-    /// starts. The value is also `None` without [`Renderer::watch_fifo`](crate::Renderer::watch_fifo), or if the sender
-    /// of the commands does not state the region.
+    /// Region that the most recently started commands draw. The region becomes `None` when its copy command starts. It
+    /// is also `None` without [`Renderer::watch_fifo`](crate::Renderer::watch_fifo), or if the sender of the commands
+    /// does not state the region.
     pub drawing: Option<RegionPlace>,
     /// Number of finished regions that are in the backing store, or that wait in pixel memory for the transfer to the
     /// backing store.
@@ -40,7 +40,7 @@ impl RendererSnapshot {
     }
 }
 
-/// Received command lists that affect pixel memory now or will affect pixel memory later.
+/// Received command lists whose commands affect pixel memory, or will affect it when they start.
 #[derive(Debug, Default)]
 pub(crate) struct SentLists(VecDeque<SentList>);
 
@@ -90,8 +90,8 @@ impl SentLists {
         self.0.retain(|list| list.first_word >= cleared[list.context]);
     }
 
-    /// Among the lists of a context whose clear command has started, returns the index of the first word of the latest
-    /// list. Earlier lists of the context no longer affect pixels. Returns 0 if no clear command has started.
+    /// Returns the index of the first word of the latest list whose clear command has started, among the lists of a
+    /// context. Earlier lists of the context no longer affect pixels. Returns 0 if no clear command has started.
     fn cleared_at(&self, context: usize, started: u64) -> u64 {
         let of_context = self.0.iter().filter(|list| list.context == context);
         of_context

@@ -11,9 +11,9 @@ const UNKNOWN: Time = Time(u64::MAX);
 pub struct ChannelSnapshot {
     /// Number of the channel, counted from 0.
     pub channel: usize,
-    /// Port of the sender.
+    /// Ring port of the board that sends the message.
     pub source: NodeId,
-    /// Port of the receiver.
+    /// Ring port of the board that receives the message.
     pub destination: NodeId,
     /// Length of the message in words.
     pub words: u32,
@@ -48,7 +48,7 @@ pub(crate) struct RingChannels {
     /// Time at which each channel becomes free. The time is `UNKNOWN` for free channels, and for messages whose
     /// receiver has not answered yet.
     ends_at: Vec<Time>,
-    /// Known end times of messages with their channels. The earliest end is the last element.
+    /// Known end times of messages with their channels, sorted by falling time.
     due: Vec<(Time, usize)>,
     /// Bit set of the free channels.
     free: u64,

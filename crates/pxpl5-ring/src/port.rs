@@ -16,7 +16,7 @@ pub enum RingEvent {
     /// earliest possible time is used instead. If the answer arrives after the time at which the message would free its
     /// sender, the sender becomes free immediately.
     Accept {
-        /// Port of the receiver.
+        /// Ring port of the board that receives the message.
         destination: NodeId,
         /// Time at which the last word enters the receiver, including the stall.
         last_word_at: Time,
@@ -68,14 +68,14 @@ pub enum RingOutput {
     Delivered(Message),
     /// Answer to the sender of a message with a ticket: the receiver has accepted the last word.
     Sent {
-        /// Port of the sender of the message.
+        /// Ring port of the board that sends the message.
         source: NodeId,
         /// Ticket of the message, as given in [`Request::ticket`].
         ticket: u64,
     },
     /// Answer to the sender of a message with a ticket: the ring has refused the message.
     Refused {
-        /// Port of the sender, as given in the message.
+        /// Ring port of the sender, as given in the message.
         source: NodeId,
         /// Ticket of the message, as given in [`Request::ticket`].
         ticket: u64,
@@ -105,9 +105,9 @@ pub enum RingError {
     /// The length of a message is 0 or more than 1,024 words.
     #[error("message from ring port {} to {}: expected 1 to {max} words, found {words}", .r#source.0, .destination.0, max = MAX_MESSAGE_WORDS)]
     Length {
-        /// Port of the sender.
+        /// Ring port of the board that sends the message.
         r#source: NodeId, // Raw, because `thiserror` takes a plain `source` for another error.
-        /// Port of the receiver.
+        /// Ring port of the board that receives the message.
         destination: NodeId,
         /// Length of the message in words, without the overhead.
         words: u32,
@@ -115,17 +115,17 @@ pub enum RingError {
     /// A receiver answered without an announcement, or answered an announcement for the second time.
     #[error("ring port {} accepted a message that was not announced to it", .destination.0)]
     NothingAnnounced {
-        /// Port of the receiver.
+        /// Ring port of the board that receives the message.
         destination: NodeId,
     },
     /// A receiver answered with a time that is too early: the last word could not have arrived then.
     #[error("ring port {} accepted the last word at {found}, but it cannot enter before {expected}", .destination.0)]
     AcceptedEarly {
-        /// Port of the receiver.
+        /// Ring port of the board that receives the message.
         destination: NodeId,
         /// Earliest time at which the last word can have arrived.
         expected: Time,
-        /// Time in the answer of the receiver.
+        /// Time that the receiver stated in its answer.
         found: Time,
     },
     /// A time in the input of the reference model is not a multiple of the model's tick.
@@ -145,7 +145,7 @@ pub enum RingError {
         delivered: usize,
         /// Total number of messages, delivered or not.
         of: usize,
-        /// Time at which the run ended.
+        /// Simulated time at which the run of the reference model ended.
         until: Time,
     },
 }

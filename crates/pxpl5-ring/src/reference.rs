@@ -27,9 +27,9 @@ use std::collections::VecDeque;
 pub struct PlannedMessage {
     /// Time at which the sending board passes the message to its port.
     pub at: Time,
-    /// Port of the sender.
+    /// Ring port of the board that sends the message.
     pub source: NodeId,
-    /// Port of the receiver.
+    /// Ring port of the board that receives the message.
     pub destination: NodeId,
     /// Length of the message in words, 1 to 1,024, without the overhead.
     pub words: u32,
@@ -88,8 +88,8 @@ pub struct SteppedRing<'a, R> {
     n_nodes: u16,
     traffic: &'a [PlannedMessage],
     receivers: R,
-    /// Queue of each source: the indices of the waiting messages, and the time since which the first message has been
-    /// the first of the queue.
+    /// Queue of each source: the indices of its waiting messages, and the time at which the first message reached the
+    /// head of the queue.
     queues: Vec<(VecDeque<usize>, Time)>,
     /// Number of messages that each source is sending on channels.
     sending: Vec<u64>,

@@ -263,8 +263,8 @@ impl Ring {
         self.arbitrate_at(now, context);
     }
 
-    /// Schedules an arbitration at time `at`, unless an earlier arbitration is scheduled already. Each arbitration
-    /// schedules the next arbitration.
+    /// Schedules an arbitration, a pass that grants channels to waiting messages, at time `at`. Does nothing if an
+    /// earlier arbitration is already scheduled, because each arbitration schedules the next arbitration.
     fn arbitrate_at(&mut self, at: Time, context: &mut RingContext) {
         if self.arbitrations.iter().all(|earlier| *earlier > at) {
             self.arbitrations.push(at);
@@ -539,14 +539,12 @@ fn notify_sender((source, ticket): (NodeId, Option<u64>), at: Time, context: &mu
 }
 
 impl QueuedRequest {
-    /// Returns the key by which the messages in a port's queue are sorted.
     const fn order(&self) -> (Time, u32) {
         (self.at, self.request.order)
     }
 }
 
 impl SourcePort {
-    /// Inserts a message into the queue and returns the index of the message in the queue.
     fn insert(&mut self, queued: QueuedRequest) -> usize {
         let later = self.queue.iter().rev().take_while(|other| other.order() > queued.order()).count();
         let place = self.queue.len() - later;

@@ -41,9 +41,9 @@ impl Refusals {
 /// A message that waits for its grant or for the answer of its receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMessage {
-    /// Port of the sender.
+    /// Ring port of the board that sends the message.
     pub source: NodeId,
-    /// Port of the receiver.
+    /// Ring port of the board that receives the message.
     pub destination: NodeId,
     /// Length in words, without the overhead.
     pub words: u32,

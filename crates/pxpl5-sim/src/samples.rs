@@ -37,7 +37,7 @@ impl Samples {
         Self { kept: Vec::new(), limit, moments: None }
     }
 
-    /// Adds a number.
+    /// Adds a number to the collection.
     pub fn push(&mut self, value: f64) {
         if let Some(moments) = &mut self.moments {
             moments.push(value);

@@ -13,7 +13,6 @@ const MOTIONS: [(&str, &str); 6] = [
     ("live.csv", "your own: drag across a picture while the machine runs"),
 ];
 
-/// Returns the selectable pipelines, scenes, displays and motions as JSON.
 pub(crate) fn catalog() -> Value {
     let registry = pxpl5_lab::registry();
     let pipelines = registry.pipelines().iter();

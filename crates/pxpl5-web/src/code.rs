@@ -1,5 +1,5 @@
 //! Text with the state of an i860 processor on one board. The text has the registers, and the instructions around the
-//! address at which the last call ended.
+//! address at which the processor stopped.
 
 use i860::disassemble;
 use pxpl5_gp::Processor;

@@ -49,9 +49,9 @@ pub(crate) fn messages(stepper: &Stepper, after: Time, most: usize) -> Value {
 /// Returns the regions that renderers are drawing, then the regions that renderers are copying to displays.
 ///
 /// Each region has its stage (`render` or `copy`), its renderer, the index of its surface, and a rectangle in pixels.
-/// `works` is false for a region whose renderer waits, for more commands or for the copy command.
-/// `lines` is `[0, 1]` if the region covers all lines of the frame. Otherwise `lines` has the first line and the
-/// distance of the lines of one field. `surface` is null for a region of a cube face.
+/// `works` is false while the renderer of the region waits for more commands or for the copy command. `lines` is `[0,
+/// 1]` if the region covers all lines of the frame. Otherwise `lines` has the first line of the field and the distance
+/// between two lines of the field. `surface` is null for a region of a cube face.
 pub(crate) fn regions(stepper: &Stepper) -> Value {
     let record = stepper.record();
     // The surfaces of a display are its frame buffers, in the order of their ports.

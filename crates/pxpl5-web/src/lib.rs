@@ -89,7 +89,7 @@ impl WebMachine {
         self.0.moved(rows).map_err(refused)
     }
 
-    /// Runs the machine for one step. The step `of` is `event`, `line` (a scanline) or `field`.
+    /// Runs the machine for one step. `of` selects the length of the step: `event`, `line` (a scanline) or `field`.
     ///
     /// # Errors
     ///
@@ -159,8 +159,8 @@ impl WebMachine {
         self.0.board(name).map(|lines| lines.join("\n")).map_err(refused)
     }
 
-    /// Returns the fields in a renderer's memory for one pixel, one per line. The text is empty before the renderer's
-    /// first command, and for a position outside the pixel array.
+    /// Returns the parts of one pixel's memory in a renderer, such as colour and depth, with one part per line. The
+    /// text is empty before the renderer's first command, and for a position outside the pixel array.
     #[must_use]
     pub fn pixel(&self, renderer: usize, x: u32, y: u32) -> String {
         look::pixel(self.0.stepper(), renderer, x, y).unwrap_or_default().join("\n")
@@ -229,8 +229,8 @@ impl WebMachine {
         look::misses_all(self.0.stepper())
     }
 
-    /// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1,
-    /// and values that were not measured are null.
+    /// Returns, as JSON, the share of time for which each kind of board was busy up to now, and the waits of the last
+    /// pictures. Shares are 0 to 1, and values that were not measured are null.
     #[must_use]
     pub fn limits(&self) -> String {
         look::limits(self.0.stepper()).to_string()

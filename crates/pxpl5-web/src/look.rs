@@ -10,7 +10,6 @@ use pxpl5_sim::Time;
 use pxpl5_views::timeline::{self, TimelineOptions};
 use serde_json::{Value, json};
 
-/// Returns the state of the run as JSON: time, failure, hashes and surfaces.
 pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     let record = stepper.record();
     let surfaces = record
@@ -33,9 +32,9 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     })
 }
 
-/// Returns the instant one display period before the present instant, for the page's step back. The result has the same
-/// distance from the beginning of its period as the present instant. Within the first period the result is time zero,
-/// and at time zero the result is `None`.
+/// Returns the target of the page's step backwards, which lies one display period before the present instant. Both
+/// instants have the same distance from the beginning of their periods. Within the first period, the target is time
+/// zero. Returns `None` at time zero.
 fn back(stepper: &Stepper) -> Option<Time> {
     let (now, period) = (stepper.now(), stepper.period());
     let tick = |period| stepper.record().tick(period);
@@ -46,14 +45,14 @@ fn back(stepper: &Stepper) -> Option<Time> {
     Some(tick(before) + now.since(tick(period)))
 }
 
-/// Returns true if pictures after the warm-up were due, and no recent picture was complete in time.
 pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     let run = stepper.so_far();
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
 }
 
-/// Returns the use of each kind of board up to now, and the waits of the last pictures, as JSON. Shares are 0 to 1.
-/// `utilisation` is null at time zero, and `path` is null before the first complete picture.
+/// Returns, as JSON, the share of time for which each kind of board was busy up to now, and the waits of the last
+/// pictures. Shares are 0 to 1. `utilisation` is null at time zero, and `path` is null before the first complete
+/// picture.
 pub(crate) fn limits(stepper: &Stepper) -> Value {
     let path = CriticalPath::so_far(&stepper.so_far());
     let path = path.map(|path| {
@@ -82,7 +81,6 @@ pub(crate) fn channels(stepper: &Stepper) -> Value {
     all.map(|number| channel(number).unwrap_or(Value::Null)).collect()
 }
 
-/// Returns a JSON object with the present state of each board.
 pub(crate) fn boards(stepper: &Stepper) -> Value {
     stepper.boards().filter_map(|board| Some(line(stepper, board, &stepper.says(board)?))).collect()
 }
@@ -127,8 +125,8 @@ pub(crate) fn board(stepper: &Stepper, board: Board) -> Option<Vec<String>> {
     Some(lines)
 }
 
-/// Returns the fields in a renderer's memory for one pixel, one per line. Returns `None` for a pixel that does not
-/// exist, or before the renderer's first command.
+/// Returns the parts of one pixel's memory in a renderer, such as colour and depth, with one part per line. Returns
+/// `None` for a pixel that does not exist, or before the renderer's first command.
 pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Option<Vec<String>> {
     let fields = stepper.pixel_fields(renderer, x, y)?.into_iter();
     let lines = fields.map(|field| {
@@ -139,7 +137,6 @@ pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Optio
     Some(lines.collect())
 }
 
-/// Returns a timeline of the last `fields` display periods as SVG.
 pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
     let run = stepper.so_far();
     let newest = run.pictures().iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());

@@ -8,7 +8,6 @@ use pxpl5_run::{Stepper, bit_of};
 use pxpl5_wire::{Eye, REGION_SIZE, SurfaceId};
 use serde_json::{Value, json};
 
-/// Returns the bytes of a picture.
 pub(crate) fn rgba(picture: &RgbImage) -> Vec<u8> {
     let mut bytes = vec![u8::MAX; picture.len() / 3 * 4];
     for (four, three) in bytes.chunks_exact_mut(4).zip(picture.chunks_exact(3)) {
@@ -135,8 +134,8 @@ pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: Option<usize>) -> Optio
 /// Colour of outlines (amber). No built-in scene uses this colour.
 const OUTLINE: [u8; 3] = [255, 196, 61];
 
-/// Threshold for edges. A pixel is an edge if the second difference of depth across the pixel and two neighbours is
-/// greater. The unit is the lowest of 24 depth bits. Within a flat triangle, depth is linear on the screen, so that the
+/// Threshold of the second difference of depth over a pixel and two neighbours. A pixel with a greater difference is an
+/// edge. The unit is the lowest of 24 depth bits. Within a flat triangle, depth is linear on the screen, so that the
 /// second difference comes only from rounding.
 const BEND: i64 = 24;
 

@@ -17,7 +17,6 @@ use tracking::motion::{GrowingRecording, Recording};
 /// Name of the recorded motion for a head that the visitor of the page moves. This recording grows during the run.
 const LIVE: &str = "live.csv";
 
-/// An experiment that runs step by step.
 #[derive(Debug)]
 pub(crate) struct Session {
     stepper: Stepper,

@@ -81,7 +81,7 @@ impl CommandContent {
     }
 
     /// Passes the commands of the message to `out`, and may leave out primitives that touch no pixel of the region.
-    /// Returns false only if the passed commands contain no primitive ([`CommandWords::append_visible`]).
+    /// Returns true if the passed commands may contain a primitive ([`CommandWords::append_visible`]).
     pub fn append_visible(&self, out: &mut dyn CommandSink) -> bool {
         self.words.append_visible(self.part, out)
     }
@@ -211,8 +211,8 @@ pub trait CommandWords: Debug + Send + Sync {
     /// region. `out` receives only whole commands. Before each drawing command, the passed commands set the Enable bits
     /// of the pixels.
     ///
-    /// Returns false only if the passed commands contain no primitive. The default implementation passes all commands
-    /// and returns true.
+    /// Returns true if the passed commands may contain a primitive. The default implementation passes all commands and
+    /// returns true.
     fn append_visible(&self, part: u32, out: &mut dyn CommandSink) -> bool {
         self.append_words(part, out.words());
         true
@@ -228,7 +228,7 @@ pub trait CommandWords: Debug + Send + Sync {
 /// A receiver of renderer commands in order. The commands come as words, or as batches of triangles
 /// ([`TriangleBatch`]).
 pub trait CommandSink {
-    /// Returns the list of words. The sender of commands appends the words of its commands to this list.
+    /// Returns the list to which the sender appends the words of its commands.
     fn words(&mut self) -> &mut Vec<Word>;
 
     /// Offers a batch of triangles that follow the words appended so far. Returns true if the sink accepts the batch.

@@ -37,7 +37,8 @@ pub struct Video {
 }
 
 impl Video {
-    /// Makes the video signal that `numbers` describes. Returns `None` if a number is too large for a clock.
+    /// Makes the video signal that `numbers` describes. Returns `None` if the period of a pixel, line or field is
+    /// shorter than a picosecond, or too long for 64-bit arithmetic.
     #[must_use]
     pub const fn new(numbers: VideoNumbers) -> Option<Self> {
         let VideoNumbers { pixel_ps, pixel_divisor, line_pixels, frame_lines, .. } = numbers;
@@ -118,7 +119,7 @@ impl Video {
 
     /// Returns the number of whole scan lines between time zero and the start of line `y` of the frame in a field.
     /// Returns `None` if the field does not scan the line. An odd field begins with a blanked half line, so its first
-    /// whole line begins half a line later.
+    /// whole line begins half a line time after the retrace.
     fn line_number(&self, y: u32, field: PeriodNumber) -> Option<u64> {
         let parity = FieldParity::of_field(field);
         if y >= self.height() || y % 2 != parity.first_line() {

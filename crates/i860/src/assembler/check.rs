@@ -71,8 +71,8 @@ pub(super) fn warnings(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usiz
     each.chain(lost).collect()
 }
 
-/// Number of operations that entered a pipe after the last scalar operation, which destroyed the older contents. `None`
-/// if the contents of the pipe are unknown.
+/// Number of operations that entered a pipe since a scalar operation destroyed the older contents of the pipe. `None`
+/// if the contents are unknown.
 #[derive(Clone, Copy, Default)]
 struct PipeFill(Option<usize>);
 
@@ -213,7 +213,7 @@ fn writable_float_mask(dest: u8, bytes: u8) -> u64 {
     float_mask(dest, bytes) & !(3 << 32)
 }
 
-/// Returns the mask of an integer register. The mask of r0 is empty, because r0 cannot be written.
+/// Returns the bit of an integer register in a mask of written registers. Returns 0 for r0, which cannot be written.
 fn integer_mask(n: u8) -> u64 {
     1 << n & !1
 }

@@ -13,7 +13,7 @@ struct Open {
     line: usize,
     /// True if this `.if` itself is in assembled code, and not in an excluded branch of an enclosing `.if`.
     outer: bool,
-    /// True if the lines of the branch that is being read are assembled.
+    /// True while the lines of the current branch are assembled.
     selected: bool,
     /// True once a branch of this `.if` was selected. Later branches of the `.if` are then excluded.
     done: bool,
@@ -22,7 +22,7 @@ struct Open {
 }
 
 impl Open {
-    /// Begins the next branch of the `.if`. `holds` is the value of the condition of this branch.
+    /// Begins another branch of the `.if`, whose condition has the value `holds`.
     const fn branch(&mut self, holds: bool) {
         self.selected = self.outer && holds && !self.done;
         self.done |= self.selected;
@@ -77,8 +77,8 @@ pub(crate) fn select(source: &str) -> Result<Cow<'_, str>, (usize, String)> {
     }
 }
 
-/// Stores the constant that a line defines. If the value contains an unknown name, no constant is stored. Such a line
-/// can be linear code, or can use a label whose address is not known yet.
+/// Stores the constant that a line defines. A value with an unknown name gives no constant here. The line can be a
+/// statement of linear code, or can use a label whose address is not known yet.
 fn define(code: &str, constants: &mut Symbols) {
     let equ = code.strip_prefix(".equ").or_else(|| code.strip_prefix(".set"));
     let parts = equ.map_or_else(|| code.split_once('='), |rest| rest.split_once(','));

@@ -53,13 +53,12 @@ impl Program {
     }
 }
 
-/// A listing under construction.
 struct Rows<'a> {
     text: String,
     /// Labels that are not listed yet, sorted by address.
     labels: &'a [(String, u32)],
     source: Vec<&'a str>,
-    /// Number of the source line of the last row that was written.
+    /// Number of the source line in the row that was written last.
     line: usize,
 }
 

@@ -85,7 +85,6 @@ pub(super) struct Filler<'a> {
 }
 
 impl Filler<'_> {
-    /// Fills the fields of the instruction from the texts of the operands.
     pub(super) fn fill(mut self, operands: &[&str]) -> Result<Instruction, String> {
         // The operation decides the operands and their order.
         match (Syntax::from_op(self.i.op), operands) {

@@ -41,7 +41,6 @@ impl Budget {
         self.steps * (MOST_TEXT / MOST_STEPS) + self.text
     }
 
-    /// Starts to measure the use of the budget by source line `line`.
     fn begin(&mut self, line: usize) {
         self.largest_user = self.largest_user();
         self.current = (line, self.left());

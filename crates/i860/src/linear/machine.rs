@@ -1,6 +1,5 @@
 //! Properties of the operations that the scheduler places: units, widths and latencies.
 
-/// The execution unit of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Adder,

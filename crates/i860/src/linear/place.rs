@@ -181,7 +181,6 @@ impl<'a> Placer<'a> {
         self.adder.iter().chain(&self.multiplier).any(Option::is_some)
     }
 
-    /// Advances [`Placer::first`] to the first operation that was not issued yet.
     fn skip_issued(&mut self) {
         while self.first < self.operations.len() && self.issued[self.first].is_some() {
             self.first += 1;
@@ -399,8 +398,8 @@ impl<'a> Placer<'a> {
         format!("{mnemonic} {}, {dest}", texts.join(", "))
     }
 
-    /// Replaces the mnemonic of a single-precision addition by the mnemonic of a dual operation, if no result is lost.
-    /// The dual operation also pushes the multiplier's pipe.
+    /// Turns a single-precision addition into a dual operation, which also pushes the multiplier's pipe. Returns
+    /// `mnemonic` unchanged for other operations, and if the push would move no value or lose a result.
     fn with_multiplier(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfadd.ss" => "ra1p2.ss",
@@ -416,8 +415,8 @@ impl<'a> Placer<'a> {
         dual
     }
 
-    /// Replaces the mnemonic of a multiplication by the mnemonic of a dual operation, if no result is lost. The dual
-    /// operation also pushes the adder's pipe.
+    /// Turns a multiplication into a dual operation, which also pushes the adder's pipe. Returns `mnemonic` unchanged
+    /// for other operations, and if the push would move no value or lose a result.
     fn with_adder(&mut self, mnemonic: &'static str) -> &'static str {
         let dual = match mnemonic {
             "pfmul.ss" => "mm12mpm.ss",

@@ -1,6 +1,5 @@
 //! Parameters of the scheduler for one stretch of linear code.
 
-/// Parameters of the scheduler for straight-line code.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
     /// Number of lines from which the scheduler chooses the next operation, counted from the first unissued line.

@@ -1,4 +1,4 @@
-//! Options of `pxpl5 arp` that describe a walk (frames seen along a path). Each option stands for a path of `--set`.
+//! Options of `pxpl5 arp` that describe the walk of a viewer. Each option stands for a path of `--set`.
 
 use crate::budget::BudgetArgs;
 use crate::error::CliError;
@@ -70,8 +70,7 @@ const LENS: &str = "arp.lens";
 type GivenSettings = Vec<(String, String, String)>;
 
 impl WalkArgs {
-    /// Returns the scene, and all settings of the walk (frames seen along a path). Prints a warning for every number
-    /// outside its documented range.
+    /// Returns the scene, and all settings of the walk. Prints a warning for every number outside its documented range.
     ///
     /// # Errors
     ///
@@ -99,8 +98,8 @@ impl WalkArgs {
         Ok((scene, plan))
     }
 
-    /// Returns an error if the estimated time or memory of several walks (frames seen along a path) exceeds the budget.
-    /// `walks` is the number of walks.
+    /// Returns an error if the estimated time or memory of several walks exceeds the budget. `walks` is the number of
+    /// walks.
     ///
     /// # Errors
     ///

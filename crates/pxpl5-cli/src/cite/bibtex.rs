@@ -5,7 +5,6 @@ use super::{AUTHOR, REPOSITORY, TITLE};
 use crate::version::VERSION;
 use std::fmt::Write;
 
-/// Returns the entries of the software and of all papers.
 pub(super) fn entries() -> String {
     let software = [
         ("author", format!("{{{AUTHOR}}}")),
@@ -36,7 +35,7 @@ fn of(work: &Work) -> String {
     entry(kind, work.key, &fields)
 }
 
-/// Protects the capital letters of a title, which styles of bibliographies would change.
+/// Protects the capital letters of a title, because bibliography styles change capital letters to small letters.
 fn protected(title: &str) -> String {
     format!("{{{title}}}")
 }

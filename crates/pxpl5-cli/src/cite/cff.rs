@@ -5,7 +5,6 @@ use super::{AUTHOR, REPOSITORY, TITLE};
 use crate::version::VERSION;
 use std::fmt::Write;
 
-/// Returns the text of the file CITATION.cff.
 pub(super) fn file() -> String {
     let mut text = format!(
         "# Written by: pxpl5 cite --format cff

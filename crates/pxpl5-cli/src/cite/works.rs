@@ -3,7 +3,6 @@
 /// Given name or initials, and family name.
 pub(super) type Name = (&'static str, &'static str);
 
-/// Kind of a publication.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Technical report; [`Work::venue`] is the institution.
@@ -12,7 +11,6 @@ pub(super) enum Kind {
     Paper,
 }
 
-/// A publication.
 #[derive(Debug)]
 pub(super) struct Work {
     /// Short name, as the documents of the project use it. The same name is the key in BibTeX.

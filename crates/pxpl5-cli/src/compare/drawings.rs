@@ -117,8 +117,8 @@ const COLUMNS: [Column; 28] = [
 ];
 
 /// Returns the text of rows.csv. Each line is for one pipeline, and columns have the names of comparison.json. The last
-/// columns hold the error under each predictor and by each cause. Cells are empty without an evaluation, and if the
-/// comparison did not ask for predictors or causes.
+/// columns hold the error under each predictor and by each cause. A cell is empty if its row has no evaluated pixels,
+/// or if the comparison did not ask for predictors or causes.
 fn rows_csv(comparison: &Comparison) -> String {
     let causes: Vec<Option<Cause>> = Cause::ALL.into_iter().map(Some).chain([None]).collect();
     // Names of columns equal the JSON paths of the same numbers.

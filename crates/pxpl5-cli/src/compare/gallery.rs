@@ -33,7 +33,6 @@ pub(super) fn put(folder: &mut OutputFolder, comparison: &Comparison) -> Result<
     folder.put("gallery.html", html_of_tables(&[page]).as_bytes())
 }
 
-/// The gallery page while it is built.
 struct Gallery<'a> {
     folder: &'a mut OutputFolder,
     comparison: &'a Comparison,

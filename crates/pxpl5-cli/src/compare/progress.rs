@@ -6,7 +6,6 @@ use pxpl5::compare::ComparisonRow;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Progress of the runs and rows of a comparison.
 pub(super) struct CompareProgress {
     bar: ProgressBar,
     quiet: bool,
@@ -17,7 +16,8 @@ pub(super) struct CompareProgress {
     runs: (AtomicU64, AtomicU64),
 }
 
-/// Number of plain lines about the runs of a comparison. Additional lines report finished rows.
+/// Maximum number of plain lines about finished runs, with one line after each tenth of the runs. Additional lines
+/// report finished rows.
 const LINES: u64 = 10;
 
 impl CompareProgress {
@@ -50,7 +50,6 @@ impl CompareProgress {
         }
     }
 
-    /// Shows that all runs of a row have ended.
     pub(super) fn ended(&self, row: &ComparisonRow) {
         let done = self.rows.0.fetch_add(1, Ordering::Relaxed) + 1;
         self.line(&format!("pxpl5: row {done} of {}, {}; {}\n", self.rows.1, result(row), self.left()));

@@ -30,7 +30,6 @@ const BEST_WITH: &str = "best with";
 /// Width in characters of the column with the pipelines' names.
 const NAME: usize = 24;
 
-/// Returns the comparison as text for the terminal.
 pub(super) fn text(comparison: &Comparison) -> String {
     let mut text = heading(comparison);
     let _ = writeln!(text, "\n{}", header(comparison));
@@ -67,8 +66,8 @@ fn intervals(comparison: &Comparison) -> String {
     text
 }
 
-/// Converts a share from 0 to 1 into percent, rounded to six decimals, so that rounding errors of the product do not
-/// appear.
+/// Converts a share from 0 to 1 into percent. The result is rounded to six decimals, because the product of the share
+/// and 100 can have rounding errors.
 fn percent(share: f64) -> f64 {
     (share * 1e8).round() / 1e6
 }
@@ -179,7 +178,6 @@ fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
     format!("{:<NAME$}{cells}\n", name(comparison, row))
 }
 
-/// Returns the table of the contributions of causes to the error.
 fn causes(comparison: &Comparison) -> String {
     let mut text = format!("\n{:<NAME$}", "error by cause, px");
     for cause in Cause::ALL {

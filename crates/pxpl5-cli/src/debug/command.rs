@@ -4,7 +4,6 @@ use super::condition::Condition;
 use super::words::{board, number, time};
 use pxpl5::{Board, PeriodNumber, Time};
 
-/// A parsed command of the debugger.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
     /// An empty line or a comment.
@@ -17,7 +16,6 @@ pub(super) enum Command {
     Next(Board),
     Step(u64, StepOf),
     Show(Pane),
-    /// Shows the state of one board.
     ShowBoard(Board),
     /// Sets a breakpoint at a label or address. Without a label or address, the command lists all breakpoints.
     Break(Option<String>),
@@ -38,7 +36,7 @@ pub(super) enum Command {
     Quit,
 }
 
-/// The unit of a `step` command.
+/// The length of a step of the debugger's command `step`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepOf {
     Event,
@@ -154,7 +152,7 @@ fn unknown(name: &str, text: &str) -> String {
     format!("expected {}, found `{text}`", forms.join(" or "))
 }
 
-/// Returns the parsed board, if no words follow its name.
+/// Returns `board` if no words follow the name of the board. Otherwise returns an error.
 fn whole((board, rest): (Board, &[&str])) -> Result<Board, String> {
     match rest {
         [] => Ok(board),

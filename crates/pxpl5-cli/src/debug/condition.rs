@@ -3,7 +3,6 @@
 use super::words::{board, number};
 use pxpl5::{Board, Stepper};
 
-/// A condition at which the debugger stops a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Condition {
     /// A surface or a display memory has swapped its buffers since the run was resumed.

@@ -9,7 +9,6 @@ use ratatui::widgets::{Block, Paragraph};
 use std::io;
 use std::time::Duration;
 
-/// Input line, output log and history of the debugger's screen.
 #[derive(Default)]
 struct ScreenState {
     /// Lines of output, oldest first.
@@ -29,7 +28,7 @@ const WIDE: u16 = 100;
 /// Maximum number of output lines that the log keeps.
 const LOG: usize = 2_000;
 
-/// Runs the screen until the user quits.
+/// Shows the screen and executes the user's commands until the user quits.
 ///
 /// # Errors
 ///

@@ -1,4 +1,5 @@
-//! Text views of the state of a run, shown on the debugger's screen and printed by its scripts.
+//! Text views of the state of a run. The debugger shows the views on its screen, and scripts of the debugger print
+//! them.
 
 use super::words::address;
 use i860::Program;
@@ -188,7 +189,6 @@ pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str)
     })
 }
 
-/// Returns the labels at an address of a board's code.
 pub(super) fn labels(board: &GpBoard, at: u32) -> Vec<String> {
     let programs = programs_of(board);
     let labels = programs.iter().flat_map(|program| program.labels.clone());

@@ -5,7 +5,6 @@ use ::i860::{AddressProfile, Config, Cpu, Program, Ram, RunEnd, disassemble};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-/// Options for one execution of an i860 program and for its report.
 pub(super) struct RunOptions {
     pub(super) entry: Option<String>,
     pub(super) stop: Option<String>,
@@ -25,7 +24,6 @@ struct Span {
     words: Vec<u32>,
 }
 
-/// A finished execution of an i860 program, with the data of its report.
 struct Run<'a> {
     program: &'a Program,
     cpu: Cpu,

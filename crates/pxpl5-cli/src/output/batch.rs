@@ -11,26 +11,26 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Output files that are complete but do not have their final names yet.
 #[derive(Debug)]
 pub(super) struct Batch {
-    /// Description of the output and of its option, for error messages.
+    /// Description of the output, and the option that names it, for error messages.
     place: Place,
     files: Vec<Staged>,
-    /// Files of the previous run. These files are deleted after all new files have their names.
+    /// Files of the previous run, which are deleted after all new files have their final names.
     gone: Vec<PathBuf>,
-    /// Data for devices, pipes and standard output. These data are written last, because such a write cannot be undone.
+    /// Targets such as pipes and standard output, with the data for each target. These data are written last, because
+    /// such a write cannot be undone.
     streams: Vec<(Target, Vec<u8>)>,
 }
 
-/// A complete file that still has its temporary name.
 #[derive(Debug)]
 struct Staged {
     temporary: PathBuf,
     name: PathBuf,
-    /// Locked handle of the file. The lock shows other processes that the writer of the file is alive. `None` if no
-    /// handle exists.
+    /// Locked handle of the file, or `None` if no handle exists. The lock shows other processes that the process that
+    /// writes the file still runs.
     lock: Option<File>,
 }
 
-/// A file that `commit` has put in place, with the path at which the previous contents of the file are kept.
+/// A file that `commit` has renamed to its final name, with the path of a copy of the previous contents.
 struct Placed {
     name: PathBuf,
     before: Option<PathBuf>,
@@ -39,7 +39,7 @@ struct Placed {
 /// Prefix of the name of every temporary file.
 const TEMPORARY: &str = ".pxpl5-";
 
-/// Returns a file name in the folder of `path` that no other output of any process uses.
+/// Returns a path in the folder of `path` with a file name that no process uses for any other output.
 fn beside(path: &Path, end: &str) -> PathBuf {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
@@ -57,9 +57,10 @@ fn is_temporary(name: &OsStr) -> bool {
     })
 }
 
-/// Removes temporary files of processes that ended without removing them. Such a file can be recognized, because no
-/// process holds its lock. The folder must be locked during the call. Without this lock, another process may be between
-/// creating and locking a file, or may be replacing files.
+/// Removes temporary files of processes that have ended. Such a file is recognized by its lock, which no process holds.
+///
+/// The folder must be locked during the call. Otherwise, another process may have created a file without having locked
+/// it yet, or may be replacing files.
 pub(super) fn remove_leftover_files(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {

@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 /// The target of an output path after all links are resolved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Target {
-    /// A regular file, or a path at which no file exists yet. Writing replaces the file by one rename.
+    /// A regular file, or a path at which no file exists yet. The new contents get this path by one rename.
     File(PathBuf),
-    /// A device, a pipe or a socket. Data are written into this object, because no file may replace it.
+    /// A device, a pipe or a socket. Data are written into the device, pipe or socket, because no file may replace it.
     Through(PathBuf),
     /// Standard output of this process, named by a path such as /dev/stdout.
     StandardOutput,
 }
 
-/// Maximum number of links that are followed. A longer chain is treated as a circle.
+/// Maximum number of links that are followed. A chain of more links is treated as a circle.
 const MOST_LINKS: usize = 40;
 
 impl Target {
@@ -37,8 +37,8 @@ impl Target {
     }
 }
 
-/// Returns the file to which a path leads after all links. The file need not exist. A write to this file keeps the
-/// links.
+/// Returns the file to which a path leads after all links. The file need not exist. The links stay in place when the
+/// returned file is written.
 fn behind_links(path: &Path, place: &Place) -> Result<PathBuf, CliError> {
     let mut path = path.to_path_buf();
     for _ in 0..MOST_LINKS {
@@ -62,11 +62,11 @@ fn is_standard_output(_: &std::fs::Metadata) -> bool {
     false
 }
 
-/// Description of an output for error messages, with the name of the option that contains the output's path.
+/// Names an output in error messages, together with the option that contains the output's path.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     option: &'static str,
-    /// The file that the option names. `None` if the option names a folder.
+    /// Name of the file in the option's path. `None` if the option names a folder.
     file: Option<PathBuf>,
 }
 

@@ -59,8 +59,8 @@ fn series_of(by: &[String], groups: &[Group], names: Option<&[String]>) -> Chart
     ChartSeries { name: by.join(", "), points, look }
 }
 
-/// Returns the point of a group. The point is hollow if some pictures were not shown, because the mean then covers only
-/// the shown pictures.
+/// Returns the point of a group on the chart. The point is hollow if the group has due pictures that were not shown,
+/// because the mean covers only shown pictures.
 fn point(group: &Group, across: f64) -> ChartPoint {
     ChartPoint { at: (across, group.mean), interval: group.interval, is_hollow: group.counts.has_missing_pictures() }
 }

@@ -6,7 +6,6 @@ mod print;
 use crate::error::CliError;
 use std::path::Path;
 
-/// File format of a plotted figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Svg,

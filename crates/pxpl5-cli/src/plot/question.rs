@@ -37,7 +37,7 @@ pub(super) struct Group {
     pub(super) missing: usize,
     /// Mean of the numbers in the y column. NaN if `n` is 0.
     pub(super) mean: f64,
-    /// Standard deviation of the numbers in the y column. NaN if `n` is below 2, or if the rows lack a standard
+    /// Standard deviation of the numbers in the y column. NaN if `n` is below 2, or if the rows have no standard
     /// deviation.
     pub(super) sd: f64,
     /// Confidence interval of the mean. NaN in the same cases as `sd`.
@@ -45,7 +45,7 @@ pub(super) struct Group {
     pub(super) counts: Counts,
 }
 
-/// Sums of the counts over all rows of a group. A count is `None` if no row has this count.
+/// Sums of counts over all rows of a group. A sum is `None` if no row has the count.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counts {
     /// Number of pictures that were due.
@@ -135,7 +135,8 @@ impl Question {
         Ok(Group { by, x, n: numbers.len(), missing, mean: of_all.mean, sd, interval, counts })
     }
 
-    /// Returns the group for one row of a comparison. Such a row already is a mean over seeds with an interval.
+    /// Returns the group of one row of a comparison. A row of a comparison is already a mean over seeds, with an
+    /// interval.
     fn of_row(&self, by: Vec<String>, x: Value, rows: &[&Row], missing: usize) -> Group {
         let row = rows[0];
         let number = |name: &str| value(row, name).and_then(Value::as_f64);
@@ -147,7 +148,8 @@ impl Question {
         Group { by, x, n, missing, mean, sd: beside("sd").unwrap_or(f64::NAN), interval, counts }
     }
 
-    /// Returns an error if a swept setting varies within a group, unless the plot takes the mean over this setting.
+    /// Returns an error if a setting of the sweep varies within a group, unless `--band` takes the mean over this
+    /// setting.
     fn check_others(&self, results: &ResultRows, rows: &[&Row]) -> Result<(), CliError> {
         let axes = results.about.get("axes").and_then(Value::as_array).into_iter().flatten();
         let paths = axes.filter_map(|axis| axis["paths"].as_array()).flatten().filter_map(Value::as_str);

@@ -6,7 +6,7 @@ use pxpl5::lab::manifest::{MANIFEST_FILE, Manifest};
 use std::fs;
 use std::path::Path;
 
-/// A results folder, restricted to the files of its manifest. The manifest lists the files of a run.
+/// A results folder. Only files that are listed in the folder's manifest (list of a run's files) are used.
 pub(crate) struct Files<'a> {
     folder: &'a Path,
     manifest: Option<Manifest>,
@@ -28,7 +28,7 @@ impl<'a> Files<'a> {
         self.folder
     }
 
-    /// Reads the main results file, which describes all other files. Without a manifest only this file is used, because
+    /// Reads the main results file. Without a manifest (list of a run's files), only this file is used, because all
     /// other files may belong to another run.
     ///
     /// # Errors
@@ -57,7 +57,6 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// Returns the names of the files that the manifest lists.
     pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         self.manifest.iter().flat_map(Manifest::names)
     }

@@ -24,7 +24,6 @@ pub(super) fn of(files: &Files<'_>) -> Result<Option<Vec<PageTable>>, CliError> 
     Ok(Some(vec![with_pictures(table, files)]))
 }
 
-/// Returns the table of a sweep, with one row for each point.
 fn sweep(results: &ResultRows) -> PageTable {
     let told = results.rows.len().min(MOST_ROWS);
     let flat: Vec<Vec<(String, String)>> = results.rows[..told].iter().map(cells).collect();
@@ -58,8 +57,8 @@ fn numbers_first(row: &Row) -> Vec<(String, String)> {
     numbers.into_iter().chain(texts).collect()
 }
 
-/// Returns a table of `rows`. Each row is a list of pairs: name of the column, and text of the cell. The columns are in
-/// the order of their first occurrence.
+/// Returns a table. Each row is a list of pairs of a column's name and a cell's text. Columns are in the order in which
+/// their names first occur.
 fn tabular(name: &str, about: Vec<String>, rows: &[Vec<(String, String)>]) -> PageTable {
     let mut columns: Vec<String> = Vec::new();
     for (key, _) in rows.iter().flatten() {

@@ -1,5 +1,5 @@
-//! The command `pxpl5 volume compare`, which compares all clips (ways to cut the scene into slices) and projections of
-//! a volume.
+//! The command `pxpl5 volume compare`, which draws one volume with every clip (way to cut the scene into slices) and
+//! projection, and compares the results.
 
 use super::settings::VolumeSettingArgs;
 use crate::error::CliError;
@@ -100,8 +100,8 @@ const COLUMNS: [Column; 16] = [
     ("volumes_hz_overlapped", |row| format!("{:.2}", row.volumes_hz_overlapped)),
 ];
 
-/// Returns the brightness of a row relative to the row with exact clipping, as a mean over some rings around the axis.
-/// Rings in which exact clipping shows nothing are left out.
+/// Returns the brightness of a volume relative to the volume with exact clipping, as a mean over some rings around the
+/// axis. Rings in which exact clipping shows nothing are left out.
 fn over_exact(row: &VariantRow, rings: std::ops::Range<usize>) -> String {
     let rings = row.brightness_over_exact.get(rings).unwrap_or_default();
     let known: Vec<f64> = rings.iter().flatten().copied().collect();
@@ -136,7 +136,6 @@ fn text(comparison: &VolumeComparison) -> String {
     text
 }
 
-/// The two header lines of the table.
 const HEADS: [[&str; COLUMNS.len()]; 2] = [
     [
         "clip",
@@ -184,8 +183,9 @@ fn laid_out<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> Strin
     padded.collect::<String>().trim_end().to_owned()
 }
 
-/// Returns a chart of brightness: lit pixels per pixel of radius. The chart has one curve for each clip (way to cut the
-/// scene into slices) that is projected along the normal.
+/// Returns a chart of the number of lit pixels over the distance from the axis. The number is divided by the width of a
+/// ring in pixels. The chart has one curve for each clip (way to cut the scene into slices), projected along the
+/// normal.
 fn brightness(comparison: &VolumeComparison) -> String {
     let axes = ChartAxes {
         title: format!("Lit pixels over radius: {}, along the normal", comparison.scene),

@@ -1,5 +1,5 @@
-//! The commands `pxpl5 volume view` and `pxpl5 volume film`. Both commands show a volume as an eye in front of the
-//! display sees it.
+//! The commands `pxpl5 volume view` and `pxpl5 volume film`, which show a volume as an eye in front of the display sees
+//! the volume.
 
 use super::heads::{self, HeadArgs};
 use super::settings::{VolumeSettingArgs, origin};

@@ -1,4 +1,4 @@
-//! Options that describe a volume (a scene as slices of a volumetric display). Each option stands for a path of
+//! Options that describe a volume (a scene drawn as slices for a volumetric display). Each option stands for a path of
 //! `--set`.
 
 use crate::budget::BudgetArgs;
@@ -148,11 +148,6 @@ impl VolumeSettingArgs {
         Ok(scene)
     }
 
-    /// Draws the volume, and shows a progress bar.
-    ///
-    /// # Errors
-    ///
-    /// Fails when a setting or the scene is invalid.
     pub(super) fn draw(&self, settings: &VolumeSettings) -> Result<Volume, CliError> {
         let scene = self.load_scene()?;
         self.settings.admit(settings, &scene, 1)?;
@@ -170,7 +165,7 @@ pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, Cli
     Ok(scene_choice(name, triangles).load()?)
 }
 
-/// Returns the choice of a scene that is scaled to fit into the display.
+/// Returns the settings of a scene that is scaled to fit into the display. `name` is a built-in scene or a file.
 pub(super) fn scene_choice(name: &str, triangles: Option<u64>) -> SceneChoice {
     SceneChoice {
         name: name.to_owned(),

@@ -54,7 +54,7 @@ pub(super) fn run(args: SweepArgs) -> Result<(), CliError> {
     args.folder.run(&sweep, header, &command)
 }
 
-/// Keys of the file that are not settings of a volume.
+/// Keys of the experiment file that are not settings of the volumetric display.
 const OWN: [&str; 2] = ["scene", "triangles"];
 
 /// Quantities of a volume that are measured by default.
@@ -82,7 +82,8 @@ struct VolumeSweep {
 }
 
 impl VolumeSweep {
-    /// Reads a file. `sets` are settings of the command line, which override settings of the file.
+    /// Reads an experiment file with a sweep of volumes. `sets` are settings of the command line, which override
+    /// settings of the file.
     fn load(path: &Path, sets: &[String], threads: Threads, budget: BudgetArgs) -> Result<Self, CliError> {
         let place = path.display().to_string();
         let bytes =
@@ -161,7 +162,6 @@ impl VolumeSweep {
         Ok(self.measure.iter().map(|name| (name.clone(), "as in the report pxpl5-volume/1".to_owned())).collect())
     }
 
-    /// Draws the volume at a point.
     fn draw(&self, all: &BTreeMap<String, toml::Value>, point: u64) -> Result<Volume, CliError> {
         let mut settings = VolumeSettings::paper();
         let place = format!("point {point}");

@@ -8,7 +8,6 @@ use pxpl5_wire::display::{PixelLight, ScanOrder};
 /// Greatest number of regions in a picture. The region masks of `pxpl5-geometry` have this number of bits.
 const MOST_REGIONS: u64 = 128;
 
-/// Number of microseconds in a second.
 const US_PER_S: u64 = 1_000_000;
 
 /// The parameters of a panel, a display without NTSC timing. [`PanelNumbers::of`] reads these parameters from a table

@@ -16,7 +16,7 @@ const ORDER: u32 = 3;
 /// Number of words of a token message under Rendering Control.
 const TOKEN: u32 = 6;
 
-/// Node number of the partner of the measured board, which sends and receives all messages of the measurement.
+/// Node number of the board that exchanges all messages of the measurement with the measured board.
 const OTHER: NodeId = NodeId(2);
 
 /// Total time and number of a board's messages. A received message counts once, and a sent chain of messages counts
@@ -29,8 +29,8 @@ pub(super) struct Traffic {
     handed: Vec<[f64; 2]>,
 }
 
-/// Returns the time to send one bin entry, for a slave that has the token, in nanoseconds. The result is the slope over
-/// all bins, or 0 if no bin was sent.
+/// Returns the time to send one bin entry, for a slave that has the token, in nanoseconds. The result is the slope of a
+/// least-squares line over all bins, or 0 if no bin was sent.
 pub(super) fn token_entry_ns(scenes: &[Traffic]) -> f64 {
     let mut handed = scenes.iter().flat_map(|traffic| &traffic.handed).peekable();
     if handed.peek().is_none() { 0.0 } else { solve(handed.map(|[entries, ns]| ([*entries, 1.0], *ns))) }

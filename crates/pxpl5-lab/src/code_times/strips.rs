@@ -21,8 +21,8 @@ const SMALLER: usize = 12;
 /// Time between two head poses in picoseconds: one NTSC field.
 const FIELD_PS: u64 = 16_683_333_333;
 
-/// Memory address at which the display list begins. Smaller addresses belong to the program. In the list of messages, a
-/// piece of memory at this address or above holds the commands of a bin entry.
+/// Memory address at which the display list begins. Smaller addresses belong to the program. An order message consists
+/// of pieces of memory. A piece at this address or above holds the commands of a bin entry.
 const COMMANDS: u32 = 1 << 20;
 
 /// Sizes in words of four kinds of order messages. The messages order a strip (group of scan lines), a strip with a

@@ -1,9 +1,9 @@
 //! Moving-block bootstrap: the interval of a mean over time, from one series of values that depend on each other.
 //!
 //! Successive fields of a run have similar errors. The values are therefore not independent, and an interval from their
-//! standard deviation would be too narrow. The bootstrap draws blocks of successive values, so that each block keeps the
-//! dependence. H. R. Künsch, "The jackknife and the bootstrap for general stationary observations", Annals of Statistics
-//! 17 (1989).
+//! standard deviation would be too narrow. The bootstrap draws blocks of successive values, so that each block keeps
+//! the dependence. H. R. Künsch, "The jackknife and the bootstrap for general stationary observations", Annals of
+//! Statistics 17 (1989).
 //!
 //! The block length follows the data: D. N. Politis and H. White, "Automatic block-length selection for the dependent
 //! bootstrap", Econometric Reviews 23 (2004), with the correction of A. Patton, D. N. Politis and H. White, Econometric
@@ -26,7 +26,7 @@ const MIN_BLOCKS: usize = 10;
 /// Seed of the random blocks, so that the same values give the same interval.
 const SEED: u64 = 0xB10C_B007;
 
-/// Numbers of fields, blocks and samples that describe a moving-block bootstrap.
+/// Size of a moving-block bootstrap: length of the series, length of a block, and number of resampled means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BootstrapSize {
     /// Number of display fields in the series of values.
@@ -37,7 +37,7 @@ pub struct BootstrapSize {
     pub resamples: usize,
 }
 
-/// Means of resampled series, in ascending order.
+/// Result of a moving-block bootstrap: the means of all resampled series, in ascending order.
 #[derive(Clone, Debug)]
 pub struct BlockBootstrap {
     size: BootstrapSize,
@@ -63,7 +63,7 @@ impl BlockBootstrap {
         Some(Self { size, means })
     }
 
-    /// Returns the length of the series and of the blocks.
+    /// Returns the length of the series, the length of a block, and the number of resampled means.
     #[must_use]
     pub const fn size(&self) -> BootstrapSize {
         self.size

@@ -6,7 +6,7 @@ use pxpl5_run::Outcome;
 use pxpl5_sim::Time;
 use pxpl5_wire::SurfaceId;
 
-/// The last picture for the first eye, and the ideal picture of the same instant.
+/// Last picture of a run for the first eye, and the ideal picture of the same instant.
 #[derive(Clone, Debug)]
 pub struct LastPicture {
     /// Picture that the eye sees, which may be incomplete.

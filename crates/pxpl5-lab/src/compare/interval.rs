@@ -22,7 +22,7 @@ impl IntervalMethod {
     /// All methods.
     pub const ALL: [Self; 4] = [Self::StudentTOfLogarithm, Self::StudentT, Self::MovingBlockBootstrap, Self::None];
 
-    /// Returns the method in words, for tables.
+    /// Returns the name of the method in words, for tables.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -97,7 +97,6 @@ impl MeanInterval {
         Some(self.high - self.low).filter(|width| width.is_finite())
     }
 
-    /// Returns the same mean without its confidence interval.
     pub(super) const fn without_interval(self) -> Self {
         Self { low: f64::NAN, high: f64::NAN, method: IntervalMethod::None, ..self }
     }

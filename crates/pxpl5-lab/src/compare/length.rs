@@ -20,13 +20,14 @@ pub struct RecordedLength {
 const USUAL_FIELDS: i64 = 300;
 
 impl CompareQuery {
-    /// Sets the number of fields of the runs if the settings state none. The number is the length of the recording that
-    /// the head replays, or five seconds without a recording. The recording's length also replaces a larger number of
-    /// fields in the settings.
+    /// Sets the number of fields of the runs if the settings state no number. The number is the length of the recording
+    /// that the head replays, or five seconds without a recording.
     ///
-    /// Returns the length if a recording determines the number of fields. A recording that is repeated without end has
-    /// no length. A larger number of fields stays valid if the settings state that the head stands still after the last
-    /// sample.
+    /// If the settings state a number that is larger than the recording's length, the length replaces this number. The
+    /// larger number stays valid only if the head stands still after the last sample. A recording that is repeated
+    /// without end has no length.
+    ///
+    /// Returns the length if a recording has determined the number of fields.
     ///
     /// # Errors
     ///

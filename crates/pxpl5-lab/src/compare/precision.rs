@@ -38,8 +38,8 @@ impl UntilPrecise {
 
     /// Returns the number of seeds to add to a row, and 0 if the interval is narrow enough or the maximum is reached.
     ///
-    /// The width falls with the square root of the number of seeds. A step at most doubles the number, because the first
-    /// widths are uncertain.
+    /// The width falls with the square root of the number of seeds. A step at most doubles the number, because the
+    /// first widths are uncertain.
     #[must_use]
     pub fn seeds_to_add(&self, error: &MeanInterval, seeds: usize) -> usize {
         if self.is_reached(error) {

@@ -7,7 +7,7 @@ use pxpl5_run::Host;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Count of finished runs. The number of all runs grows when seeds are added.
+/// Number of finished runs of a comparison, and number of all runs. The number of all runs grows when seeds are added.
 pub(super) struct Progress<'a> {
     done: AtomicU64,
     all: AtomicU64,

@@ -35,7 +35,7 @@ pub const LEAST_SEEDS: usize = 5;
 #[derive(Clone, Debug)]
 pub struct CompareQuery {
     /// Machine, scene, head and number of fields, without a pipeline. The compared pipelines come from the registry of
-    /// this file. If `head.motion` is `synthetic`, every seed has a different motion.
+    /// the experiment file. If `head.motion` is `synthetic`, every seed has a different motion.
     pub shared: ExperimentFile,
     /// Names of the rows (pipelines with settings) to run. An empty list runs all rows.
     pub only: Vec<String>,
@@ -43,8 +43,8 @@ pub struct CompareQuery {
     pub seeds: Vec<u64>,
     /// True if the comparison also searches for the largest number of triangles that each row can draw.
     pub limits: bool,
-    /// True if the error of each row is split by its causes ([`ComparisonRow::causes`]). Each run is then evaluated once
-    /// for each cause.
+    /// True if the error of each row is split by its causes ([`ComparisonRow::causes`]). Each run is then evaluated
+    /// once for each cause.
     pub causes: bool,
     /// True if each row also runs with every other predictor ([`ComparisonRow::predictors`]).
     pub predictors: bool,

@@ -12,12 +12,13 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use tracking::predict::PredictorKind;
 
-/// Errors of position on the screen, computed from the runs of all seeds.
+/// Pixel errors of a comparison row, over the runs of all seeds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ErrorSpread {
     /// Mean distance of a pixel's content from its ideal position, in pixels.
     pub mean_px: MeanInterval,
-    /// Size of the moving-block bootstrap that gave the interval of `mean_px`. `None` if the interval has another method.
+    /// Size of the moving-block bootstrap that gave the interval of `mean_px`. `None` if the interval has another
+    /// method.
     pub bootstrap: Option<BootstrapSize>,
     /// Mean distance of a pixel's content from its ideal position, in degrees.
     pub mean_deg: MeanInterval,
@@ -80,8 +81,8 @@ pub struct ComparisonRow {
     /// lasts from the measurement of a pose to the arrival of the tracker's report. The second time lasts from the
     /// start of an eye's TRANSFORM to the swap.
     ///
-    /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline, SEND,
-    /// EDIT and the scan.
+    /// The sum is shorter than [`ComparisonRow::head_to_light_ms`], which also contains the wait for the pipeline,
+    /// SEND, EDIT and the scan.
     pub tracking_and_rendering_ms: MeanInterval,
     /// Stages of the latency from head to display in milliseconds, over the complete pictures of all seeds.
     pub end_to_end: Budget,
@@ -205,7 +206,6 @@ impl ComparisonRow {
 /// Number and kind of the runs from which a row is computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sampling {
-    /// Number of seeds.
     pub(super) seeds: usize,
     /// True if the head moves the same way for every seed, for example because the motion is a recording.
     pub(super) is_one_motion: bool,

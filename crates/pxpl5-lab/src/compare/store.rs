@@ -34,7 +34,6 @@ pub(super) struct Header {
     pub(super) schema: String,
     /// Version of the program that wrote the rows.
     pub(super) version: String,
-    /// Names of all rows of the comparison.
     pub(super) rows: Vec<String>,
     /// Keys and options with their values, and the hashes of the files that the values name.
     pub(super) settings: BTreeMap<String, String>,
@@ -42,7 +41,7 @@ pub(super) struct Header {
     pub(super) config_hash: String,
 }
 
-/// A line of the file: a row, and the data of the row that comparison.json leaves out.
+/// A line of the file of finished rows: a row, and the data of the row that comparison.json leaves out.
 #[derive(Debug, Serialize, Deserialize)]
 struct Line {
     row: ComparisonRow,
@@ -123,8 +122,8 @@ impl CompareStore {
         self.found.iter().find(|row| row.pipeline == name)
     }
 
-    /// Appends a finished row. Returns the row as a later process reads the row from the file, so that an interruption
-    /// changes no result.
+    /// Appends a finished row. Returns the row as it is read back from the file, so that an interruption changes no
+    /// result.
     pub(super) fn append(&self, row: ComparisonRow) -> Result<ComparisonRow, StudyError> {
         let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
         let number = rows.count + 1;

@@ -28,7 +28,6 @@ pub(super) struct Trial {
     pub(super) shown: usize,
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
-    /// Result of the dry run that preceded the run.
     pub(super) dry_run: Option<Arc<DryRun>>,
     /// Last picture of the run, if the run computed pixels and showed a picture.
     pub(super) picture: Option<LastPicture>,

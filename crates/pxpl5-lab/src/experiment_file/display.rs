@@ -6,10 +6,9 @@ use pxpl5_run::DisplayEntry;
 use pxpl5_sim::parameters::{ParameterTable, SettingError, Value as Number};
 use pxpl5_wire::display::DisplayConfig;
 
-/// Prefix of the keys of display parameters.
 pub(super) const NUMBERS: &str = "display.";
 
-/// Name of the preset that is used if the file sets display parameters but names no preset.
+/// Name of the display that the experiment uses if the file sets display parameters but names no display.
 const OWN: &str = "panel";
 
 /// A display parameter in an experiment file. The parameter has one name in the file (`key`) and another name in the
@@ -19,7 +18,8 @@ struct NumberKey {
     parameter: &'static str,
     per_unit: f64,
     about: &'static str,
-    /// Words that the file may contain instead of a number, each with the number that the word stands for.
+    /// Words that the file must use instead of numbers, each with the number that the word stands for. Empty for a
+    /// parameter with a number.
     words: &'static [(&'static str, u64)],
 }
 

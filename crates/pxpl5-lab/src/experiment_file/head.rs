@@ -32,9 +32,7 @@ impl PartialEq for HeadChoice {
     }
 }
 
-/// Default tracker of a head.
 const TRACKER: &str = "optical";
-/// Default predictor of a head.
 const PREDICT: &str = "kalman";
 
 impl HeadChoice {
@@ -75,7 +73,8 @@ impl HeadChoice {
         Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
     }
 
-    /// Returns `None` for an experiment without a head motion. Returns an error if a `head.` or `tracking.` key is set.
+    /// Returns `None` for an experiment without a head motion. Returns an error if a `head.` or `tracking.` key is set
+    /// in such an experiment.
     fn none(file: &ExperimentFile) -> Result<Option<Self>, SettingError> {
         let of_head = file.settings.keys().any(|path| path.starts_with("head.") || path.starts_with("tracking."));
         let how = "the motion of the head, such as head.motion = \"pan:200\"";
@@ -105,7 +104,6 @@ impl HeadChoice {
         self.numbers.clone()
     }
 
-    /// Returns the keys of the head's settings with their values.
     pub(crate) fn settings(&self) -> Vec<(String, Value)> {
         let filter = if self.head.is_tuned() { "tuned" } else { "given" };
         let mut all: Vec<(String, Value)> = [

@@ -149,7 +149,7 @@ pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     is_machine_parameter(registry, &long).then_some(long)
 }
 
-/// Returns true if the path is a key other than a parameter of the machine.
+/// Returns true if the path is a key but not a parameter of the machine.
 fn is_key(registry: &Registry, path: &str) -> bool {
     keys(registry).iter().any(|key| key.path == path)
 }

@@ -70,7 +70,6 @@ impl MotionChoice {
         Ok(Self { path, sway: file.number("motion.sway")? })
     }
 
-    /// Returns the head motion in front of a scene.
     pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, SettingError> {
         let own = scene.motion();
         let path = self.path.map_or(*own.path(), |path| path.around(scene));
@@ -99,7 +98,6 @@ impl PathChoice {
     }
 }
 
-/// Returns the point at a distance in metres from `target`, in the direction +z.
 fn before(target: Vec3, distance: f64) -> Vec3 {
     target + Vec3::Z * distance as f32
 }

@@ -265,7 +265,7 @@ const CODES: [(&str, Option<CodeVersion>); 4] = [
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
 
-/// Names of the sources of the times of primitives: the papers (false) or executed code (true).
+/// Names of the two sources for times of primitives: the papers (false) or executed code (true).
 const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 impl PartialEq for Plan {
@@ -300,9 +300,8 @@ impl Plan {
         out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
-    /// Returns warnings about settings that do not represent the real machine. Two kinds exist: parameters out of
-    /// range, and times from a table although executed code was requested. Warnings about the head's recording are
-    /// included.
+    /// Returns warnings about settings that do not represent the real machine. The warnings concern parameters out of
+    /// range, times from a table although executed code was requested, and the recording of the head motion.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let of_table = warning_without_code(self.level, &self.machine, self.pipeline.as_ref());
@@ -310,7 +309,7 @@ impl Plan {
         self.out_of_range().iter().map(Parameter::warning).chain(of_table).chain(of_head).collect()
     }
 
-    /// Returns the name of the level of modelling.
+    /// Returns the name of the experiment's level of modelling.
     #[must_use]
     pub fn level_name(&self) -> String {
         self.level.name().to_owned()
@@ -322,7 +321,7 @@ impl Plan {
         self.machine.displays.first().map_or("", |display| display.name())
     }
 
-    /// Returns the experiment with a loaded scene, to be executed on this computer.
+    /// Returns the experiment of this plan with its loaded scene. The experiment runs on this computer.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();

@@ -54,8 +54,8 @@ impl ExperimentFile {
         list.flatten().map(Some).ok_or_else(|| wrong(key, setting, "a list of texts in quotes"))
     }
 
-    /// Returns the named value that a key selects. A number selects the name with the same digits, so that `code =
-    /// 1994` needs no quotes.
+    /// Returns the value that a key selects by name from `choices`. A number selects the name with the same digits, so
+    /// that `code = 1994` needs no quotes.
     pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Result<Option<T>, SettingError> {
         let Some(setting) = self.get(key) else { return Ok(None) };
         let found = plain(&setting.value);

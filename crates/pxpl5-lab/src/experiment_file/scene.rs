@@ -66,8 +66,7 @@ impl SceneChoice {
         Ok(if self.culled { whole.culled() } else { whole })
     }
 
-    /// Returns the scene `whole`, reduced to the number of primitives in these settings, and with the head motion in
-    /// these settings.
+    /// Returns the scene `whole` with the number of primitives and the head motion in these settings.
     pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, SettingError> {
         let decimated = whole.clone();
         self.prepared_by(whole, |n| decimated.decimated(n))

@@ -18,11 +18,11 @@ use toml::Value;
 pub struct Settings {
     /// Values of the settings as TOML, by the path of their key.
     pub values: BTreeMap<String, Value>,
-    /// Remarks by the path of the key: unit, provenance, and the value in the preset.
+    /// Remarks by the path of the key. A remark states unit, provenance and the value in the preset.
     remarks: BTreeMap<String, String>,
 }
 
-/// Returns the name that a list of choices gives to a value.
+/// Returns the name of `value` in a list of names and values.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> &'static str {
     choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name)
 }

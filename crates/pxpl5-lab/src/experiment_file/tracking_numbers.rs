@@ -8,7 +8,6 @@ use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use tracking::config::{FACTS, Tables};
 use tracking::tracker::{SerialRead, TrackerConfig};
 
-/// Prefix of every parameter's path.
 const PREFIX: &str = "tracking.";
 
 /// Names of the tables that apply to every tracker: the host's serial port, the prediction filters, and the gate in
@@ -54,7 +53,6 @@ fn without_effect(path: &str, tracker: &TrackerConfig) -> Option<&'static str> {
     }
 }
 
-/// Returns true if the path denotes a tracking parameter.
 pub(super) fn is_tracking_parameter(path: &str) -> bool {
     path.starts_with(PREFIX) && tracking_parameters().iter().any(|parameter| parameter.path == path)
 }

@@ -8,7 +8,6 @@ use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_run::Registry;
 use toml::Value;
 
-/// Units of one quantity, such as time. Each unit has its size as a multiple of the first unit.
 type Kind = &'static [(&'static str, f64)];
 
 const TIMES: Kind = &[("ps", 1.0), ("ns", 1e3), ("us", 1e6), ("ms", 1e9), ("s", 1e12)];

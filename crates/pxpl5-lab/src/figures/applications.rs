@@ -43,7 +43,7 @@ impl<K, T> Default for ByCapacity<K, T> {
 
 impl<K: Ord + Clone, T> ByCapacity<K, T> {
     /// Returns the result for a capacity. `make` computes the result, and a boolean that is true if a backing store was
-    /// full in the run or if that is unknown. `make` is not called if no smaller store was ever full.
+    /// full in the run or if that is unknown. `make` is not called if a smaller store was never full.
     fn get(&self, key: K, capacity: u64, make: impl FnOnce() -> Result<(T, bool)>) -> Result<Arc<T>> {
         if let Some((least, known)) = locked(&self.roomy).get(&key)
             && *least <= capacity
@@ -70,7 +70,6 @@ type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 /// The cached values, by key. A key is added when its value is first requested.
 type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 
-/// The cache of scenes, loads, measurements and results.
 #[derive(Debug, Default)]
 pub(crate) struct Applications {
     scenes: Places<Key, Scene>,
@@ -176,8 +175,8 @@ mod tests {
         Experiment::new(machine, reading.pipeline(), scene).fields(40).pixels(Pixels::Off).run().expect("it runs")
     }
 
-    /// Compares whole traces. A run that has met no full store must be the run with any larger store. A run that has met
-    /// one must be able to differ, or the flag would tell nothing.
+    /// Compares whole traces. A run that has met no full store must be the run with any larger store. A run that has
+    /// met one must be able to differ, or the flag would tell nothing.
     #[test]
     fn a_run_that_met_no_full_store_is_the_run_with_every_larger_store() {
         let (mut shared, mut differing) = (0, 0);

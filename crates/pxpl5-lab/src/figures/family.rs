@@ -1,5 +1,5 @@
-//! Figures of papers about systems other than Pixel-Planes 5. These figures follow the figures of Pixel-Planes 5
-//! in the document.
+//! Figures of papers about systems other than Pixel-Planes 5. In ACCURACY.md, these figures follow the figures of
+//! Pixel-Planes 5.
 
 use super::measured::{Result, scene_named};
 use super::{Bench, FigureError};
@@ -42,8 +42,8 @@ const COMPARED: usize = 55;
 
 impl FigureFamily {
     /// Runs the experiments on address recalculation, priority rendering and region warping. E1 runs on Pixel-Planes 5,
-    /// E2 to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are only in the
-    /// document.
+    /// E2 to E9 with an ideal renderer. Results that follow from the papers' tables by arithmetic are not measured
+    /// here, but stated in the document `document`.
     ///
     /// # Errors
     ///
@@ -85,9 +85,9 @@ impl FigureFamily {
     }
 }
 
-/// Runs E1, which measures two latencies for growing numbers of triangles. The first is the latency of the head's
-/// rotation with the display that turns cube faces. The second is the latency of a picture under Rendering Control. In
-/// the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
+/// Runs experiment E1, which measures two latencies for growing numbers of triangles. The first is the latency of the
+/// head's rotation with the display that turns cube faces. The second is the latency of a picture under Rendering
+/// Control. In the second run the viewer always faces the triangles, because triangles out of sight are not drawn.
 fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
     let mut turns = Vec::new();
     let mut drawn_ms = Vec::new();

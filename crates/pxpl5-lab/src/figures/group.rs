@@ -1,6 +1,6 @@
 //! Groups of published figures by topic: peak rates, just-in-time pixels, trackers. Each figure is measured by
-//! simulation with events, whichever level of modelling is chosen. The mean error of the main table does not include
-//! the figures of groups.
+//! simulation with events, also if the analytic level is chosen. The mean error of the main table does not include the
+//! figures of groups.
 
 use super::measured::{FigureValue, Result};
 use super::{Basis, Bench, Figure, FigureError, FigureRow};
@@ -31,7 +31,6 @@ pub(super) struct Measurement {
     pub(super) moved_by: &'static [&'static str],
 }
 
-/// A topic, with the experiments of its figures.
 pub(super) struct Topic {
     pub(super) title: &'static str,
     pub(super) about: &'static str,
@@ -90,9 +89,9 @@ impl Measurement {
         Ok(FigureRow { interval, ..self.figure.row(measured) })
     }
 
-    /// Returns the minimum and maximum of the figure when each parameter in turn takes the two ends of its range. The
-    /// figure for the presets is included, and also replaces a result that the experiment does not yield. Returns
-    /// `None` if no parameter is varied.
+    /// Returns the minimum and maximum of the figure when one parameter at a time takes either end of its range. The
+    /// result includes `nominal`, the figure for the presets. `nominal` also replaces the result of an experiment that
+    /// fails. Returns `None` if no parameter is varied.
     fn interval(&self, bench: &Bench, nominal: f64) -> Option<[f64; 2]> {
         let all = variations().into_iter().chain(photodiode_line());
         let moved = all.filter(|variation| self.moved_by.contains(&variation.path.as_str()));

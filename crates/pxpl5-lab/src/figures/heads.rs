@@ -12,9 +12,9 @@ use tracking::predict::PredictorKind;
 use tracking::rig::{Measurement as RigMeasurement, PendulumRig};
 use tracking::tracker::TrackerConfig;
 
-/// Path of the parameter for the photodiode's position when the pendulum rig measures latency (figure 17 in
-/// [`FIGURES`](super::FIGURES)): the visible line of the screen under the photodiode. The common settings of
-/// measurements ([`Bench::changes`](super::Bench)) may change this parameter.
+/// Path of the parameter for the position of the photodiode: the visible line of the screen under the photodiode, when
+/// the pendulum rig measures latency (row 17 of ACCURACY.md). The common settings of measurements
+/// ([`Bench::changes`](super::Bench)) may change this parameter.
 pub const PHOTODIODE_LINE: &str = "tracking.rig.photodiode_line";
 
 /// The measurements of the pendulum rig in one run, with the photodiode under the first, the assumed and the last line
@@ -35,9 +35,9 @@ impl RigLines {
         Ok((Self { measured }, met_full_store))
     }
 
-    /// Returns the latency that the pendulum rig measures (figure 17), with the photodiode on the assumed line. The
-    /// paper does not print the photodiode's position. The details therefore also state the latency with the photodiode
-    /// on the first and on the last line of the screen.
+    /// Returns the latency that the pendulum rig measures (row 17 of ACCURACY.md), with the photodiode on the
+    /// assumed line. The paper does not print the photodiode's position. The details therefore also state the latency
+    /// with the photodiode on the first and on the last line of the screen.
     pub(super) fn figure(&self) -> FigureValue {
         let [first, assumed, last] = self.measured.each_ref().map(|(_, measured)| rendering(measured));
         let lines =
@@ -47,7 +47,6 @@ impl RigLines {
         FigureValue { value: assumed.value, details, unprinted }
     }
 
-    /// Returns the measurement with the photodiode under the assumed line.
     pub(super) fn assumed(&self) -> Arc<RigMeasurement> {
         Arc::clone(&self.measured[1].1)
     }
@@ -67,7 +66,7 @@ fn photodiode_lines() -> [u32; 3] {
     range.map_or([assumed; 3], |(first, last)| [first as u32, assumed, last as u32])
 }
 
-/// Measures the latency with the photodiode on one line.
+/// Measures the latency with the photodiode on the line `line` of the screen.
 pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u64) -> Result<RigMeasurement> {
     let ([measured], _) = under_lines(machine, pipeline, [u32::try_from(line).unwrap_or(u32::MAX)])?;
     Ok(measured)
@@ -86,7 +85,8 @@ fn under_lines<const N: usize>(
     Ok((measured, outcome.record().met_full_store()))
 }
 
-/// Returns the latency of rendering: from the start of SEND to the light under the photodiode (figure 17).
+/// Returns the latency of rendering: from the start of SEND to the light under the photodiode (row 17 of
+/// ACCURACY.md).
 pub(super) fn rendering(measured: &RigMeasurement) -> FigureValue {
     let Statistics { mean, min, max, .. } = measured.outside.rendering;
     let details = vec![
@@ -97,13 +97,13 @@ pub(super) fn rendering(measured: &RigMeasurement) -> FigureValue {
     FigureValue::with(mean * 1e3, details)
 }
 
-/// Number of seeds of the head motion for the measurement of figure 18, the ratio of two errors.
+/// Number of seeds of the head motion for the measurement of row 18 of ACCURACY.md, the ratio of two errors.
 const SEEDS: u64 = 4;
-/// Duration of the head motion for the measurement of figure 18, in seconds.
+/// Duration of the head motion for the measurement of row 18 of ACCURACY.md, in seconds.
 const SECONDS: u64 = 120;
 
-/// Measures figure 18: the ratio of the errors of two systems with 90 and 50 ms from head to light. Almost all of the
-/// error comes from rotation. The position adds little for a point 1 m ahead.
+/// Measures row 18 of ACCURACY.md: the ratio of the errors of two systems with 90 and 50 ms from head to light.
+/// Almost all of the error comes from rotation. The position adds little for a point 1 m ahead.
 pub(super) fn ratio_of_errors() -> FigureValue {
     let ratio = |seed: u64| {
         let motion = Synthetic::recorded_use(seed);
@@ -117,8 +117,9 @@ pub(super) fn ratio_of_errors() -> FigureValue {
 /// Number of display fields in the runs that measure the latency of tracker and rendering: ten seconds.
 const FIELDS: u64 = 600;
 
-/// Measures figures 19 and 19b: the latency of the optical tracker and of rendering, with Rendering Control or Slats.
-/// The value is the sum of the stages of the latency that the paper adds. The details state all other stages.
+/// Measures rows 19 and 19b of ACCURACY.md: the latency of the optical tracker and of rendering, with Rendering
+/// Control or Slats. The value is the sum of the stages of the latency that the paper adds. The details state all other
+/// stages.
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,

@@ -114,8 +114,8 @@ fn in_pixels(angle: FigureValue) -> Result<FigureValue> {
     Ok((angle.value * PX_PER_DEG).into())
 }
 
-/// Measures figure J1: the head's rotation while the beam draws a field. The rotation is measured from the first pixel
-/// to the last line, and scaled to the time between two retraces.
+/// Measures row J1 of ACCURACY.md: the head's rotation while the beam draws a field. The rotation is measured
+/// from the first pixel to the last line, and scaled to the time between two retraces.
 fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     let surface = &outcome.record().display().surfaces()[0];
@@ -132,8 +132,8 @@ fn error_of_field(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(turn_deg / scan_s * outcome.field_ms() / 1e3, details))
 }
 
-/// Measures figure J2: the head's rotation while the beam draws a line. The rotation is measured between the first and
-/// the last pixel, and scaled to the duration of the whole line.
+/// Measures row J2 of ACCURACY.md: the head's rotation while the beam draws a line. The rotation is measured
+/// between the first and the last pixel, and scaled to the duration of the whole line.
 fn error_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Strip, Aim::Middle, FIELD.0 + 2)?;
     let last = outcome.record().display().surfaces()[0].width - 1;
@@ -144,14 +144,15 @@ fn error_of_line(bench: &Bench) -> Result<FigureValue> {
     Ok((ends_deg / active_s * line_s).into())
 }
 
-/// Measures figure J3: the time between two successive lines of a field. Between these lines, the frame has one line of
-/// the other field.
+/// Measures row J3 of ACCURACY.md: the time between two successive lines of a field. Between these lines, the
+/// frame has one line of the other field.
 fn time_of_line(bench: &Bench) -> Result<FigureValue> {
     let outcome = run(bench.machine("small-hmd")?, Viewpoint::Field, Aim::FirstPixel, FIELD.0 + 2)?;
     Ok((beam_s(&outcome, (0, 0), (0, 2)) * 1e6).into())
 }
 
-/// Measures figure J4: the slant of a vertical edge in a conventional picture, and in a picture of just-in-time pixels.
+/// Measures row J4 of ACCURACY.md: the slant of a vertical edge in a conventional picture, and in a picture of
+/// just-in-time pixels.
 fn slant_removed(bench: &Bench) -> Result<FigureValue> {
     let plates = edge_pictures(&bench.machine("small-hmd")?, PAN)?;
     let [conventional, just_in_time] = [&plates.conventional_seen, &plates.just_in_time_seen].map(slant);
@@ -174,8 +175,8 @@ fn slant(picture: &RgbImage) -> f64 {
     up / down * (rows - 1.0)
 }
 
-/// Measures figure J5: the number of vertex transforms in [`COUNTED`] fields. A shorter run measures the transforms
-/// before these fields, which are subtracted.
+/// Measures row J5 of ACCURACY.md: the number of vertex transforms in [`COUNTED`] fields. A shorter run measures
+/// the transforms before these fields, which are subtracted.
 fn transforms(bench: &Bench) -> Result<FigureValue> {
     let counted = |viewpoint, fields| -> Result<u64> {
         Ok(run(free_slave(bench)?, viewpoint, Aim::Middle, fields)?.record().vertex_transforms())
@@ -193,7 +194,7 @@ fn transforms(bench: &Bench) -> Result<FigureValue> {
     Ok(FigureValue::with(line / field, details))
 }
 
-/// Number of display fields over which vertex transforms are counted.
+/// Number of display fields over which the transforms of vertices are counted.
 const COUNTED: u64 = 20;
 
 /// Returns a machine with one slave. The software of all boards takes no simulated time, because only the number of

@@ -32,26 +32,28 @@ pub struct Bench {
     /// and a colon changes only that preset. For example, times of PPHIGS code must not change the machines that run
     /// Slats. [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
     pub changes: Vec<(String, u64)>,
-    /// Number of seeds of the head motion for the fly-through of the scene "mig" (figure 7).
+    /// Number of seeds of the head motion for the fly-through of the scene "mig" (row 7 of ACCURACY.md).
     pub seeds: u64,
-    /// Number of evaluated frames for each seed of the fly-through of the scene "mig" (figure 7).
+    /// Number of evaluated frames for each seed of the fly-through of the scene "mig" (row 7 of ACCURACY.md).
     pub frames: u64,
     /// Interpretation of the papers: the answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
     pub(crate) applications: Arc<Applications>,
 }
 
-/// Times of TRANSFORM and RENDER for one eye in the experiment of figure 6, in milliseconds. Both stages take longer
-/// than COPY. The results for several times are averaged, because the swap waits for a retrace.
+/// Times of TRANSFORM and RENDER for one eye in the experiment of row 6 of ACCURACY.md, in milliseconds. Both
+/// stages take longer than COPY. The results for several times are averaged, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
 
-/// Number of display fields in the runs with full bins (figures 16b and 16c), whose frames take about 30 fields each.
+/// Number of display fields in the runs with full bins (rows 16b and 16c of ACCURACY.md), whose frames take
+/// about 30 fields each.
 const FIELDS_OF_FULL_BINS: u64 = 600;
 
 /// Paths of the parameters that hold times of the Rendering Control code.
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
 
-/// Number of head poses from which each scene is seen, to count the regions that triangles touch (figure 8).
+/// Number of head poses from which each scene is seen, to count the regions that triangles touch (row 8 of
+/// ACCURACY.md).
 const VIEWS: u64 = 40;
 /// Time between two head poses from which the regions of triangles are counted, in picoseconds.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
@@ -76,7 +78,8 @@ impl Bench {
         Self { seeds, frames, ..self }
     }
 
-    /// Returns the same settings with primitive times of executed code. Each preset gets the times of its own code.
+    /// Returns the same settings, but with times per triangle and sphere that were measured in executed code. Each
+    /// preset gets the times of its own code.
     #[must_use]
     pub fn with_times_of_code(mut self) -> Self {
         // Each preset runs its own code, so each has its own times.
@@ -167,7 +170,7 @@ impl Bench {
         self.photodiode_line() == other.photodiode_line() && PRESETS.iter().all(is_same)
     }
 
-    /// Returns the same settings with another interpretation of the papers.
+    /// Returns these settings of measurements with another interpretation of the papers.
     #[must_use]
     pub fn with(&self, reading: Reading) -> Self {
         Self { reading, ..self.clone() }
@@ -198,19 +201,19 @@ impl Bench {
         self.run(self.reading.on(machine)?, self.reading.pipeline(), "full-screen:12", 80)
     }
 
-    /// Runs the experiment of figures 1, 2 and 4: twelve triangles that cover the screen.
+    /// Runs the experiment of rows 1, 2 and 4 of ACCURACY.md: twelve triangles that cover the screen.
     fn trivial(&self) -> Result<Arc<Summary>> {
         self.stereo(self.machine("small-hmd")?)
     }
 
-    /// Runs the experiment of figures 16b and 16c. The scene has as many screen-filling triangles as fit into the bins
-    /// according to the papers.
+    /// Runs the experiment of rows 16b and 16c of ACCURACY.md. The scene has as many screen-filling triangles as
+    /// fit into the bins according to the papers.
     fn full_bins(&self) -> Result<Arc<Summary>> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
     }
 
-    /// Measures figure 3: the latency if all work except COPY takes no time.
+    /// Measures row 3 of ACCURACY.md: the latency if all work except COPY takes no time.
     fn copy_alone(&self) -> Result<FigureValue> {
         let mut machine = self.machine("small-hmd")?;
         let gp = ["message", "triangle", "guard", "bin_entry", "token_entry", "edit", "pass", "structure"];
@@ -224,8 +227,8 @@ impl Bench {
         Ok(spread_ms(Statistics::of(self.stereo(machine)?.eye_latencies_ms.iter().copied())))
     }
 
-    /// Computes figure 16: the number of screen-filling triangles whose entries fit in the slaves' bins, for one eye or
-    /// for both.
+    /// Computes row 16 of ACCURACY.md: the number of screen-filling triangles whose entries fit in the slaves'
+    /// bins, for one eye or for both.
     fn most_in_bins(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let slaves = machine.n_gps as u64 - 1;
@@ -234,8 +237,8 @@ impl Bench {
         Ok(((of_slave * slaves) as f64).into())
     }
 
-    /// Measures the latency with the pendulum rig (figure 17) for three lines of the photodiode, unless the settings
-    /// choose one line.
+    /// Measures the latency with the pendulum rig (row 17 of ACCURACY.md) for three lines of the photodiode,
+    /// unless the settings choose one line.
     fn rig(&self) -> Result<FigureValue> {
         match self.photodiode_line() {
             Some(_) => self.rig_measurement().map(|measured| heads::rendering(&measured)),
@@ -311,8 +314,8 @@ impl Bench {
         Ok(spread_ms(Statistics::of(means.into_iter())))
     }
 
-    /// Measures figures 7, 7b and 7c: a fly-through of an application scene. The number of seeds in the settings is
-    /// divided by `seeds_of_one`, because larger scenes get fewer fly-throughs.
+    /// Measures rows 7, 7b and 7c of ACCURACY.md: a fly-through of an application scene. The number of seeds in
+    /// the settings is divided by `seeds_of_one`, because larger scenes get fewer fly-throughs.
     fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
         let samples_a_frame = if self.reading.samples == LatencySamples::EachEye { 2 } else { 1 };
         let seeds: Vec<u64> = (1..=self.seeds.div_ceil(seeds_of_one)).collect();
@@ -403,8 +406,9 @@ impl Bench {
     }
 }
 
-/// Measures figure 8: the number of regions that a triangle touches, which is the number of bin entries per visible
-/// triangle. Each scene is seen from poses along its own head motion. The figure is the mean over three scenes.
+/// Measures row 8 of ACCURACY.md: the number of regions that a triangle touches, which is the number of bin
+/// entries per visible triangle. Each scene is seen from poses along its own head motion. The figure is the mean over
+/// three scenes.
 fn regions_touched() -> Result<FigureValue> {
     let mut details = Vec::new();
     for name in ["mig", "molecules", "head"] {
@@ -479,8 +483,8 @@ mod tests {
         (1.0 + columns) * (1.0 + rows) - columns * rows / 2.0
     }
 
-    /// The end of a range can be the preset's value. A value of one preset alone, or another line of the photodiode, makes
-    /// a difference.
+    /// The end of a range can be the preset's value. A value of one preset alone, or another line of the photodiode,
+    /// makes a difference.
     #[test]
     fn only_changes_that_reach_a_machine_or_the_photodiode_make_other_machines() {
         let bench = Bench::new(Level::Transaction);

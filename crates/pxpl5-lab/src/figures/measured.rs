@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// Result of a figure's experiment.
+/// Result of the experiment that simulates a published figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigureValue {
     /// Value of the figure, in the figure's unit.
@@ -20,7 +20,6 @@ pub struct FigureValue {
 }
 
 impl FigureValue {
-    /// Returns a figure's value, together with additional numbers of the same experiment.
     pub(super) const fn with(value: f64, details: Vec<Detail>) -> Self {
         Self { value, details, unprinted: None }
     }

@@ -20,8 +20,7 @@ For the intervals, one parameter at a time is set to both ends of its range. The
 renderers' FIFO, the channels that a sender can use, and the channels for messages to FIFOs. The times of a triangle on a \
 processor and on a renderer also vary. All runs simulate events.";
 
-/// Parameters that limit the machine's triangle rate with Gouraud shading. Another parameter has the time of a Phong
-/// triangle on a renderer.
+/// Parameters that limit the machine's triangle rate with Gouraud shading.
 const OF_GOURAUD: &[&str] = &[
     "renderer.fifo_words",
     "ring.source_channels",
@@ -157,7 +156,7 @@ fn of_boards() -> Vec<Measurement> {
     ]
 }
 
-/// Number of triangles in a frame of these experiments.
+/// Number of triangles in a frame of the experiments that measure peak rates.
 const TRIANGLES: u64 = 40_000;
 
 /// Number of display fields in a run, enough for 15 to 20 frames.

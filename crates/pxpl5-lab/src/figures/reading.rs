@@ -6,7 +6,7 @@ use pxpl5_run::{FinishedRegions, RenderingControl, Summary, retraces};
 use pxpl5_sim::parameters::SettingError;
 use serde::Serialize;
 
-/// Definition of the latency samples whose mean a paper prints.
+/// Definition of the single latencies that a paper averages for a printed latency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LatencySamples {
@@ -29,11 +29,11 @@ pub enum FieldCount {
 /// An interpretation of the papers: one answer to each question that the papers leave open about the figures of
 /// Rendering Control.
 ///
-/// The first two answers concern the figures. The other answers concern the machine and the scenes. All figures are
-/// measured with the same interpretation. No answer is chosen for a single figure.
+/// The members `samples` and `fields` define the published latencies. All other members concern the machine and the
+/// scenes. All figures are measured with the same interpretation. No answer is chosen for a single figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Reading {
-    /// Definition of the latency samples whose mean a paper prints.
+    /// Definition of the single latencies that a paper averages for a printed latency.
     pub samples: LatencySamples,
     /// Definition of the unit "field" in a published latency.
     pub fields: FieldCount,
@@ -72,7 +72,7 @@ impl Reading {
     };
 
     /// The rules in the text of TR94: a renderer stores its finished region and continues with the next region. The
-    /// theoretical latencies in TR94 (figures 3 and 5) assume this interpretation.
+    /// theoretical latencies in TR94 (rows 3 and 5 of ACCURACY.md) assume this interpretation.
     pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
 
     /// Returns the interpretations that differ from this interpretation in the answer to exactly one question.
@@ -166,8 +166,8 @@ const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
 /// Numbers of finished regions that a renderer may keep. The last number fills the backing store.
 const KEPT: [u64; 4] = [1, 2, 3, ROOM];
 
-/// Returns several copies of each interpretation, one copy for each possible answer to one question. The function
-/// `answer` sets the answer in a copy.
+/// Returns several copies of each interpretation: one for each possible answer to a question. The function `answer`
+/// sets the answer in a copy.
 fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
     readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
 }

@@ -49,7 +49,7 @@ fn model(config: TrackerConfig) -> Result<TrackerModel> {
     TrackerModel::new(config).map_err(|error| ExperimentError::Scene(error.to_string()))
 }
 
-/// Number of seeds. Each seed gives another phase to the timer of the host's Unix kernel.
+/// Number of seeds. The timer of the host's operating system has a different phase for each seed.
 const SEEDS: u64 = 200;
 /// Number of tracker reports for each seed.
 const REPORTS: usize = 240;

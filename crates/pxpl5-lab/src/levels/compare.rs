@@ -10,9 +10,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Levels of modelling to compare. The second value is true if the primitive times in the timing table come from
-/// executed code, instead of published or fitted values. The cycle level does not use the timing table, so this level
-/// occurs only once.
+/// Levels of modelling to compare. The boolean is true if the primitive times in the timing table come from executed
+/// code, instead of published or fitted values. The cycle level does not use the timing table, so that only one entry
+/// has this level.
 const VARIANTS: [(Level, bool); 5] = [
     (Level::Analytic, false),
     (Level::Analytic, true),

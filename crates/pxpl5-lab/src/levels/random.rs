@@ -12,8 +12,8 @@ use pxpl5_scene::{Scene, builtin};
 use pxpl5_sim::SplitMix64;
 use std::sync::Arc;
 
-/// Numbers of display fields in a run. Rendering Control (first) shows a dozen frames at 20 Hz after the warm-up, Slats
-/// (second) some fields.
+/// Numbers of display fields in a run of Rendering Control and in a run of Slats. The first number suffices for a dozen
+/// frames at 20 Hz after the warm-up.
 const FIELDS: (u64, u64) = (48, 14);
 
 /// Returns the random experiment with the number `number`, without pixels. Even numbers give experiments with Rendering

@@ -96,7 +96,7 @@ impl LevelRecord {
 }
 
 impl LevelReport {
-    /// Returns the name of the level of modelling, for tables and charts.
+    /// Returns the name of this level of modelling, for tables and charts.
     #[must_use]
     pub fn name(&self) -> String {
         let times = if self.times_of_code && self.level != Level::Cycle { ", times of code" } else { "" };

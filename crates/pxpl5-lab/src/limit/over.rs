@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The values of a setting that a search can try: equally spaced, from a smallest value on.
+/// The values of a setting that a search can try. The values are equally spaced and begin at `from`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Values {
     /// Smallest value that a search can try.
@@ -37,7 +37,7 @@ impl Values {
         (step > 0.0 && step.is_finite()).then_some(Self { from, step, count: STEPS + 1 })
     }
 
-    /// Returns the value with the index `number`, counted from 0.
+    /// Returns the value with the index `number` among the values that a search can try. The index is counted from 0.
     #[must_use]
     pub fn value(&self, number: u64) -> f64 {
         self.from + self.step * number as f64
@@ -79,9 +79,9 @@ pub struct OverQuery {
 /// Result of a search for the values of a setting that reach a goal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OverLimit {
-    /// The smallest value that reaches the goal. `None` if no smaller tried value misses the goal.
+    /// Smallest value that reaches the goal. `None` if no smaller value was tried and missed the goal.
     pub least: Option<f64>,
-    /// The greatest value that reaches the goal. `None` if no greater tried value misses the goal.
+    /// Greatest value that reaches the goal. `None` if no greater value was tried and missed the goal.
     pub most: Option<f64>,
     /// True if at least one tried value reaches the goal.
     pub reached: bool,
@@ -104,8 +104,8 @@ struct Trial {
 impl OverQuery {
     /// Returns the values of a setting that are tried by default.
     ///
-    /// A number of boards goes up to the number in the largest preset. Any other parameter goes through the range that
-    /// the sources of the parameter allow.
+    /// For a number of boards, the values end at the number in the largest preset. For any other parameter, the values
+    /// cover the range that the sources of the parameter allow.
     ///
     /// # Errors
     ///
@@ -134,8 +134,8 @@ impl OverQuery {
     /// Searches for the limit. `progress` is called with the number of values tried so far.
     ///
     /// The search first tries the ends of the range and three values between them. If one of these values reaches the
-    /// goal, the search bisects from there to either side. The limit is therefore exact if all values on one side of
-    /// the limit reach the goal and all values on the other side miss.
+    /// goal, the search bisects the range on both sides of this value. The limit is therefore exact if all values on
+    /// one side of the limit reach the goal and all values on the other side miss.
     ///
     /// # Errors
     ///
@@ -192,7 +192,7 @@ impl OverQuery {
 struct Search<'a> {
     query: &'a OverQuery,
     trials: BTreeMap<u64, Trial>,
-    /// The error of the last value that could not be run.
+    /// The error of the last value with which no experiment could run.
     refused: Option<StudyError>,
     /// The scene that was loaded last, with the settings of this scene.
     scene: Option<(crate::SceneChoice, Arc<Scene>)>,
@@ -251,7 +251,7 @@ impl Search<'_> {
     }
 
     /// Returns the result of the search if all values of the setting miss the goal. The run with the best value then
-    /// states the limiting resource.
+    /// determines the limiting resource.
     fn none(mut self) -> Result<OverLimit, StudyError> {
         let is_refused = self.trials.values().all(|trial| trial.score == f64::NEG_INFINITY);
         if let Some(error) = self.refused.take().filter(|_| is_refused) {
@@ -271,7 +271,8 @@ impl Search<'_> {
     }
 }
 
-/// Returns the closeness of a run to the goal, in the goal's own unit. A greater score is better.
+/// Returns the closeness of a run to the goal, in the unit of the goal. A run with a greater score is closer to the
+/// goal.
 fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
     let score = match goal {
         Goal::NoMissedRetrace => summary.due.map(|due| -(due.not_shown() as f64)),

@@ -21,7 +21,7 @@ pub struct Limit {
     pub tried: usize,
 }
 
-/// Hints from another model, which reduce the number of trials. Hints do not change the result of any trial.
+/// Hints about the limit, which reduce the number of trials. Hints do not change the result of any trial.
 #[derive(Clone, Debug, Default)]
 pub struct Hints {
     /// Number of triangles near the limit. Without this hint the search starts with one triangle.
@@ -43,8 +43,8 @@ const TRIANGLES_IN_A_ROW: u32 = 60_000;
 /// Minimum number of consecutive scene sizes that are tried directly below the result.
 const LEAST_IN_A_ROW: u32 = 4;
 
-/// The scene sizes (numbers of triangles) that were tried so far. Each size has a boolean that is true if the size
-/// reached the goal.
+/// The scene sizes (numbers of triangles) that were tried so far. The boolean of a size is true if the size reached the
+/// goal.
 struct Tried<F> {
     answers: BTreeMap<u32, bool>,
     reached: F,
@@ -191,11 +191,7 @@ pub fn most_triangles<E>(ceiling: u32, hints: &Hints, reached: impl FnMut(u32) -
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the limit found by bisection alone, as a hint for the search with another model.
-///
-/// # Errors
-///
-/// Returns the first error of `reached`.
+/// Returns the limit found by bisection alone, as a hint for a search at another level of modelling.
 pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Result<u32, E> {
     let mut tried = Tried { answers: BTreeMap::new(), reached };
     tried.bracket(1, ceiling)?;

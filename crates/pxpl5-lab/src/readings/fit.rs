@@ -8,7 +8,7 @@ use serde::Serialize;
 /// Agreement of one published figure with the model under one interpretation of the papers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FigureFit {
-    /// Number of the figure.
+    /// Number of the figure in ACCURACY.md.
     pub id: &'static str,
     /// Value printed in the paper, in `unit`.
     pub published: f64,
@@ -86,8 +86,8 @@ impl FigureFit {
 
     /// Returns the logarithm of the likelihood of the figure's printed values.
     ///
-    /// The error of the mean has a normal distribution with three parts. These are the printed digits, the error of a
-    /// mean of 87 samples, and 2 % for the model. The logarithm of the ratio of both deviations has a normal
+    /// The error of the mean has a normal distribution. The variance has three parts: the printed digits, the error of
+    /// a mean of 87 samples, and 2 % for the model. The logarithm of the ratio of both deviations has a normal
     /// distribution with a standard deviation of 0.25.
     #[must_use]
     pub fn log_likelihood(&self) -> f64 {
@@ -128,14 +128,14 @@ impl Fit {
         })
     }
 
-    /// Returns the mean of the absolute errors in percent, without the figure `id`.
+    /// Returns the mean of the absolute errors in percent over all figures except the figure `id`.
     #[must_use]
     pub fn mean_error_without(&self, id: &str) -> f64 {
         mean_without(&self.figures, Some(id))
     }
 }
 
-/// Returns half a unit of the last digit, for a value that is printed with three digits.
+/// Returns half of the last printed digit of a value that is printed with three digits.
 pub(super) fn half_a_digit(value: f64) -> f64 {
     0.5 * 10f64.powf(value.log10().floor() - 2.0)
 }

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Cross-validation of a figure: its prediction by the interpretation that fits all other figures best.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeaveOneOut {
-    /// Number of the figure.
+    /// Number of the figure in ACCURACY.md.
     pub id: &'static str,
     /// Interpretation with the smallest mean error over the other figures.
     pub chosen: Reading,

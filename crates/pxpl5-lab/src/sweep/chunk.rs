@@ -30,7 +30,7 @@ impl Sweep {
 }
 
 impl SweepRow {
-    /// Returns true if the point was simulated.
+    /// Returns true if the point of this row was simulated.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.status == Status::Done

@@ -40,7 +40,7 @@ pub struct Header {
 pub struct AxisRecord {
     /// Keys of the experiment file that change together.
     pub paths: Vec<String>,
-    /// Values of the keys at each step.
+    /// Values of the keys at each step of the axis.
     #[serde(flatten)]
     pub steps: Steps,
 }
@@ -49,7 +49,7 @@ pub struct AxisRecord {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Steps {
-    /// Lists of values: one list for each step, which has one value for each path.
+    /// Lists of values. Each step has one list, with one value for each path.
     Steps(Vec<Vec<Value>>),
     /// Ranges of a long axis, one range for each path: first value, step, and number of values.
     Ranges(Vec<[i64; 3]>),

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Value;
 
-/// A setting whose value can be the name of a file.
+/// A setting whose value can be a file name.
 struct FileKey {
     key: &'static str,
     /// Returns true if a value is the name of a file, and not a built-in name.
@@ -23,8 +23,8 @@ const KEYS: [FileKey; 2] = [
 ];
 
 impl Sweep {
-    /// Returns the hash of each file that a point may read. The keys are the names of the files in the sweep. A file
-    /// that cannot be read counts as empty. Points that need this file fail with the reason.
+    /// Returns the hash of each file that a point may read, by the file's name in the settings. A file that cannot be
+    /// read counts as empty. Points that need this file fail with the reason.
     pub(super) fn inputs(&self) -> BTreeMap<String, Fingerprint> {
         let mut inputs = inputs_of(&self.base);
         let folder = self.folder();
@@ -35,7 +35,7 @@ impl Sweep {
     }
 }
 
-/// Returns the hash of each file that an experiment file names. The keys are the names in the experiment file.
+/// Returns the hash of each file that an experiment file names, by the file's name in the experiment file.
 pub(crate) fn inputs_of(experiment: &ExperimentFile) -> BTreeMap<String, Fingerprint> {
     let mut inputs = BTreeMap::new();
     for file in &KEYS {
@@ -54,10 +54,10 @@ impl FileKey {
     }
 }
 
-/// Returns the hash of the scene in a model file, at its own coordinates.
+/// Returns the hash of the scene in a model file, in the coordinates of the file.
 ///
-/// The hash covers the scene and not the bytes of the file, because a glTF file names further files. A file that is no
-/// model gets the hash of its bytes, and a file that cannot be read the hash of no bytes.
+/// The hash covers the scene instead of the bytes of the file, because a glTF file refers to other files. A file
+/// without a model gets the hash of its bytes. A file that cannot be read gets the hash of an empty text.
 #[must_use]
 pub fn hash_of_model(path: &Path) -> Fingerprint {
     let scene = load_placed(path, Placement::AsInFile);

@@ -16,14 +16,15 @@ use std::path::PathBuf;
 /// Number of bytes that are read from a file of rows at a time: some tens of rows.
 const BLOCK: usize = 16 << 10;
 
-/// Error text for a file that was read before and can no longer be read.
+/// Error text for a file that was already read and now cannot be read again.
 const AGAIN: &str = "cannot be read again";
 
 #[derive(Debug)]
 pub(super) struct Joined {
     header: Header,
     files: Vec<RowBlocks>,
-    /// Index of the file that holds the row of each point, counted from 1. The index is 0 for a point without a row.
+    /// Number of the file that holds the row of each point. Files are counted from 1, and 0 means that the point has no
+    /// row.
     holders: Vec<u32>,
     /// Byte position at which the row of each point begins in its file.
     places: Vec<u64>,
@@ -65,7 +66,7 @@ impl Joined {
         Self { holders: vec![0; points], places: vec![0; points], header, files, failed, duplicates }
     }
 
-    /// Adds a row of the most recently added file to the index. `byte` is the row's position in the file.
+    /// Adds a row of the most recently added file to the index. `byte` is the byte position of the row in the file.
     fn add(&mut self, row: &SweepRow, byte: u64) -> Result<(), FileError> {
         let point = row.point as usize;
         // A second row of a point must equal the first.
@@ -86,7 +87,6 @@ impl Joined {
         Ok(())
     }
 
-    /// Returns the header: the data shared by all rows.
     pub(super) const fn header(&self) -> &Header {
         &self.header
     }
@@ -114,11 +114,11 @@ impl Joined {
     }
 }
 
-/// Reader of a file of rows in blocks. The file is open only while a block is read.
+/// Reader of a file of rows in pieces of [`BLOCK`] bytes or more. The file is open only while a piece is read.
 #[derive(Debug)]
 struct RowBlocks {
     path: PathBuf,
-    /// Byte position in the file at which the current block begins.
+    /// Byte position in the file at which the last piece begins.
     begin: u64,
     block: Vec<u8>,
 }
@@ -128,7 +128,8 @@ impl RowBlocks {
         Self { path, begin: 0, block: Vec::new() }
     }
 
-    /// Returns the row that begins at a byte position. Rows are read fastest in the order of the file.
+    /// Returns the row that begins at a byte position. Reading is fastest in the order of the file, because a piece
+    /// holds many rows.
     fn row_at(&mut self, byte: u64) -> Result<SweepRow, FileError> {
         if self.line_at(byte).is_none() {
             self.read(byte).map_err(FileError::io(&self.path, AGAIN))?;
@@ -137,7 +138,7 @@ impl RowBlocks {
         serde_json::from_slice(line).map_err(io::Error::from).map_err(FileError::io(&self.path, AGAIN))
     }
 
-    /// Returns the line at a byte position, if the current block holds the complete line.
+    /// Returns the line at a byte position, if the last piece holds the complete line.
     fn line_at(&self, byte: u64) -> Option<&[u8]> {
         let begin = usize::try_from(byte.checked_sub(self.begin)?).ok()?;
         let rest = self.block.get(begin..)?;
@@ -145,8 +146,8 @@ impl RowBlocks {
         Some(&rest[..end])
     }
 
-    /// Reads the block that begins at a byte position. The block is extended until the block holds a complete line, if
-    /// the file has a complete line there.
+    /// Reads the piece that begins at a byte position. The piece is extended until it contains a complete line or the
+    /// file ends.
     fn read(&mut self, byte: u64) -> io::Result<()> {
         let mut file = File::open(&self.path)?;
         file.seek(SeekFrom::Start(byte))?;

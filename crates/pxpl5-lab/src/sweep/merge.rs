@@ -27,8 +27,8 @@ pub struct Merged {
 ///
 /// # Errors
 ///
-/// Returns a [`FileError`] if a folder belongs to another sweep, if a point has different rows, or if points are missing
-/// and `allow_missing` is false.
+/// Returns a [`FileError`] if a folder belongs to another sweep, if a point has different rows, or if points are
+/// missing and `allow_missing` is false.
 pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Merged, FileError> {
     let mut joined = Joined::of(folders)?;
     let points = joined.header().points;
@@ -54,14 +54,14 @@ fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), Fil
     renew_manifest(out)
 }
 
-/// Copies the lines of a folder's file of durations, except the header in the first line.
+/// Copies the lines of a folder's file of durations. The first line, which is the header, is left out.
 fn put_times(times: &mut Replacement, path: &Path) -> Result<(), FileError> {
     let Ok(file) = File::open(path) else { return Ok(()) };
     let lines = BufReader::new(file).lines().map_while(Result::ok);
     lines.skip(1).try_for_each(|line| times.put(format!("{line}\n").as_bytes()))
 }
 
-/// Formats a list of numbers as ranges, at most ten.
+/// Formats a list of numbers as at most ten ranges.
 fn ranges(numbers: &[u64]) -> String {
     let mut ranges: Vec<(u64, u64)> = Vec::new();
     for number in numbers {

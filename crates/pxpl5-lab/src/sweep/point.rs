@@ -109,8 +109,8 @@ impl Swept for Sweep {
     }
 }
 
-/// Simulates a point and returns its row. An error, even a panic, is stored in the row, so that the other points
-/// continue.
+/// Simulates a point and returns its row. An error, even a panic, is stored in the row, so that the sweep continues
+/// with all remaining points.
 pub(super) fn row(sweep: &impl Swept, point: u64, stop: &Arc<AtomicBool>) -> SweepRow {
     let results = catch_unwind(AssertUnwindSafe(|| sweep.simulate(point, stop)));
     let results = results.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));

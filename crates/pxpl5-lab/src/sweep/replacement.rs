@@ -5,8 +5,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// A new version of a file, under a temporary name in the same folder. If a replacement is dropped before it is
-/// finished, its temporary file is removed.
+/// A new version of a file, under a temporary name in the same folder. Without a call of `finish`, the temporary file
+/// is removed and the old version stays.
 #[derive(Debug)]
 pub(super) struct Replacement {
     path: PathBuf,

@@ -87,7 +87,6 @@ impl RowFile {
         self.failed.holds(point)
     }
 
-    /// Returns the points that have a row, in ascending order.
     pub(super) fn points(&self) -> impl Iterator<Item = u64> {
         (0..).zip(&self.places).filter(|(_, place)| **place > 0).map(|(point, _)| point)
     }
@@ -179,7 +178,7 @@ pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError 
     FileError::because(FileErrorKind::Damaged, reason)
 }
 
-/// Random-access reader of result rows. Rows are read fastest in the order of the file.
+/// Reader of the row of any point. Reading is fastest in the order of the file.
 #[derive(Debug)]
 pub(super) struct RowReader<'a> {
     rows: &'a RowFile,

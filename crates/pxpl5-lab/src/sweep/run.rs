@@ -80,13 +80,13 @@ pub fn run_stoppable(
     })
 }
 
-/// Work shared by all threads of a sweep. Each thread takes one unfinished point at a time.
+/// Work of all threads of a sweep. Each thread takes one unfinished point at a time.
 struct Work<'a, S> {
     sweep: &'a S,
     shard: Shard,
     /// Points (experiments) that were finished before this run of the sweep.
     finished: Points,
-    /// Index of the next point to take.
+    /// Index of the next point that a thread takes.
     next: AtomicU64,
     /// True after a row could not be written, so that no further row can be written.
     ended: AtomicBool,
@@ -109,7 +109,8 @@ impl<S: Swept> Work<'_, S> {
         }
     }
 
-    /// Takes the next point of the shard that is neither finished nor taken. Returns `None` if no point is left.
+    /// Takes the next point of the shard that has no row and that no thread has taken. Returns `None` if no point is
+    /// left.
     fn take(&self) -> Option<u64> {
         let all = self.sweep.space().points();
         let mut taken =

@@ -6,7 +6,7 @@ use pxpl5_sim::parameters::SettingError;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Loaded scenes by cache key. Most points of a sweep share one scene.
+/// Loaded scenes by cache key. Usually, all points of a sweep share one scene.
 #[derive(Debug, Default)]
 pub struct SceneCache(Mutex<BTreeMap<SceneKey, Arc<Scene>>>);
 

@@ -167,14 +167,15 @@ impl SweepSpace {
     }
 }
 
-/// Builder of error messages that state the place of a key in the sweep's file.
+/// Builder of error messages that name the file and line of a key in the sweep's file.
 struct Fault<'a> {
     sweep: &'a str,
     places: &'a BTreeMap<String, String>,
 }
 
 impl Fault<'_> {
-    /// Returns the place of a key for an error message: its path in the file, or the setting that an axis varies.
+    /// Returns the file and line of a key for an error message. If the place of the key is unknown, returns the place
+    /// of the table `sweep`.
     fn place(&self, key: &str) -> String {
         let paths = [key.to_owned(), format!("sweep.grid.{key}"), format!("sweep.together.{key}")];
         paths.iter().find_map(|path| self.places.get(path)).map_or(self.sweep, String::as_str).to_owned()
@@ -216,7 +217,8 @@ impl Fault<'_> {
         Ok(AxisValues::Range { from, step, count })
     }
 
-    /// Returns an axis whose lists of values change together. All lists must have the same length.
+    /// Returns the axis of the table `together`, whose settings change together. All settings must have the same number
+    /// of values.
     fn together(&self, table: Table) -> Result<Option<Axis>, SettingError> {
         let mut axis = Axis { paths: Vec::new(), values: Vec::new() };
         for (path, value) in leaves(table) {
@@ -262,7 +264,8 @@ impl Fault<'_> {
     }
 }
 
-/// Parses a range. Returns its first value, its step, and the number of values after the first.
+/// Parses a range with the keys `from`, `to` and `step`. Returns the first value, the step, and the number of values
+/// after the first.
 fn from_step_last(range: &Table) -> Option<[i64; 3]> {
     let from = range.get("from")?.as_integer()?;
     let to = range.get("to")?.as_integer()?;

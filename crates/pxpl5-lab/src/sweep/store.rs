@@ -150,7 +150,7 @@ impl Store {
         Ok(())
     }
 
-    /// Appends a line to the file of rows by one write. A crash can leave at most this line incomplete.
+    /// Appends a line to the file of rows by one write. After a crash, at most this line is incomplete.
     fn append_line(&mut self, line: &str) -> Result<(), FileError> {
         let path = self.folder.join(ROWS_FILE);
         self.rows_file.write_all(line.as_bytes()).map_err(FileError::io(&path, "cannot be written"))?;

@@ -17,8 +17,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Returns the line of column names. The settings from which the rows can be reproduced are not in the table, but
-    /// in the header of `rows.jsonl`.
+    /// Returns the line of column names. The settings from which the rows can be reproduced are not columns, because
+    /// the header of `rows.jsonl` holds these settings.
     pub(super) fn head(&self) -> Vec<u8> {
         let settings = self.parameters.iter().chain(&self.measured).copied();
         let columns = ["point", "status"].into_iter().chain(settings).chain(["trace_hash", "error"]);
@@ -46,7 +46,6 @@ fn plain(value: &serde_json::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// Returns a line of comma-separated cells.
 fn line_of_cells(cells: impl Iterator<Item = String>) -> Vec<u8> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let _ = writer.write_record(cells);

@@ -25,7 +25,6 @@ impl SerialOperand {
     }
 }
 
-/// The second factor of a multiplication: a field of pixel memory or a constant.
 enum Factor<'a> {
     Field(&'a SerialOperand),
     Constant(i32),

@@ -1,5 +1,5 @@
-//! Effects of an expression's bits on the pixels of a tile (32 x 16 pixels). Each bit takes effect when the bit
-//! arrives.
+//! The use of an expression's bits by the pixels of a tile (32 x 16 pixels). One bit arrives in each clock and takes
+//! effect immediately.
 
 use super::arithmetic::SerialOperand;
 use super::evaluator::{Evaluator, VectorPlace, full_add};
@@ -8,27 +8,27 @@ use crate::controller::FieldBits;
 use crate::simd::SimdVector;
 use std::ops::Range;
 
-/// A consumer of the bits of an expression, which arrive one by one.
+/// A consumer of the bits of an expression, which arrive one bit per clock.
 trait BitSink {
-    /// Applies bit `t` of the expression to one vector of pixels of a tile.
+    /// Uses bit `t` of an expression in one vector of pixels. `at` is the index of the vector's first word in a bit
+    /// plane of the tile.
     ///
-    /// `at` is the index of the vector's first word in a bit plane of the tile. `carry` must be zero for the first bit.
+    /// `carry` passes the carries of the pixels from bit to bit. It must be zero for the first bit.
     fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
     /// Receives the carry that remains after the last bit of the expression.
     fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
-/// The use of an expression by the pixels: the range of used bits, and the operation on these bits.
 #[derive(Clone, Debug)]
 pub(super) struct Delivery {
-    /// Clocks in which the pixels use the arriving bit of the expression. One bit arrives in each clock.
+    /// Range of the expression's bits that the pixels use. Bit `t` arrives in clock `t`.
     pub(super) taken: Range<usize>,
     pub(super) effect: ExpressionEffect,
 }
 
-/// The operation of the pixels with the bits of an expression. The number of a destination field is the field's first
-/// bit in pixel memory.
+/// An operation that each pixel performs with every arriving bit of an expression. A destination field is given by its
+/// first bit in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,
@@ -39,8 +39,7 @@ pub(super) enum ExpressionEffect {
 }
 
 impl Delivery {
-    /// Evaluates an expression, bit by bit, for one vector of pixels, and performs the operation of this delivery with
-    /// each bit.
+    /// Evaluates an expression bit by bit for one vector of pixels, and uses each bit as the field `effect` states.
     #[inline(always)]
     pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
         let shift = self.taken.start;
@@ -91,7 +90,7 @@ fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TileP
     old.xor(changed).store_words(&mut plane[at..]);
 }
 
-/// A sink that clears the Enable bit of the pixels for which the expression's bit is set.
+/// A bit consumer that clears the Enable bit of the pixels in which the arriving bit is set.
 struct ClearEnable;
 
 impl BitSink for ClearEnable {
@@ -102,7 +101,7 @@ impl BitSink for ClearEnable {
     }
 }
 
-/// A sink that stores the bits of an expression in a field of pixel memory, from bit `shift` of the expression on.
+/// A bit consumer that stores an expression, without its lowest `shift` bits, in a field of pixel memory.
 struct StoreBits {
     first: usize,
     shift: usize,
@@ -115,7 +114,7 @@ impl BitSink for StoreBits {
     }
 }
 
-/// A sink that adds the bits of an expression to a field of pixel memory, from bit `shift` of the expression on.
+/// A bit consumer that adds an expression, without its lowest `shift` bits, to a field of pixel memory.
 struct AddBits {
     first: usize,
     shift: usize,
@@ -130,8 +129,8 @@ impl BitSink for AddBits {
     }
 }
 
-/// A sink that clears the Enable bit of the pixels in which the expression, from its bit `shift` on, is not less than a
-/// field.
+/// A bit consumer that compares an expression, without its lowest `shift` bits, with a field. Pixels in which the
+/// expression is not less than the field become disabled.
 struct CompareBits {
     first: usize,
     shift: usize,
@@ -150,8 +149,8 @@ impl BitSink for CompareBits {
     }
 }
 
-/// A sink that subtracts a source field from an expression. The sink stores the bits of the difference from bit `shift`
-/// on.
+/// A bit consumer that subtracts the field `source`, shifted left, from an expression. The lowest `shift` bits of the
+/// difference are not stored.
 struct StoreDifference {
     first: usize,
     shift: usize,

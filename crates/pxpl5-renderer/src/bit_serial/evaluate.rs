@@ -90,7 +90,7 @@ impl BitSerial {
         Ok(Delivery { taken, effect })
     }
 
-    /// Returns the clocks in which bits of an expression enter the field `field`, and the field's first bit in pixel
+    /// Returns the range of the expression's bits that enter the field `field`, and the field's first bit in pixel
     /// memory. The lowest `shift` bits of the expression do not enter the field.
     fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
         let field = self.controller.bits(field)?;

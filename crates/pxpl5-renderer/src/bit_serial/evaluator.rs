@@ -47,16 +47,15 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
     out
 }
 
-/// Output bits of adjacent adder trees in one clock. Each word holds two lanes of a vector. Each bit belongs to one
-/// leaf of a tree, which is a column or a row of pixels.
+/// Output of the adder trees in one clock, with one bit for each column or row of pixels. Each 64-bit word holds two
+/// lanes of a vector.
 type Streams = [u64; 8];
 
-/// Adjacent trees of serial adders. A tree multiplies a coefficient by the index of each leaf and adds the product to a
-/// bit stream of this leaf. Each leaf is one bit of a vector.
+/// Trees of serial adders, side by side in one vector. Each bit of the vector belongs to one leaf of a tree, which is a
+/// column or a row of pixels. A tree multiplies a coefficient by the index of each leaf, and adds a bit stream of the
+/// leaf.
 pub(super) struct Trees<V, const LEVELS: usize> {
-    /// Low and high 32 bits of the coefficients. Each lane holds the coefficient that enters the lane's tree.
     coefficients: [V; 2],
-    /// For each level `l` of a tree, the leaves whose index has bit `l` set.
     leaves: [V; LEVELS],
     /// Delayed bits of the coefficients. Level `l` of a tree uses the bit that entered `l` clocks ago.
     late: [V; LEVELS],
@@ -70,8 +69,8 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self { coefficients, leaves, late: zeros, carries: zeros }
     }
 
-    /// Creates two trees of 128 leaves each, in the first eight lanes of a vector. Other lanes are unused. Each leaf
-    /// stands for a column or a row of pixels.
+    /// Creates two trees, one for 128 columns and one for 128 rows. The trees take the first eight lanes of a vector,
+    /// and the other lanes are unused.
     #[inline(always)]
     fn of_pair(coefficients: [i64; 2], leaves: &[Leaves; LEVELS]) -> Self {
         let mut vectors = [V::splat(0); LEVELS];
@@ -81,9 +80,8 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Multiplies the coefficient by the number of each leaf, adds `stream`, and returns bit `t` of the sums. The
-    /// number of a leaf is the index of its column or row, or the square of this index. Callers must pass `t` = 0, 1, 2
-    /// and so on.
+    /// Multiplies the coefficient by the index of each leaf (or by the square of the index), adds `stream`, and returns
+    /// bit `t` of the sums. The trees keep their carries between calls, so the calls must have `t` = 0, 1, 2 and so on.
     #[inline(always)]
     pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
         for l in (1..LEVELS).rev() {
@@ -97,15 +95,11 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
     }
 }
 
-/// Splits two coefficients into their low and high 32 bits. Each half is copied to the four lanes of the adder tree
-/// that multiplies this coefficient.
 #[inline(always)]
 fn in_lanes<V: SimdVector>([first, second]: [i64; 2]) -> [V; 2] {
     [low_halves_in_lanes([first, second]), low_halves_in_lanes([first >> 32, second >> 32])]
 }
 
-/// Returns the low 32 bits of two coefficients. Each value is copied to the four lanes of the adder tree that
-/// multiplies this coefficient.
 #[inline(always)]
 fn low_halves_in_lanes<V: SimdVector>(numbers: [i64; 2]) -> V {
     let [first, second] = numbers.map(|number| (number as u32 as u64) << 32 | number as u32 as u64);
@@ -126,18 +120,17 @@ fn streams<V: SimdVector>(stream: V) -> Streams {
     words
 }
 
-/// Three positions of a vector of pixels: in a tile, and of its column bits and row bits in the outputs of the adder
-/// trees ([`Streams`]).
+/// The location of a vector of pixels in a tile, and the locations of its column bits and row bits in the tree outputs
+/// ([`Streams`]).
 #[derive(Clone, Copy)]
 pub(super) struct VectorPlace {
-    /// Index of the vector's first word in a tile's plane.
     pub(super) at: usize,
     columns: StreamStart,
     rows: StreamStart,
 }
 
-/// Position, in the outputs of the adder trees ([`Streams`]), of the bit for the first column or row of a vector of
-/// pixels.
+/// Location of a bit in the tree outputs ([`Streams`]): a 64-bit word, and a bit of this word. The bit belongs to the
+/// first column or row of a vector of pixels.
 #[derive(Clone, Copy)]
 struct StreamStart {
     word: usize,
@@ -145,8 +138,6 @@ struct StreamStart {
 }
 
 impl VectorPlace {
-    /// Returns the positions of a vector of pixels of tile `tile` if the adder trees span the whole array. `row` is the
-    /// first row of the tile that the vector covers.
     #[inline(always)]
     pub(super) const fn in_array(tile: usize, row: usize) -> Self {
         let [left, top] = tile::origin(tile);
@@ -155,21 +146,18 @@ impl VectorPlace {
         Self { at: row / 2, columns, rows: StreamStart { word: 2 + y / 64, bit: y % 64 } }
     }
 
-    /// Returns the positions of a vector of pixels if the adder trees span one tile. `row` is the first row of the tile
-    /// that the vector covers. The column bits are in the low half of word `word` of the tree outputs, and the row bits
-    /// are in the high half.
+    /// Returns the location of the vector that begins at row `row` of a tile, for trees that span this tile only. The
+    /// column bits are in the low half of word `word` of the tree outputs, and the row bits are in the high half.
     #[inline(always)]
     pub(super) const fn in_tile(word: usize, row: usize) -> Self {
         Self { at: row / 2, columns: StreamStart { word, bit: 0 }, rows: StreamStart { word, bit: WIDTH + row } }
     }
 
-    /// Returns the output bits of the trees for the columns of the vector, repeated for all rows of the vector.
     #[inline(always)]
     fn columns<V: SimdVector>(&self, streams: &Streams) -> V {
         V::splat(self.columns.bits_in(streams) as i32)
     }
 
-    /// Returns the output bits of the trees for the rows of the vector, each repeated for all pixels of its row.
     #[inline(always)]
     fn rows<V: SimdVector>(&self, streams: &Streams) -> V {
         V::spread(self.rows.bits_in(streams))
@@ -185,10 +173,9 @@ impl StreamStart {
 
 /// Serial adders in the pixels. The adders combine the bit streams of the trees into the bits of an expression.
 pub(super) trait Evaluator {
-    /// State of the serial adders of one vector of pixels between two clocks.
+    /// Carries of the serial adders of a vector of pixels between two clocks.
     type Carries<V: SimdVector>;
 
-    /// Returns the carries of the adders before the first bit, which are zero.
     fn start<V: SimdVector>() -> Self::Carries<V>;
 
     /// Returns bit `t` of the expression for a vector of pixels. Callers must pass `t` = 0, 1, 2 and so on.
@@ -211,7 +198,6 @@ pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 /// Outputs of the adder trees for a quadratic expression, one entry for each clock.
 pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
-/// Outputs of the adder trees for a quadratic expression in one clock.
 #[derive(Clone, Copy, Default)]
 struct QuadraticBits {
     /// Bits of two sums: `xx x^2` for each column x, and `one + y y + yy y^2` for each row y.
@@ -220,10 +206,9 @@ struct QuadraticBits {
     coefficients: Streams,
 }
 
-/// State of a pixel vector's adders for a quadratic expression, between two clocks.
 pub(super) struct QuadraticCarries<V> {
-    /// Bits of the coefficient of x, one for each level of the product with the column's index. Level n has the bit of
-    /// the coefficient that arrived n clocks ago.
+    /// For each bit of the column's index, the bit of the coefficient of x that is multiplied in this clock. Entry n
+    /// holds the bit that arrived n clocks ago.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,

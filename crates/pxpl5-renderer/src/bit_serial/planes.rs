@@ -64,7 +64,8 @@ pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane)
     }
 }
 
-/// Simulates one clock of a serial adder or, if `subtracts` is true, of a serial subtracter in all pixels of a tile.
+/// Simulates one clock of a serial adder in all pixels of a tile. If `subtracts` is true, simulates a serial
+/// subtracter.
 #[inline(always)]
 pub(super) fn step(subtracts: bool, a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     if subtracts { subtract(a, b, carry) } else { add(a, b, carry) }
@@ -78,7 +79,6 @@ pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     }
 }
 
-/// Returns a bit plane whose words are `f` of the corresponding words of `a` and `b`.
 #[inline(always)]
 pub(super) fn combine(a: &TilePlane, b: &TilePlane, f: impl Fn(u64, u64) -> u64) -> TilePlane {
     let mut out = EMPTY;

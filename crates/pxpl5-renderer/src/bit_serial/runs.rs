@@ -37,7 +37,6 @@ pub(super) struct InstructionRun {
     pub(super) steps: Vec<RunStep>,
     /// Linear expressions of the instruction run, with the array's upper left pixel as origin.
     pub(super) expressions: Vec<Linear>,
-    /// Number of words that the run of instructions takes in the list.
     pub(super) words: usize,
 }
 
@@ -48,7 +47,6 @@ pub(super) struct RunStep {
     pub(super) delivery: Delivery,
 }
 
-/// Source of the bits that an instruction delivers to the pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
     /// An expression, given by its index among the expressions of the instruction run.
@@ -162,8 +160,6 @@ impl InstructionRun {
 }
 
 impl Delivery {
-    /// Delivers the bits of an expression or constant to those vectors of a tile that contain enabled pixels. `word`
-    /// selects the expression's word in the outputs of the adder trees.
     #[inline(always)]
     fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {

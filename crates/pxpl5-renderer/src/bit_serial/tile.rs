@@ -34,7 +34,6 @@ pub(super) struct Tile {
 impl Tile {
     pub(super) const EMPTY: Self = Self { memory: [EMPTY; MEMORY_BITS as usize], enable: EMPTY, clock: 0 };
 
-    /// Returns true if any pixel of the tile is enabled.
     #[inline(always)]
     pub(super) fn enabled(&self) -> bool {
         any(&self.enable)
@@ -50,7 +49,6 @@ impl Tile {
     }
 }
 
-/// Returns true if at least one bit of `words` is set.
 #[inline(always)]
 pub(super) fn any(words: &[u64]) -> bool {
     words.iter().fold(0, |any, word| any | word) != 0
@@ -62,7 +60,7 @@ pub(super) const fn origin(tile: usize) -> [usize; 2] {
     [tile % ACROSS * WIDTH, tile / ACROSS * HEIGHT]
 }
 
-/// Joins the bit planes of all tiles, in the order of the tiles' numbers, into a bit plane of the array.
+/// Joins the bit planes of all tiles, in the order of the tile indices, into a bit plane of the array.
 pub(super) fn join<'a>(tiles: impl IntoIterator<Item = &'a TilePlane>) -> Plane {
     let mut plane = EMPTY_PLANE;
     for (number, tile) in tiles.into_iter().enumerate() {
@@ -74,7 +72,6 @@ pub(super) fn join<'a>(tiles: impl IntoIterator<Item = &'a TilePlane>) -> Plane 
     plane
 }
 
-/// Returns those bits of an array's bit plane that belong to tile `number`.
 pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     let mut tile = EMPTY;
     for y in 0..HEIGHT {
@@ -84,8 +81,8 @@ pub(super) fn part(plane: &Plane, number: usize) -> TilePlane {
     tile
 }
 
-/// Returns the place of row `y` of tile `number` in a bit plane of the array. The first number is the index of a word,
-/// and the second number is the row's first bit in this word.
+/// Returns the position at which row `y` of tile `number` begins in a bit plane of the array: the index of a word, and
+/// a bit of this word.
 const fn place(number: usize, y: usize) -> (usize, usize) {
     let [left, top] = origin(number);
     (2 * (top + y) + left / 64, left % 64)

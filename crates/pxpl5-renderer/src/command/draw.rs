@@ -116,7 +116,7 @@ impl TriangleEncoder {
         Self(blank(&TriangleCommand::default().program(layout)))
     }
 
-    /// Appends the words of a triangle's command. The words equal the words of the command's encoded
+    /// Appends the words of a triangle's command. The words are the same as after the slower encoding of the command's
     /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &TriangleCommand, out: &mut Vec<Word>) {
@@ -137,7 +137,7 @@ impl PhongTriangleEncoder {
         Ok(Self(blank(&program)))
     }
 
-    /// Appends the words of a triangle's command. The words equal the words of the command's encoded
+    /// Appends the words of a triangle's command. The words are the same as after the slower encoding of the command's
     /// [program](super::Command::program).
     #[inline(always)]
     pub fn encode(&self, triangle: &PhongTriangleCommand, out: &mut Vec<Word>) {
@@ -145,7 +145,6 @@ impl PhongTriangleEncoder {
     }
 }
 
-/// Encodes a program of exactly `N` words, and returns the words.
 fn blank<const N: usize>(program: &[ArrayInstruction]) -> [Word; N] {
     let mut words = Vec::with_capacity(N);
     program.iter().for_each(|instruction| instruction.encode(&mut words));

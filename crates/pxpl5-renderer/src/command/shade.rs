@@ -50,7 +50,6 @@ pub(super) const SHADE_BITS: u8 = 104;
 /// First bit of the field for the square root, relative to the start of the scratch memory.
 pub(super) const SHADE_ROOT: u8 = 72;
 
-/// Fields of pixel memory that the shading program uses.
 pub(crate) struct ShadeFields {
     normal: [Operand; 3],
     colour: [Operand; 3],

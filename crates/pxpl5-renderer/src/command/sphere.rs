@@ -14,14 +14,16 @@ use pxpl5_wire::{Linear, Quadratic};
 /// zero on the silhouette. The sender scales Q so that the root needs no factor:
 ///
 /// ```text
-/// root  = floor(sqrt((silhouette >> root_shift) & (2^24 - 1)))        12 bits; r = root at the middle < 4096
+/// root  = floor(sqrt((silhouette >> root_shift) & (2^24 - 1)))        12 bits
 /// depth = (depth - (root << depth_shift)) >> Z_FRACTION_BITS          24 bits, as for a triangle
 /// ```
 ///
-/// At the sphere's middle, `silhouette = 2^root_shift (bulge / 2^depth_shift)^2`. *Bulge* is the distance of the middle
-/// in front of the plane `depth`, in units of the depth expression. The sender must choose `depth_shift` such that the
-/// value `bulge >> depth_shift` is in 2048 .. 4096. The root then has at least 11 significant bits. The silhouette must
-/// stay within 48 bits on the whole region. A layout with roots of 10 bits uses the upper bits of the same operands.
+/// The *bulge* is the distance of the sphere's middle in front of the plane `depth`, in units of the depth expression.
+/// The sender must choose `depth_shift` so that `bulge >> depth_shift` is in 2048 .. 4096. The root then has at least
+/// 11 significant bits. At the sphere's middle, `silhouette = 2^root_shift (bulge / 2^depth_shift)^2`. The silhouette
+/// must stay within 48 bits on the whole region.
+///
+/// A layout with roots of 10 bits uses the upper bits of the same operands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereBody {
     /// Silhouette expression of 48 bits. A pixel is inside the sphere if the expression is `>= 0` at this pixel.
@@ -81,7 +83,6 @@ const ROOT_BITS: u8 = 12;
 const COLOUR_ROOT_BITS: u8 = 8;
 const FACTOR_BITS: u8 = 10;
 
-/// Fields of pixel memory that hold temporary values in the program of a sphere command.
 #[derive(Clone, Copy)]
 pub(crate) struct SphereScratch {
     radicand: Operand,

@@ -28,7 +28,7 @@ pub enum DecodeErrorKind {
     #[error("the instruction needs {expected} words, the list has {found} left")]
     Truncated {
         expected: usize,
-        /// Number of words that the list has from the instruction's first word on.
+        /// Number of words from the instruction's first word to the end of the list.
         found: usize,
     },
     /// Bits that must be zero are set.
@@ -109,12 +109,12 @@ impl EncodedInstruction<'_> {
         checked_field(self.operand)
     }
 
-    /// Returns the field that the low 16 bits of the first word encode. This field must be one bit wide.
+    /// Returns the operand that the low 16 bits of the first word encode. This operand must be one bit wide.
     fn bit(&self) -> Result<Operand, DecodeErrorKind> {
         width(self.field()?, 1)
     }
 
-    /// Returns the field that the upper half of the second word encodes. The lower half must be zero.
+    /// Returns the operand that the upper half of the second word encodes. The lower half must be zero.
     fn source(&self) -> Result<Operand, DecodeErrorKind> {
         let [word] = self.tail()?;
         must_be_zero(word & 0xffff)?;

@@ -110,7 +110,6 @@ const fn two(opcode: u8, modifier: u8, destination: Operand, source: Operand) ->
     [head(opcode, modifier, destination.to_bits()), source.to_bits() << 16]
 }
 
-/// Returns the first word of an instruction that evaluates an expression.
 #[inline(always)]
 const fn evaluate_head(quadratic: bool, again: bool, usage: &ExpressionUse) -> Word {
     let family = if quadratic { opcode::QUADRATIC } else { opcode::LINEAR };

@@ -20,8 +20,8 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 
 /// Number of clocks to fetch an instruction and to fill the pipeline of the expression evaluator.
 ///
-/// Derived: 4 is the only whole number that fits the bit budgets of the published recipe for both kinds of triangle.
-/// The budgets are 256 to 267 clocks (Gouraud) and 262 to 292 clocks (Phong).
+/// Derived: 4 is the only whole number for which both kinds of triangle take the times that the published steps allow.
+/// These times are 256 to 267 clocks (Gouraud) and 262 to 292 clocks (Phong).
 ///
 /// The formats on the wire need 222 clocks in 9 instructions: 2 (enable), 3 x 32 (edges), 32 (compare Z), 32 (store Z)
 /// and 3 x 20 (colour). With normals, the formats need 2 + 160 + 3 x 22 (normals) + 24 (object's colour) = 252 clocks
@@ -32,8 +32,8 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 /// takes 272 clocks) to 5 (Gouraud takes 267 clocks).
 pub const SET_UP_CLOCKS: u32 = 4;
 
-/// Number of clocks of an instruction that moves no field. Assumed: 2, like "enable all" in the bit budget. The range
-/// is 1 to 4.
+/// Number of clocks of an instruction that moves no field. Assumed: 2, like "enable all" in the published steps. The
+/// range is 1 to 4.
 pub const CONTROL_CLOCKS: u32 = 2;
 
 /// Returns the number of clocks of a square root with a result of `n` bits.

@@ -33,8 +33,8 @@ pub(super) struct Bounds {
     limits: Option<[RowLimit; 3]>,
 }
 
-/// Limit that one edge sets on the columns x of row y. If `from_left` is true, the limit is `x >= (b y + c) * scale`,
-/// else it is `x <= (b y + c) * scale`. All numbers except `scale` are exact.
+/// Limit that one edge sets on the columns x of row y. The limit is `x >= (b y + c) * scale` if `from_left` is true,
+/// otherwise `x <= (b y + c) * scale`. All numbers except `scale` are exact.
 #[derive(Clone, Copy, Debug)]
 struct RowLimit {
     b: f64,
@@ -43,7 +43,7 @@ struct RowLimit {
     from_left: bool,
 }
 
-/// First column, and one past the last column, of consecutive rows. An empty row has `left >= right`.
+/// The columns `left .. right` of several consecutive rows. A row is empty if `left >= right`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spans {
     pub(super) left: [i32; LANES],
@@ -93,7 +93,6 @@ impl RowLimit {
     }
 }
 
-/// One value for each triangle of a batch.
 pub(super) type PerTriangle<T> = [T; LANES];
 
 /// The edges of all triangles of a batch, relative to the array's upper left pixel.
@@ -101,7 +100,6 @@ pub(super) type PerTriangle<T> = [T; LANES];
 pub(super) struct Edges(pub(super) [LinearLanes; 3]);
 
 impl Edges {
-    /// Sets the edges of triangle `i`.
     #[inline(always)]
     pub(super) fn set(&mut self, i: usize, edges: [Linear; 3]) {
         for (e, Linear { a, b, c }) in edges.into_iter().enumerate() {
@@ -111,8 +109,8 @@ impl Edges {
         }
     }
 
-    /// Converts all edges from picture coordinates to the array's own. `left` and `top` are the picture coordinates of
-    /// the array's upper left pixel.
+    /// Moves the origin of all edge expressions from the picture's upper left pixel to the array's upper left pixel.
+    /// `left` and `top` are the picture coordinates of the array's upper left pixel.
     #[inline(always)]
     pub(super) fn localise(&mut self, [left, top]: [i32; 2]) {
         for e in &mut self.0 {
@@ -123,7 +121,6 @@ impl Edges {
         }
     }
 
-    /// Returns the edges of triangle `i`.
     #[inline(always)]
     pub(super) const fn get(&self, i: usize) -> [Linear; 3] {
         [self.0[0].get(i), self.0[1].get(i), self.0[2].get(i)]
@@ -133,7 +130,8 @@ impl Edges {
 /// Bounding boxes of the triangles of a batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes {
-    /// First column (0 to 128) and last column (-1 to 127) of each triangle inside the array.
+    /// First column (0 to 128) and last column (-1 to 127) of each triangle, limited to the array. The first column can
+    /// be greater than the last column if the triangle covers no pixel.
     pub(super) x: [PerTriangle<i32>; 2],
     pub(super) y: [PerTriangle<i32>; 2],
     /// True if the edges enclose a finite triangle, which means that the normals of the edges turn in the same
@@ -231,8 +229,8 @@ fn doubles(v: &PerTriangle<i32>) -> PerTriangle<f64> {
     out
 }
 
-/// Returns the first and the last pixel between `low` and `high`, for each triangle. The interval is widened by
-/// [`MARGIN`] at both ends.
+/// Returns the first and the last pixel in the interval from `low` to `high`, for each triangle. The interval is first
+/// widened by [`MARGIN`] at both ends.
 #[inline(always)]
 fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
@@ -244,7 +242,7 @@ fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>;
     out
 }
 
-/// Converts a number of small magnitude to an integer. NaN gives an arbitrary result.
+/// Converts a number of small magnitude (below 2^31) to an integer. NaN gives an arbitrary result.
 ///
 /// A cast with `as` would not compile to a single vector instruction.
 #[inline(always)]
@@ -293,7 +291,7 @@ mod tests {
         Linear { a, b, c: [c, c ^ i32::MAX][random.below(2) as usize] }
     }
 
-    /// Checks that all inside pixels of random triangles are within the bounds, and returns the number of these pixels.
+    /// Checks that the pixels inside random triangles are within the bounds, and returns the number of these pixels.
     fn pixels_lie_within(triangles: u32, edge: fn(&mut Random) -> Linear) -> usize {
         let mut random = Random::new(5);
         let mut inside = 0;

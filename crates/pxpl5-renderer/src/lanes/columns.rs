@@ -176,8 +176,7 @@ fn cuts(layout: &Layout) -> Vec<usize> {
     split_wide(&cuts)
 }
 
-/// Returns the fields of the scratch memory that the programs of commands use. The addresses of these fields are
-/// absolute.
+/// Returns the absolute addresses of the temporary fields that the programs of commands use.
 fn temporaries(layout: &Layout) -> Vec<Operand> {
     let sphere = SphereScratch::in_layout(layout).map(|s| vec![s.z, s.root]);
     let shade = ShadeFields::in_layout(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);
@@ -193,10 +192,9 @@ fn split_wide(cuts: &[usize]) -> Vec<usize> {
     out
 }
 
-/// Indices of the columns (arrays of words) that hold the fields of the selected context (region in pixel memory).
+/// Indices of the columns (arrays of words) that hold the fields of one context, which is a region in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContextColumns {
-    /// First bit of the context in pixel memory.
     pub(super) base: u8,
     pub(super) colour: usize,
     pub(super) z: usize,

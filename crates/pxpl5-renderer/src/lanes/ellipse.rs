@@ -15,8 +15,7 @@ const ROUNDING: f64 = 1e-9;
 /// pixel.
 pub(super) struct Ellipse {
     rows: Range<usize>,
-    /// The quadratic expression that limits the columns of each row. `None` if every row can be covered from the first
-    /// to the last column.
+    /// The quadratic expression that limits the columns of each row. `None` if all columns of every row must be tested.
     quadratic: Option<Quadratic>,
 }
 
@@ -45,8 +44,8 @@ impl Ellipse {
     }
 }
 
-/// Returns the coefficient of x and the constant of the quadratic polynomial in x to which `q` reduces in row `row`.
-/// The coefficient of x squared is the same in all rows.
+/// Reduces the expression `q` to a polynomial in x for row `row`. Returns the coefficient of x and the constant. The
+/// coefficient of x squared is the same in all rows.
 #[inline(always)]
 pub(super) const fn along_row(q: &Quadratic, row: usize) -> (i64, i64) {
     let y = row as i64;

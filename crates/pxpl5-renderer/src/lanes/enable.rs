@@ -31,8 +31,8 @@ impl Enable {
         &mut self.pixels
     }
 
-    /// Disables all pixels, and returns the Enable values of all pixels. The caller may change only pixels in the rows
-    /// `rows`.
+    /// Disables all pixels, and returns the Enable values of all pixels for modification. The caller may change only
+    /// the rows `rows`.
     pub(super) fn emptied(&mut self, rows: Range<usize>) -> &mut [u8; PIXELS] {
         self.pixels[WIDTH * self.used.start..WIDTH * self.used.end].fill(0);
         self.used = rows;

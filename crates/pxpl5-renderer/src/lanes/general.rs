@@ -99,7 +99,8 @@ impl Lanes {
         Ok(())
     }
 
-    /// Stores the values of the first operand buffer in the field `destination` of the enabled pixels.
+    /// Stores the first operand buffer, which has a 64-bit number for each pixel, in the field `destination` of all
+    /// enabled pixels.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
@@ -122,8 +123,9 @@ impl Lanes {
         self.store(destination)
     }
 
-    /// Computes two results, such as a quotient and a remainder, from the field `source` and the second operand buffer.
-    /// Stores the first result in `destination` and the second result in `source`.
+    /// Computes two results, such as a quotient and a remainder, in each pixel. The first operand is the field
+    /// `source`, and the second operand buffer has the other operands. The first result goes to `destination`, and the
+    /// second to `source`.
     fn two_results(
         &mut self,
         destination: Operand,
@@ -196,8 +198,8 @@ impl Lanes {
         }
     }
 
-    /// Computes `f` for every pixel and stores the results in the first operand buffer. The arguments of `f` are the
-    /// pixel's value of the expression, `shift`, and the pixel's value in the second operand buffer.
+    /// Computes `f` in each pixel, and stores the result in the first operand buffer. The arguments of `f` are the
+    /// expression's value at the pixel, `shift`, and the pixel's number in the second operand buffer.
     fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {

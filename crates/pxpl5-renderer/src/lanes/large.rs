@@ -46,9 +46,10 @@ impl Lanes {
         Some(used)
     }
 
-    /// Returns the columns (arrays of words) for a sphere, or `None` if depth and radicand have different widths.
+    /// Returns the columns (arrays of words) for a sphere. Returns `None` if the fields of depth and radicand have
+    /// different widths.
     ///
-    /// With different widths, the program would leave a mixture of depth and radicand in the scratch memory.
+    /// With different widths, the command's program would leave a mixture of depth and radicand in the scratch memory.
     fn sphere_place(&self) -> Option<SpherePlace> {
         let scratch = SphereScratch::in_layout(&self.layout).ok()?;
         let root_bits = scratch.root.width;

@@ -1,5 +1,4 @@
-//! Steps that triangles of all widths have in common: the values of expressions for a vector of pixels, the depth test,
-//! and the stores.
+//! Steps for triangles of all widths: the values of expressions for a vector of pixels, the depth test, and the stores.
 
 use super::columns::Values;
 use super::enable::Enable;
@@ -30,8 +29,8 @@ impl<V: SimdVector> Walk<V> {
         Self { value: V::ramp_of_fours(first, a, b), step: V::splat(0) }
     }
 
-    /// Returns the values for a vector that lies some rows below this vector. All values increase by `b`, which is the
-    /// increase over these rows.
+    /// Returns the values for a vector that begins some rows below this vector. `b` is the increase of the expression
+    /// over these rows.
     #[inline(always)]
     pub(super) fn below(&self, b: i32) -> Self {
         Self { value: self.value.add(V::splat(b)), step: self.step }
@@ -52,7 +51,6 @@ pub(super) trait PaintTriangle {
     fn store<V: SimdVector, S: Shape>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
-/// A painter that draws triangles into a region.
 pub(super) struct TrianglePainter<'a, P> {
     /// Picture coordinates (column and row) of the array's upper left pixel.
     pub(super) origin: [i32; 2],
@@ -62,7 +60,6 @@ pub(super) struct TrianglePainter<'a, P> {
     pub(super) enable: &'a mut Enable,
 }
 
-/// The result of the depth test for a vector of pixels.
 pub(super) struct DepthTest<V: SimdVector> {
     pub(super) old: V,
     pub(super) new: V,

@@ -3,7 +3,7 @@
 //! IEEE 754 requires correctly rounded square roots and quotients, so the results are the same on every computer. All
 //! operands fit the 24 bits of a single-precision number, so all operands are exact.
 
-/// Returns the integer nearest to a number from 0 to 2^22. A cast with `as` would be slower, because it checks each
+/// Returns the integer nearest to a number from 0 to 2^22. A cast with `as` takes longer, because the cast checks each
 /// lane for overflow.
 #[inline(always)]
 fn nearest(v: f32) -> u32 {

@@ -11,7 +11,7 @@ use crate::simd::{SimdVector, VectorKernel};
 
 const WIDTH: usize = 128;
 
-/// Number of fields that shading writes: the colour, and the scratch fields a, b, c, root, diffuse and specular.
+/// Number of fields that shading writes: the colour and the six scratch fields a, b, c, root, diffuse and specular.
 const RESULTS: usize = 7;
 
 /// A vectorized loop that shades all pixels whose depth differs from the depth of the far plane.

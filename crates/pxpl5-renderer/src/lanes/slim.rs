@@ -12,14 +12,14 @@ use pxpl5_wire::{LANES, LinearLanes, TriangleBatch};
 
 const WIDTH: i32 = 128;
 
-/// The slim triangles of a batch.
+/// The triangles of a batch that are at most four columns wide (slim triangles).
 pub(super) struct SlimTriangles {
     /// First column of each triangle's vectors. If needed, the column is moved left so that the vectors lie inside the
     /// array.
     x: PerTriangle<i32>,
     y: PerTriangle<i32>,
-    /// Number of vectors, one below the other, that cover each triangle. The number is 0 for a triangle without pixels,
-    /// and -1 for a triangle that is not slim.
+    /// Number of vectors, one below the other, that cover each triangle. Zero for a triangle without pixels, and -1 for
+    /// a triangle of more than four columns.
     vectors: PerTriangle<i32>,
     /// Values of each triangle's edges at the first pixel of its first vector.
     edges: [PerTriangle<i32>; 3],
@@ -116,8 +116,8 @@ impl SlimTriangles {
     }
 }
 
-/// Returns the value of each triangle's expression at the pixel (x, y) of this triangle, for all triangles of a batch.
-/// The loop writes only into a new array, so the compiler knows that the inputs do not change.
+/// Evaluates an expression of each triangle of a batch, at a pixel (x, y) of this triangle. The loop writes only into a
+/// new array, so the compiler can assume that the inputs do not change.
 #[inline(always)]
 fn values(e: &LinearLanes, [x, y]: [&PerTriangle<i32>; 2]) -> PerTriangle<i32> {
     let mut all = [0; LANES];

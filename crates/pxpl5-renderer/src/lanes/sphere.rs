@@ -20,12 +20,12 @@ pub(super) struct DrawSphere<'a, P> {
     pub(super) root_bits: u8,
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
-    /// Scratch field of the square roots. At the end, the field must hold the same values as after the command's
-    /// program.
+    /// Field of the scratch memory for the square roots of all pixels. Its final content must equal the content after
+    /// the command's program.
     pub(super) root: &'a mut Values,
     pub(super) temporary: &'a mut Values,
     pub(super) paint: P,
-    /// Enable register, all zero at the start. `None` if no later instruction reads Enable.
+    /// Enable register, with all pixels disabled at the start. `None` if no later instruction reads Enable.
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
@@ -33,8 +33,8 @@ pub(super) struct DrawSphere<'a, P> {
 pub(super) trait PaintSphere {
     /// Stores colours or normals in the pixels of row `y`, from column `left` on, for which `pass` is all ones.
     ///
-    /// At the start, `temporary` holds the new depths. At the end, `temporary` holds the values that the command's
-    /// program leaves in this field.
+    /// At the start, `temporary` holds the new depths. At the end, `temporary` must hold the same content as after the
+    /// command's program.
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]);
 }
 

@@ -5,7 +5,8 @@ use crate::isa::{head, opcode};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
-/// A template of a command of `N` words. Each operand occupies a whole word. The template compares all other words.
+/// A template that recognizes a kind of command with `N` words. Each operand occupies a whole word. The template
+/// compares all words except the operands.
 #[derive(Clone, Debug)]
 pub(super) struct Template<const N: usize> {
     words: [Word; N],
@@ -56,7 +57,7 @@ pub(super) struct Templates {
 
 const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
 
-/// Numbers of instructions and clocks that a command adds to [`crate::Executed`].
+/// The numbers of instructions and clocks of one command, which the array adds to [`crate::Executed`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandCost {
     pub(super) instructions: u32,

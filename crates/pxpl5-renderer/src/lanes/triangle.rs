@@ -47,8 +47,6 @@ struct WideTriangle<V> {
     components: [Slope<V>; 3],
 }
 
-/// A vectorized loop that draws the consecutive triangles of one kind at the start of `words`, and returns their
-/// number.
 pub(super) struct DrawTriangles<'a, const N: usize, P> {
     pub(super) words: &'a [Word],
     pub(super) template: &'a Template<N>,
@@ -62,12 +60,12 @@ pub(super) struct DrawBatch<'a, P> {
     pub(super) painter: TrianglePainter<'a, P>,
 }
 
-/// Access to the depth expression, the expressions of colour or normal, and the colour of a triangle. These data are
-/// read only if needed. The origin of the expressions is the picture's upper left pixel.
+/// Access to the depth expression, the expressions of colour or normal, and the colour of a triangle. The data are read
+/// only for triangles that cover pixels. The origin of the expressions is the picture's upper left pixel.
 trait Surface {
     fn depth(&self) -> Linear;
     fn components(&self) -> [Linear; 3];
-    /// Returns the colour of the triangle's object. For a triangle with interpolated colour, the result has no meaning.
+    /// Returns the colour of the triangle's object. The result has no meaning for a triangle with interpolated colour.
     fn colour(&self) -> Word;
 }
 
@@ -114,12 +112,10 @@ impl Surface for BatchSurface<'_> {
     }
 }
 
-/// A triangle that is being drawn.
 struct CurrentTriangle<S> {
-    /// Edge expressions of the triangle, relative to the array's upper left pixel.
     edges: [Linear; 3],
     surface: S,
-    /// True if a later command reads the values that this triangle leaves in the Enable register.
+    /// True if a later command reads the Enable bits that this triangle leaves.
     keep: bool,
 }
 
@@ -198,7 +194,6 @@ impl<P: PaintTriangle> TrianglePainter<'_, P> {
         }
     }
 
-    /// Prepares the expressions of a wide triangle, so that each row can start at any column.
     #[inline(always)]
     fn wide<V: SimdVector, S: Surface>(&self, triangle: &CurrentTriangle<S>) -> WideTriangle<V> {
         let [left, top] = self.origin;
@@ -303,8 +298,8 @@ fn components_below<V: SimdVector>(surface: &impl Surface, [p, q, r]: &[Walk<V>;
     [p.below(i.b), q.below(j.b), r.below(k.b)]
 }
 
-/// Reads the edges of several commands. The function must not be inlined, because the compiler would then assemble the
-/// vectors from single numbers.
+/// Reads the edges of several commands. The function must not be inlined, because the compiler would then build each
+/// vector from single numbers, which takes more time.
 #[inline(never)]
 fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
     for (i, words) in commands.iter().enumerate().take(LANES) {

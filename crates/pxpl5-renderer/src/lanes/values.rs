@@ -1,9 +1,8 @@
-//! Operations on values. A value is the content of a field in one pixel, extended to 64 bits: sign-extended if the
-//! field is signed, otherwise zero-extended.
+//! Operations on the content of a field in one pixel. The content is extended to 64 bits: sign-extended if the field is
+//! signed, otherwise zero-extended.
 
 use crate::isa::{ArithmeticOp, Test};
 
-/// Returns the low `width` bits of a value.
 pub(super) const fn low(value: u64, width: usize) -> u64 {
     value & (u64::MAX >> (64 - width))
 }
@@ -50,7 +49,6 @@ pub(super) fn divide(a: u64, b: u64, width: usize) -> (u64, u64) {
     (quotient, a - quotient.wrapping_mul(b))
 }
 
-/// Limits a value to the range 0 .. 2^width - 1.
 pub(super) fn saturate(value: u64, signed: bool, width: usize) -> u64 {
     if signed && (value as i64) < 0 { 0 } else { value.min(u64::MAX >> (64 - width)) }
 }

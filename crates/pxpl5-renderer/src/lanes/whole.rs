@@ -53,8 +53,8 @@ impl Lanes {
         })
     }
 
-    /// Returns the columns (arrays of words) that hold x, y and z of the normals in the selected context, which is a
-    /// region in pixel memory. Returns `None` if the layout has no normals.
+    /// Returns the columns (arrays of words) that hold x, y and z of the normals in the selected context (region in
+    /// pixel memory). Returns `None` if the layout has no normals.
     fn normal_columns(&self) -> Option<[usize; 3]> {
         let x = self.column(self.layout.normal(0)?)?;
         let y = self.column(self.layout.normal(1)?)?;
@@ -69,8 +69,8 @@ impl Lanes {
         self.columns.find(first, width)
     }
 
-    /// Executes a clear command. The function reads the depth from the words of the command, because words can also
-    /// clear Z to a depth that [`crate::Clear`] does not use.
+    /// Executes a clear command. The function reads the depth from the words of the command, because a sender can
+    /// choose a depth that [`crate::Clear`] does not use.
     fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.clear.as_ref()?;
         let (&[_, _, colour, _, depth], behind) = template.split(words)?;
@@ -148,8 +148,8 @@ impl Lanes {
     }
 }
 
-/// Returns the index of the word at which the last coefficients begin, in a sequence of commands with `words` words
-/// each. The coefficients belong to the last command. Returns `None` if there are no commands.
+/// Returns the index of the word at which the coefficients of the last command's last expression begin. The sequence
+/// has `commands` commands of `words` words each. Returns `None` if there are no commands.
 fn last(commands: usize, words: usize) -> Option<usize> {
     Some(commands.checked_sub(1)? * words + COMPONENTS_AT[2])
 }

@@ -14,8 +14,8 @@ pub const PUBLISHED: TableColumn<FigureRow> = ("published", |row| {
     format!("{}{spread} {}", four(row.published), row.unit)
 });
 
-/// Simulated number with its unit. If the paper does not print a condition of the experiment, the column also has the
-/// range over this condition.
+/// Simulated number with its unit. If the paper does not print a condition of the experiment, the column also shows the
+/// range of results over this condition.
 pub const SIMULATED: TableColumn<FigureRow> = ("simulated", |row| {
     let unprinted = row.unprinted.map_or_else(String::new, |bounds| format!(" ({})", range(bounds)));
     format!("{} {}{unprinted}", four(row.simulated), row.unit)

@@ -26,7 +26,7 @@ type Regions = BTreeMap<RegionId, PartialRegion>;
 
 /// Two buffers for one surface. One of the buffers is shown.
 ///
-/// **Not modelled:** pixels that arrive while the display scans their place. A display that models such pixels must
+/// **Not modelled:** pixels that arrive in the shown buffer during the scan. A display that models such pixels must
 /// keep the arrival times of all messages, like the NTSC frame buffer.
 #[derive(Clone, Debug)]
 pub struct DoubleBuffer {
