@@ -175,8 +175,9 @@ fn causes() {
 fn freeze_sensitivity() {
     println!("\n## Sensitivity to each freeze row\n");
     println!(
-        "The freeze table lists the causes for which the processor waits (freezes). Each line gives the change of clocks per triangle\n\
-         if one row of the freeze table is disabled. Rows without effect are left out.\n"
+        "The freeze table lists the causes for which the processor waits (freezes). Each line of the following table gives the\n\
+         change of clocks per triangle if one row of the freeze table is disabled. The following table leaves out rows of the\n\
+         freeze table without effect.\n"
     );
     head(&["row", "condition", "straight", "compiled", "dual"]);
     let base = both(|k| clocks(k, Config::cycle()));
@@ -196,7 +197,9 @@ fn freeze_sensitivity() {
 
 fn dram_sensitivity() {
     println!("\n## Sensitivity to the memory\n");
-    println!("The table gives the change of clocks per triangle at both ends of each parameter's allowed range.\n");
+    println!(
+        "The following table gives the change of clocks per triangle at both ends of each parameter's allowed range.\n"
+    );
     head(&[
         "parameter",
         "default",
@@ -223,8 +226,8 @@ fn dram_sensitivity() {
         row(&[vec![name.to_owned(), entry.value.to_string(), format!("{low} to {high}")], cells].concat());
     }
     println!(
-        "\nFor `dma_interval`, the columns \"most\" use the value 8 clocks, at which DMA moves half of the data rate of one ring channel.\n\
-         The value 0 means that no other device uses the bus."
+        "\nFor `dma_interval`, the columns \"most\" use the value 8 clocks, at which DMA moves half of the data rate of one ring\n\
+         channel. The value 0 of `dma_interval` means that no other device uses the bus."
     );
 }
 
@@ -345,10 +348,10 @@ fn strip_causes() {
 fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n### Lower bound of the resources (Phong, dual)\n");
     println!(
-        "An instruction pair has a floating-point slot and a core slot. The table counts the slots that the operations of a part of \
-         the code (*stretch*) need. A product of doubles needs two slots. No schedule of these operations has fewer pairs than the \
-         larger of the two numbers of slots. A stretch that transforms corners covers three corners. With separate corners, three \
-         corners form one triangle. In a strip, three corners form three triangles.\n"
+        "An instruction pair has a floating-point slot and a core slot. The table counts the slots that the operations of a part \
+         of the code (*stretch*) need. A product of doubles needs two slots. No schedule of a stretch has fewer pairs than the \
+         larger of the stretch's two numbers of slots. A stretch that transforms corners covers three corners. With separate \
+         corners, three corners form one triangle. In a strip, three corners form three triangles.\n"
     );
     head(&["stretch", "floating-point slots", "core slots", "least pairs", "pairs of the schedule"]);
     for (list, name) in [(KernelList::Strips, "strip"), (KernelList::Triangles, "own corners")] {
@@ -359,10 +362,10 @@ fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     println!(
-        "\nThree effects explain why the kernel takes longer than this bound. First, values occupy the 30 registers until the \
-         floating-point pipelines have finished. Second, each of the two loops removes the other loop from the instruction cache, and \
-         a larger batch would not fit the data cache. Third, an edge that two triangles of a strip share is computed for each of the \
-         two triangles."
+        "\nThree effects explain why the kernel takes longer than its slots require. First, values occupy the 30 registers until \
+         the floating-point pipelines have finished. Second, each of the two loops removes the other loop from the instruction \
+         cache, and a larger batch would not fit the data cache. Third, an edge that two triangles of a strip share is computed \
+         for each of the two triangles."
     );
     Ok(())
 }
@@ -386,11 +389,11 @@ fn on_board_us(preset: &str, level: Level) -> Result<f64, Box<dyn std::error::Er
 fn board() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## On the board: the cycle level\n");
     println!(
-        "The first table compares two levels of detail for Slats: the transaction level with its timing table, and the cycle level. At \
-         the cycle level, the kernels run on the boards of the machine. Slats draws fields without bins, and the caches keep their \
-         contents during the run. The triangles are small and touch 1.3 regions each on average. The presets of 1994 and 1995 run the \
-         *compiled* kernel, because their code did not fit the instruction cache. The preset `slats-optimised` runs the *dual* kernel. \
-         No number is fitted at the cycle level.\n"
+        "The first table compares two levels of detail for Slats: the transaction level with its timing table, and the cycle \
+         level. At the cycle level, the kernels run on the boards of the machine. Slats draws fields without bins, and the \
+         caches keep their contents during the run. The triangles are small and touch 1.3 regions each on average. The presets \
+         of 1994 and 1995 run the *compiled* kernel, because the code of these years did not fit the instruction cache. The \
+         preset `slats-optimised` runs the *dual* kernel. No number is fitted at the cycle level.\n"
     );
     head(&["preset", "kernel", "us per triangle and eye: table", "cycle level", "published"]);
     for (preset, kernel, published) in [
@@ -422,9 +425,10 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
         row(&[name.into(), kernel.into(), table, small?, full?, published.into()]);
     }
     println!(
-        "\nThe rules of the compiled kernel (kernels/compiled_rules.md) were written before the kernel was compared with the figures of \
-         this table. The table has the results of the first comparison. The limit does not depend on the size of the triangles, \
-         because no triangle is clipped and Slats sends each triangle to all regions."
+        "\nThe rules of the compiled kernel (kernels/compiled_rules.md) were written before the kernel was compared with the \
+         published limits of Slats. The table of limits has the results of the first comparison with the published limits. The \
+         limit of triangles does not depend on the size of the triangles, because no triangle is clipped and Slats sends each \
+         triangle to all regions."
     );
     Ok(())
 }
@@ -433,9 +437,10 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
 fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## The timing table from the code\n");
     println!(
-        "The table gives the mean time of the code over the three application scenes, and the smallest and largest time of a \
-         scene (pxpl5_lab::code_times). The provenance of these times is \"derived from code\". With `machine.times = \"code\"`, the \
-         timing table has these times. Without this setting, the timing table has the published or fitted times.\n"
+        "The following table gives the mean time of the code over the three application scenes, and the smallest and largest \
+         time of a scene (pxpl5_lab::code_times). The provenance of times from the code is \"derived from code\". With \
+         `machine.times = \"code\"`, the timing table has the mean times of the code. Without `machine.times = \"code\"`, the \
+         timing table has the published or fitted times.\n"
     );
     head(&[
         "code",
@@ -498,11 +503,12 @@ fn table_of_code() -> Result<(), Box<dyn std::error::Error>> {
 fn strips_and_blocks() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n## Strips and blocks\n");
     println!(
-        "The table gives the clocks of the work of just-in-time pixels for a strip of one line, with the triangles of the scene \
-         `aircraft` (pxpl5_lab::code_times). The rules for this code are in windows_rules.md, between_rules.md and order_rules.md in \
-         crates/pphigs/kernels. Frameless rendering finds the triangles of its blocks with the same code. If a strip is interpolated \
-         between two views, its work begins with the start of a new pass over the triangles. In the timing table, \
-         `jitp.interpolate_ns` is the time of an interpolated triangle, for which 280 clocks are assumed.\n"
+        "The following table gives the clocks of the work of just-in-time pixels for a strip of one line, with the triangles of \
+         the scene `aircraft` (pxpl5_lab::code_times). The rules for the code of just-in-time pixels are in windows_rules.md, \
+         between_rules.md and order_rules.md in crates/pphigs/kernels. Frameless rendering finds the triangles of its blocks \
+         with the same code. If a strip is interpolated between two views, its work begins with the start of a new pass over the \
+         triangles. In the timing table, `jitp.interpolate_ns` is the time of an interpolated triangle, for which 280 clocks are \
+         assumed.\n"
     );
     head(&[
         "code",
@@ -559,8 +565,8 @@ The command `cargo run --profile test --example gp_timing > docs/gp-timing.md` m
 ## The kernels
 
 Three i860 programs (*kernels*, in crates/pxpl5-geometry/kernels) process triangles. The input of a kernel is a triangle
-of the display list. The output is the words of a renderer command, and an entry in the bin of each region that the
-triangle touches. Each kernel has these steps:
+of the display list. The output of a kernel is the words of a renderer command, and an entry in the bin of each region
+that the triangle touches. Each kernel has these steps:
 
 - The kernel transforms three corners and tests whether they are inside the guard band.
 
@@ -580,12 +586,12 @@ The three kernels differ in their code:
 - *straight* is code without optimisation. Each statement reads and writes its variables in memory (stack frame), and
   all functions are inlined.
 
-- *compiled* is like the output of a good compiler of about 1990 for a plain C program. The code has functions, loops,
-  local variables in registers, and scalar floating-point operations. The rules for this code were written before the
-  first measurement (compiled_rules.md).
+- *compiled* is like the output of a good compiler of about 1990 for a plain C program. Compiled code has functions,
+  loops, local variables in registers, and scalar floating-point operations. The rules for compiled code were written
+  before the first measurement (compiled_rules.md).
 
-- *dual* is code whose instructions the module `i860::linear` arranged in pairs for dual-instruction mode. The kernel
-  processes a batch of 26 triangles in two loops. Each loop fits the instruction cache of 4 KB.
+- *dual* is code whose instructions the module `i860::linear` arranged in pairs for dual-instruction mode. The dual
+  kernel processes a batch of 26 triangles in two loops. Each loop fits the instruction cache of 4 KB.
 
 All three kernels give exactly the same words as the native code in Rust (crates/pphigs/tests/kernels.rs and code.rs).
 All three kernels call the same clipper for triangles that are not completely inside the guard band. The code of the
@@ -605,18 +611,18 @@ Other i860 code also follows the rules of the compiled kernel:
 | window search for a strip of lines or a block | windows.s, windows_rules.md |
 | triangles between the views of a field's begin and end | compiled.s, between_rules.md |
 
-The operating software of the original machine is not published. The file ring_rules.md describes which parts of this
-software ring.s replaces. In the kernels of the tables below, the size of an NTSC frame or field is a constant. The
+The operating software of the original machine is not published. The file ring_rules.md describes which parts of the
+operating software ring.s replaces. In the measured kernels, the size of an NTSC frame or field is a constant. The
 kernels for other frames read the size from their parameter block.
 
 Two kinds of work have no i860 code: the decisions of a master, and the warping of vertices at the borders of cells. The
 hardware of the ring interface (DMA and FIFOs) is simulated word by word and needs no code. The time of a whole program
-therefore is longer than the times in the tables below.
+is longer than the times in the tables.
 
 The tables before the section \"Strips, steady state\" use 1,000 triangles of about 30 pixels. Each corner has its own
 position, normal and colour, which the kernel reads from memory. The processor runs at 40 MHz with the freeze rules and
 the memory of crates/i860/src/timing.rs. The rules for waits of the processor (freezes) and the times of the memory are
-assumed. So two tables show how the clocks depend on these assumptions.
+assumed. So two tables show how the clocks depend on the rules for freezes and on the times of the memory.
 ";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -58,8 +58,9 @@ pub(crate) fn replace(path: &Path, name: &str, table: &str) -> Fallible<()> {
 /// Returns a sentence about the host, the date and the conditions of the measurement.
 pub(crate) fn conditions(rounds: usize, load_before: &str) -> String {
     format!(
-        "Measured by `scripts/speed` on {}: {}, {}, profile {}. The values are CPU times of the process, the best of {rounds} \
-         alternating rounds. The load average was {load_before} at the begin and {} at the end, with the measuring process.",
+        "The program `scripts/speed` measured the values on {} with {}, {} and the profile {}. The values are CPU \
+         times of the process, the best of {rounds} alternating rounds. The load average was {load_before} at the begin \
+         and {} at the end, including the measuring process.",
         date(),
         machine(),
         compiler(),

@@ -6,7 +6,6 @@ use crate::timing::ArpTiming;
 /// Intersection of a direction with a face of the cube, as components of the direction along the face's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FaceHit {
-    /// The face that the direction hits.
     pub(crate) face: CubeFace,
     /// Component of the direction along the forward axis of the face. The component is greater than zero.
     pub(crate) forward: i64,
@@ -41,7 +40,7 @@ pub struct Footprint {
     /// Horizontal and vertical distance from the upper left texel, as fractions from 0 to 1 inclusive. The unit is
     /// `2^-weight_bits`.
     pub fractions: [u32; 2],
-    /// True if one of the texels lies on another face.
+    /// True if at least one of the four texels lies beyond an edge of the face that the direction hits.
     pub is_split: bool,
 }
 
@@ -71,7 +70,7 @@ impl Footprint {
 pub struct AddressUnit {
     /// Size of the faces.
     pub geometry: FaceGeometry,
-    /// Number of bits of a quotient.
+    /// Number of bits of the quotients that the dividers compute.
     pub quotient_bits: u64,
     /// Number of bits of each fraction in [`Footprint::fractions`], from which the weights of the four texels are
     /// computed. With 0, the pixel shows the nearest texel without interpolation.
@@ -165,7 +164,7 @@ impl AddressUnit {
         [0, 1, 2].map(|i| inner * forward[i] + u * right[i] - v * up[i])
     }
 
-    /// Returns the texel that a direction, given as integers, hits. The computation is exact.
+    /// Returns the texel that a direction with integer components hits. The computation is exact.
     fn nearest(&self, direction: [i64; 3]) -> Option<TexelAddress> {
         let met = FaceHit::of(direction)?;
         let inner = i64::from(self.geometry.inner());

@@ -23,7 +23,6 @@ type Each<T> = [T; BATCH];
 /// position.
 #[derive(Clone, Debug)]
 pub(crate) struct Batch {
-    /// Number of pixels in the group.
     pub(crate) count: usize,
     /// Index of the upper left texel of each pixel. The index is 0 for a footprint with texels on other faces.
     pub(crate) index: Each<u32>,
@@ -67,7 +66,7 @@ impl Batch {
         Self { count: 0, index: zero, right: zero, down: zero, leaves: [0; BATCH], is_left: false, met }
     }
 
-    /// Returns the upper left texels of those footprints (four texels) that lie on one face.
+    /// Returns the upper left texel of each footprint (four texels) that lies on a single face.
     pub(crate) fn inside(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.count).filter(|i| self.leaves[*i] == 0).map(|i| self.index[i])
     }

@@ -16,7 +16,7 @@ pub enum CompositionOrder {
 }
 
 impl CompositionOrder {
-    /// Both orders, each with its name on the command line.
+    /// Both orders of depth comparison and interpolation, each with its name on the command line.
     pub const ALL: [(&str, Self); 2] =
         [("depth-first", Self::DepthFirst), ("interpolation-first", Self::InterpolationFirst)];
 }
@@ -44,7 +44,6 @@ pub(crate) struct Gathered<'a> {
 }
 
 impl Composition {
-    /// Returns the colour of the pixel.
     pub(crate) fn pixel(&self, gathered: &Gathered<'_>) -> u32 {
         match self.order {
             CompositionOrder::DepthFirst => {

@@ -117,8 +117,8 @@ impl TexelAddress {
         self.column % 2 + 2 * (self.row % 2)
     }
 
-    /// Returns the index of the word that holds the texel, counted within the face's part of the bank. A face has
-    /// `face_texels` texels along an edge.
+    /// Returns the index of the texel's word within its bank, counted from the first word of the face in this bank. A
+    /// face has `face_texels` texels along an edge.
     #[must_use]
     pub const fn word(self, face_texels: u32) -> u32 {
         self.row / 2 * (face_texels / 2) + self.column / 2

@@ -46,7 +46,6 @@ struct Run {
     matrix: MatrixWords,
 }
 
-/// One field of one eye.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field<'a> {
     pub(crate) optics: &'a Optics,

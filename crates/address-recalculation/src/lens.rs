@@ -305,7 +305,7 @@ impl LensTable {
         [0, 1, 2].map(|axis| self.words[axis][place])
     }
 
-    /// Returns the words of the viewing vectors of consecutive pixels, one slice for each axis.
+    /// Returns the viewing vectors of consecutive pixels, as signed words: one list for each axis.
     pub(crate) fn run(&self, first: usize, count: usize) -> [&[i32]; 3] {
         [0, 1, 2].map(|axis| &self.words[axis][first..first + count])
     }

@@ -5,8 +5,8 @@
 //! first needs the texel ([`Composed`]). Addresses and weights are computed for a group of pixels together
 //! ([`crate::batch`]).
 //!
-//! The address unit handles two cases pixel by pixel: words too wide for exact doubles, and pixels whose four texels do
-//! not lie on one face.
+//! The address unit computes two cases pixel by pixel. In the first case, words are too wide for exact doubles. In the
+//! second case, the four texels of a pixel do not lie on one face.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::batch::{BATCH, Batch, addresses, mixed};
@@ -69,8 +69,8 @@ impl<'a> Addressing<'a> {
     /// Computes the footprints (the four texels and their weights) of up to [`BATCH`] pixels together, and returns
     /// true.
     ///
-    /// Returns false and computes nothing if the words are too wide. The same holds if there are so few pixels that a
-    /// computation pixel by pixel is faster.
+    /// Returns false and computes nothing if the words have too many bits for exact results in doubles. The same holds
+    /// if there are so few pixels that a computation pixel by pixel is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;
         if is_worth_it {
@@ -243,7 +243,7 @@ impl<'a> Lookup<'a> {
         mixed(&self.composed.colours, &self.batch, reach, unit.weight_bits as u32, out);
     }
 
-    /// Selects the nearest memory for each texel of a group of [`PIECE`] texels, unless this was already done.
+    /// Selects the nearest memory for each texel of a group of [`PIECE`] texels, unless an earlier call has done so.
     fn compose(&mut self, piece: usize) {
         if std::mem::replace(&mut self.composed.is_done[piece], true) {
             return;

@@ -8,7 +8,6 @@ use pxpl5_wire::{Lines, PixelSource, REGION_SIZE, RegionPixels, Word};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, OnceLock};
 
-/// Number of texels in a region.
 const REGION_TEXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 
 /// Number of words in a message that contains pixels.
@@ -90,7 +89,6 @@ struct Buffer {
     valid: Arc<Regions>,
 }
 
-/// A request to make a buffer visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct SwapRequest {
     asked_at: Time,
@@ -174,7 +172,6 @@ impl DisplayMemory {
         self.kind
     }
 
-    /// Returns the visible regions.
     pub(crate) fn shown(&self) -> Arc<Regions> {
         Arc::clone(&self.buffers[usize::from(self.shown)].valid)
     }
@@ -196,7 +193,6 @@ impl DisplayMemory {
         self.request = Some(SwapRequest { asked_at: now, buffer, together });
     }
 
-    /// Accepts a message that contains pixels of a region.
     pub(crate) fn receive(&mut self, pixels: RegionPixels, now: Time) -> Result<PixelReceipt, &'static str> {
         let target = pixels.target;
         let region = target.region.0;

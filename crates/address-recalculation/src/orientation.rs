@@ -115,7 +115,7 @@ pub struct OrientationLatch {
 }
 
 impl OrientationLatch {
-    /// Creates a register with words of `matrix_bits` bits and the initial orientation.
+    /// Creates a register that contains the initial orientation. Each component of a matrix has `matrix_bits` bits.
     #[must_use]
     pub fn new(matrix_bits: u64) -> Self {
         let first = (Time::ZERO, Orientation::IDENTITY.words(matrix_bits));
@@ -142,7 +142,7 @@ impl OrientationLatch {
         }
     }
 
-    /// Returns the words that the display reads at `time`: the words of the last matrix that had arrived.
+    /// Returns the matrix that the display reads at `time`: the last matrix that had arrived.
     #[must_use]
     pub fn at(&self, time: Time) -> MatrixWords {
         let after = self.loaded.partition_point(|(arrived, _)| *arrived <= time);

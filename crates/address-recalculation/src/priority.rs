@@ -11,10 +11,10 @@
 //!
 //! # Behaviour
 //!
-//! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than a given
-//!   angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or sphere), is
-//!   animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight can be drawn
-//!   later ([`time_until_visible_s`]).
+//! - **Validity** ([`Threshold::period`]): an image is wrong when the direction of a point is off by more than the
+//!   threshold angle. There are four causes: the eye has moved (chord or sine), the object appears larger (disc or
+//!   sphere), is animated, or rotates. A rotation of the head never makes an image wrong. A face that is out of sight
+//!   can be drawn later ([`time_until_visible_s`]).
 //! - **Objects** ([`Objects`]): each object is in the least often drawn memory that keeps its image right. Memory k is
 //!   drawn every 2^k frames. An object changes its memory only in a frame that draws both memories, and both are shown
 //!   together.
@@ -26,8 +26,8 @@
 //!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is searched among all
 //!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a
 //!   memory also makes all more often drawn memories due (cascade).
-//! - **New home cell**: when the eye has left the home cell and the least often drawn memory is due, cells are assigned
-//!   to memories anew. All memories whose cells have changed are then shown together.
+//! - **New home cell**: cells are assigned to memories anew when two conditions hold: the eye has left the home cell,
+//!   and the least often drawn memory is due. All memories whose cells have changed are then shown together.
 //! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells. Each line is cut once for all
 //!   triangles that share it, so the parts have bit-identical vertices along a cut. A segment is the part of a mesh in
 //!   one cell.
@@ -40,7 +40,7 @@
 //!
 //! # Not here
 //!
-//! The pipeline that draws supplies the pixels of the faces and handles late updates.
+//! The program that draws the faces supplies their pixels and handles late updates.
 //!
 //! # Sources
 //!

@@ -1,9 +1,9 @@
 //! The messages that a display memory accepts besides pixels.
 //!
 //! ```text
-//! BEGIN    buffer  bit i: region i is coming     clears all valid bits of that buffer
-//! SWAP     buffer                                (pxpl5_wire::swap_request) at the next retrace at which all is there
-//! TOGETHER buffer  bit k: memory k               as SWAP, but at a retrace at which all of these memories can
+//! BEGIN    buffer  bit i: region i will arrive   makes all regions of the buffer empty
+//! SWAP     buffer                                shows the buffer when all its regions have arrived (swap_request)
+//! TOGETHER buffer  bit k: memory k               as SWAP, but together with all these memories or not at all
 //! MATRIX   nine words, row by row                an orientation, in single precision
 //! ```
 
@@ -39,7 +39,7 @@ pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32
     Some(RegionId(((face as u32 * across + row) * across + column) as u16))
 }
 
-/// Returns the words that begin an update of a buffer. `regions` are the regions that will arrive. All other regions
+/// Returns the message that begins an update of a buffer. `regions` are the regions that will arrive. All other regions
 /// will be empty.
 #[must_use]
 pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[Word]> {
@@ -53,7 +53,7 @@ pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[
     words.into()
 }
 
-/// Returns the words that request to show a buffer at the first retrace at which all memories of a set can swap.
+/// Returns the message that requests to show a buffer at the first retrace at which all memories of a set can swap.
 ///
 /// Bit k of `memories` stands for memory k.
 #[must_use]
@@ -61,20 +61,19 @@ pub fn swap_together(buffer: u8, memories: u8) -> Arc<[Word]> {
     [TOGETHER, buffer.into(), memories.into()].into()
 }
 
-/// Returns the words of a message that sets the orientation. `rows` is the matrix from head axes to world axes.
+/// Returns the message that sets the orientation. `rows` is the matrix from head axes to world axes.
 #[must_use]
 pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
     let components = rows.into_iter().flatten().map(|component| (component as f32).to_bits());
     [MATRIX].into_iter().chain(components).collect()
 }
 
-/// A decoded message.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ArpMessage {
     /// Begins an update of a buffer with these regions.
     Begin { buffer: u8, regions: Vec<u16> },
-    /// Requests to show a buffer, at the same retrace as the memories in the bit mask `together`. If `together` is 0,
-    /// the memory swaps alone.
+    /// Requests to show a buffer at the same retrace as buffers of other memories. Bit k of `together` stands for
+    /// memory k. If `together` is 0, the memory swaps alone.
     Swap { buffer: u8, together: u8 },
     /// Sets an orientation that is not yet checked.
     Matrix([Vector; 3]),

@@ -22,7 +22,7 @@ pub enum Latch {
 pxpl5_sim::parameters::named!(Latch, "latch event", Latch::ALL);
 
 impl Latch {
-    /// All events, each with its name on the command line.
+    /// All events before which an orientation can be read, each with its name on the command line.
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 
@@ -64,7 +64,8 @@ impl FaceScan {
         self.video.retrace(field)
     }
 
-    /// Returns the number of the field that is scanned at an instant. At a retrace, this is the field that begins.
+    /// Returns the number of the field that is scanned at an instant. At a retrace, the result is the field that
+    /// begins.
     #[must_use]
     pub const fn field_at(&self, time: Time) -> PeriodNumber {
         self.video.field_at(time)
@@ -85,8 +86,8 @@ impl FaceScan {
 
     /// Returns the time at which the orientation for a pixel is read.
     ///
-    /// This time precedes the display of a pixel by the duration of all stages. With [`Latch::Pixel`], it is the pixel
-    /// (x, y). Otherwise it is the first visible pixel of the same line or field.
+    /// The time precedes the display of one pixel by the duration of all stages. This pixel is (x, y) with
+    /// [`Latch::Pixel`], and otherwise the first visible pixel of the same line or field.
     #[must_use]
     pub fn latches(&self, latch: Latch, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         let lit = self.lights(x, y, field)?;

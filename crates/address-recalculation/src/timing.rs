@@ -130,7 +130,6 @@ impl ScanTiming {
         self.signal().map(|_| ())
     }
 
-    /// Returns the video signal that this table describes.
     pub(crate) fn video(&self) -> Result<Video, SettingError> {
         self.check()?;
         self.signal().map_err(|error| error.in_table("arp_scan"))

@@ -7,7 +7,7 @@ use crate::tears::TearWidths;
 use pxpl5_scene::Scene;
 use serde::Serialize;
 
-/// Name and settings of each variant. A variant takes all other settings from the `plan` of [`compare`].
+/// Variants of a comparison. Each has a name, and the settings in which it differs from the plan of the comparison.
 const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
     ("full", &[("policy", "full")]),
     ("objects", &[("policy", "objects"), ("segment", "off")]),
@@ -33,9 +33,9 @@ pub struct ComparedRow {
     pub variant: &'static str,
     /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
-    /// Segments drawn per second.
+    /// Number of segments (parts of objects) drawn per second.
     pub draws_per_s: f64,
-    /// Triangles drawn per second.
+    /// Number of triangles drawn per second.
     pub triangles_per_s: f64,
     /// Percentage of draws saved, relative to drawing everything in every frame.
     pub saved_percent: f64,

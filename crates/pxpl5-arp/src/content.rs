@@ -16,8 +16,8 @@ pub struct Content {
     pub frame: u64,
     /// Indices of the segments (parts of objects) that the memory contains.
     pub segments: Vec<usize>,
-    /// Displacement of vertices, or `None` without warping: the warp, the assignment of cells, and the index of this
-    /// memory.
+    /// Data for the displacement of vertices, or `None` without warping: the warp, the assignment of cells, and the
+    /// index of this memory.
     pub warp: Option<(RegionWarp, CellAssignment, usize)>,
 }
 
@@ -48,8 +48,8 @@ impl Content {
     }
 }
 
-/// Returns the warp that joins a memory to the next less often drawn memory. `places` are the eye positions from which
-/// the two memories were drawn.
+/// Returns the warp that closes the gap between `memory` and the memory beyond its outer border, which is updated less
+/// often. `places` are the eye positions from which these two memories were drawn.
 pub(crate) fn warp(
     settings: &crate::settings::WalkSettings,
     dealing: &CellAssignment,

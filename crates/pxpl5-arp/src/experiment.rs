@@ -29,7 +29,7 @@ pub struct WalkReport {
     pub frames: u64,
     /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,
-    /// Settings that were given explicitly, by path.
+    /// Settings that the user chose, by path.
     pub settings: BTreeMap<String, String>,
 }
 

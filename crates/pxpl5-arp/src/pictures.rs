@@ -1,5 +1,5 @@
 //! Pictures of a viewer's walk: unfolded cube faces, views, the memory shown at each pixel, tears (gaps between
-//! memories), errors, a plan of cells, and updates.
+//! memories) and errors. Drawings show the cells from above and the updates.
 
 mod colours;
 mod faces;
@@ -114,7 +114,8 @@ pub fn of_walk(
     Ok(pictures)
 }
 
-/// Distance along the path from the eye to the point at which the eye looks, in metres, as in [`Walk`].
+/// Distance along the path from the eye to the point at which the eye looks, in metres. The distance is the same as in
+/// [`Walk`].
 const AHEAD_M: f64 = 1.5;
 
 /// Returns the orientation of a head that looks along the path. The head is `way_m` metres from the start of the path.
@@ -170,8 +171,9 @@ fn tinted(
 /// Background colour that is visible through tears (gaps between memories).
 const WHITE: u32 = 0x00FF_FFFF;
 
-/// Largest number of frames to try, and smallest number of frames between two tried frames.
+/// Greatest number of frames that are searched for the best view of a tear (gap between two memories).
 const TRIED: u64 = 63;
+/// Least number of frames from one searched frame to the next.
 const EVERY: u64 = 29;
 
 /// Returns the frame and orientation at which a tear (gap between two memories) shows the largest number of background

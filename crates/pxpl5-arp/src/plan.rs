@@ -19,7 +19,7 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-/// Paths of those settings that are choices instead of numbers.
+/// Paths of the settings that are choices, not numbers.
 const CHOICES: [&str; 10] = [
     "policy",
     "segment",
@@ -81,7 +81,7 @@ fn threshold(text: &str) -> Result<ThresholdChoice, String> {
     texels.and_then(number).map(ThresholdChoice::Texels).ok_or_else(expected)
 }
 
-/// A table of parameters, and the first part of their paths.
+/// A table of parameters, with the first part of the paths of these parameters.
 type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
 impl WalkPlan {
@@ -109,7 +109,7 @@ impl WalkPlan {
         ]
     }
 
-    /// Returns all paths that [`Self::set`] accepts.
+    /// Returns the names of all settings that [`Self::set`] accepts. A name is a path, such as `walk.route`.
     #[must_use]
     pub fn keys(&self) -> Vec<String> {
         let numbers = self.numbers().into_iter().map(|(path, _)| path);
@@ -175,7 +175,7 @@ impl WalkPlan {
         self
     }
 
-    /// Returns the size and viewing angle of the display's picture. A lens table must match both.
+    /// Returns the size and viewing angle of the display's picture. A lens table must match this size and this angle.
     #[must_use]
     pub fn picture(&self) -> LensPicture {
         self.chosen.display.picture()

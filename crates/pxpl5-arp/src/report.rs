@@ -21,7 +21,7 @@ pub struct ArpReport {
     pub schema: &'static str,
     /// Number of texels along the edge of a cube face.
     pub face_texels: u64,
-    /// Event before which the display reads the head's orientation: `field`, `line` or `pixel`.
+    /// Time at which the display reads the head's orientation: before each `field`, `line` or `pixel`.
     pub latch: &'static str,
     /// Time from reading the orientation to displaying the pixel, in ns.
     pub pipeline_ns: f64,
@@ -47,8 +47,8 @@ pub struct ArpReport {
     /// The memory is drawn from the eye position at the start of a frame. The latency lasts from the start of this
     /// frame to the display of a pixel of the memory.
     pub translation_latency_ms: WalkLatency,
-    /// Mean difference between the displayed view and a direct rendering of the same pose, in pixels. Null if no view
-    /// was drawn.
+    /// Mean difference between the displayed view and a direct rendering of the same pose, in pixels. Always null,
+    /// because no run evaluates this difference yet.
     pub sampling_error_px: Option<f64>,
 }
 
@@ -107,7 +107,7 @@ pub struct TearsReport {
     pub before: Option<TearWidths>,
     /// Widths of the tears in the displayed picture.
     pub after: Option<TearWidths>,
-    /// Largest angle by which warping moves any vertex in a frame, as percentiles over the frames.
+    /// Angle by which warping moves the most displaced vertex of a frame, as percentiles over the frames.
     pub stretch: Option<TearWidths>,
 }
 
@@ -116,7 +116,7 @@ pub struct TearsReport {
 pub struct WalkLatency {
     /// Sum of all parts in ms.
     pub total: Option<f64>,
-    /// Parts of the latency by name, in ms. Null for parts that were not simulated.
+    /// Parts of the latency in ms, each with its name. Null for parts that were not simulated.
     pub parts: BTreeMap<&'static str, Option<f64>>,
 }
 
@@ -130,7 +130,7 @@ pub struct ViewStatistics {
 }
 
 impl ArpReport {
-    /// Creates the report of a viewer's walk, optionally with the counts of a view at its end.
+    /// Creates the report of a viewer's walk. With `looked`, the report also has the counts of one displayed view.
     #[must_use]
     pub fn of(world: &World, settings: &WalkSettings, tally: &WalkTally, looked: Option<&ViewStatistics>) -> Self {
         let timing = &settings.display.timing;
@@ -168,8 +168,8 @@ fn rotation(display: &ArpConfig) -> WalkLatency {
     WalkLatency::of(vec![("pipeline", Some(ms(display.timing.depth()))), ("scan", scan_ms(display, display.latch))])
 }
 
-/// Returns the latency of translation in three parts: drawing the update, the wait after the update is first shown, and
-/// the scan until the pixel is displayed.
+/// Returns the latency of translation in three parts. The parts are the drawing of an update, the time for which the
+/// update has already been shown, and the scan until the pixel is displayed.
 fn translation(memory: Option<&MemoryTally>, settings: &WalkSettings) -> WalkLatency {
     let memory = memory.filter(|memory| memory.shown_frames > 0);
     let mean_ms = |frames: fn(&MemoryTally) -> u64| {

@@ -1,4 +1,4 @@
-//! Settings of an experiment.
+//! Settings of an experiment: the policy, the cells, warping, the renderer and the display.
 
 use crate::cube_faces::{CubeView, DepthRange};
 use address_recalculation::priority::{Falloff, PriorityTiming};
@@ -50,12 +50,11 @@ pub enum SourceKind {
     },
 }
 
-/// Distances of the near and the far plane along a face's axis, in metres.
-///
-/// Both limits are assumed. Walls are at least 1 m away from the gallery's path, which is at least 1 m / sqrt(3) along
-/// the axis of a face. The near limit is less than this distance. The far limit exceeds the size of the hall. A step of
-/// depth is 0.24 mm at 20 m.
+/// Distance of the near plane along a face's axis, in metres. Assumed. Walls are at least 1 m away from the gallery's
+/// path. Along the axis of a face, the distance is at least 1 m / sqrt(3) = 0.58 m.
 const NEAR_M: f64 = 0.1;
+/// Distance of the far plane along a face's axis, in metres. Assumed to exceed the size of the hall. At 20 m, the
+/// 24-bit depths then have steps of 0.24 mm.
 const FAR_M: f64 = 100.0;
 
 /// Settings of an experiment, without the scene and the viewer's walk.
@@ -76,8 +75,8 @@ pub struct WalkSettings {
 }
 
 impl WalkSettings {
-    /// Settings with objects cut but not warped, cells of the size fitted to table 1 of the paper CPR05, and an ideal
-    /// renderer.
+    /// Settings with objects that are cut but not warped, and with an ideal renderer. The side of a cell is fitted to
+    /// table 1 of the paper CPR05.
     pub const CELLS: Self = Self {
         policy: PolicyKind::Cells,
         is_segmented: true,

@@ -27,8 +27,8 @@ impl Queue {
         Self { running: vec![None; memories], waiting: vec![None; memories] }
     }
 
-    /// Adds an update of a memory. If an update of this memory has begun, the new update waits until that update is
-    /// finished. Otherwise the new update replaces the update of this memory that has not begun.
+    /// Adds an update of a memory. If the renderer has already begun an older update of this memory, the new update
+    /// waits. Otherwise the new update replaces the older update.
     pub(crate) fn put(&mut self, memory: usize, job: Job) {
         let has_begun = self.running[memory].as_ref().is_some_and(|running| running.left_s < running.work_s);
         let place = if has_begun { &mut self.waiting[memory] } else { &mut self.running[memory] };

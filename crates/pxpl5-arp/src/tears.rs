@@ -10,8 +10,8 @@ pub struct Tears {
     /// Angles of all tears without warping, in radians. A tear's angle lies between the two directions in which two
     /// memories draw a shared vertex.
     pub before: Vec<f64>,
-    /// Angles of all tears as displayed, in radians, between the two directions in which two memories draw a shared
-    /// vertex.
+    /// Angles of all tears in the displayed picture, in radians. A tear's angle lies between the two directions in
+    /// which two memories draw a shared vertex.
     pub after: Vec<f64>,
     /// Angles by which warping moves the vertices of a memory, in radians. Each vertex has one angle.
     pub stretch: Vec<f64>,

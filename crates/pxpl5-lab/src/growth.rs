@@ -193,15 +193,15 @@ pub fn exponent(points: &[(f64, f64)]) -> f64 {
 #[must_use]
 pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
     let mut text = format!(
-        "# Growth\n\nThe command `pxpl5 levels --scaling docs/scaling.md` generates this file. All runs use Rendering Control in stereo.\n\
-         Triangles have 18 pixels, and no pixels are computed. The GPs have 1 GB of memory instead of 8 MB. The host time is the\n\
-         computing time of the simulation, the fastest of three runs on one computer.\n\n\
+        "# Growth\n\nThe command `pxpl5 levels --scaling docs/scaling.md` generates this file. All runs use Rendering Control in stereo. Each\n\
+         triangle covers 18 pixels, and the runs compute no pixels. The GPs have 1 GB of memory instead of 8 MB. The host time is\n\
+         the computing time of the simulation, the fastest of three runs on one computer.\n\n\
          ## Triangles, on 50 GPs and 5 renderers\n\n\
-         For 1,000 triangles and more, the host time grows with the power {:.2} of the number of triangles. For 100,000\n\
-         triangles and more, the host time grows with the power {:.2}. With fewer than 100,000 triangles, the tokens of 40\n\
-         regions cost more host time than the triangles, because every GP receives and sends each token. For 100,000 triangles\n\
-         and more, the simulated latency grows with the power {:.2} of the number of triangles. Below 100,000 triangles, COPY is\n\
-         the bottleneck.\n\n",
+         For 1,000 triangles and more, the host time grows with the power {:.2} of the number of triangles. For 100,000 triangles\n\
+         and more, the host time grows with the power {:.2} of the number of triangles. With fewer than 100,000 triangles, the\n\
+         tokens of 40 regions cost more host time than the triangles, because every GP receives and sends each token. For 100,000\n\
+         triangles and more, the simulated latency grows with the power {:.2} of the number of triangles. Below 100,000 triangles,\n\
+         COPY is the bottleneck.\n\n",
         power(triangles, 1_000, |p| p.host_ms),
         power(triangles, 100_000, |p| p.host_ms),
         power(triangles, 100_000, |p| p.latency_fields),

@@ -28,8 +28,8 @@ pub const WHOLE_DISTANCE_RADII: f64 = 4.4;
 
 /// Distance of the eye from the centre of a built-in model, as a multiple of the model's radius.
 ///
-/// Derived: a sphere fills the height of the default view (half angle atan(0.75 tan 30 deg) = 23.4 deg) at 1 / sin 23.4
-/// deg = 2.52 radii. The value 2.6 leaves a margin.
+/// Derived: half of the default view's height is atan(0.75 tan 30 deg) = 23.4 deg. At a distance of 1 / sin 23.4 deg =
+/// 2.52 radii, a sphere fills this height. The value 2.6 leaves a margin.
 pub const FIT_DISTANCE_RADII: f64 = 2.6;
 
 /// Largest absolute coordinate that an importer accepts, in units of the file.

@@ -38,10 +38,10 @@ impl Scene {
     }
 }
 
-/// Decimation of one scene to several numbers of primitives. Each result equals that of [`Scene::decimated`].
+/// Decimation of one scene to several numbers of primitives. Each result equals the result of [`Scene::decimated`].
 ///
-/// Edges collapse in the same order for every number of primitives. A call therefore stores an intermediate surface. A
-/// later call for no more primitives can start from this surface.
+/// Edges collapse in the same order for every number of primitives. Each call therefore stores an intermediate surface,
+/// from which a later call for fewer primitives can start.
 pub struct Decimation {
     scene: Arc<Scene>,
     passed: Mutex<Option<Arc<FirstPass>>>,
@@ -86,8 +86,8 @@ impl fmt::Debug for Decimation {
     }
 }
 
-/// Divisor of the wanted number of triangles. The intermediate surface is stored when wanted + wanted / 8 triangles
-/// remain, because a search for a limit also tries slightly larger numbers.
+/// Divisor for the size of the stored intermediate surface. For n wanted triangles the surface has about n + n / 8
+/// triangles. A search for a limit can then also start from this surface for slightly larger numbers than n.
 const PASSED_ABOVE: usize = 8;
 
 /// Returns a scene with at most `n` primitives. `reduce` receives a number of triangles, and returns the scene's

@@ -10,8 +10,8 @@ use crate::trig;
 pub struct Edit {
     /// Index of the structure in [`crate::Scene::structures`].
     pub structure: usize,
-    /// New matrix from the structure's coordinates to its frame's coordinates. Before the first edit the matrix is the
-    /// identity.
+    /// New matrix from the structure's coordinates to the coordinate system to which the structure is fixed: the room
+    /// or the head. Before the first edit the matrix is the identity.
     pub model: Mat4,
 }
 

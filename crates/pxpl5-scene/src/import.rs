@@ -44,7 +44,6 @@ impl Placement {
         }
     }
 
-    /// Returns the motion of a head for a model with this placement.
     fn motion(self) -> HeadMotion {
         match self {
             Self::Fitted => mesh::motion_for_fitted(),
@@ -66,9 +65,9 @@ pub enum Format {
     /// STL file, ASCII or binary. Each triangle is flat and has its own three vertices. The normals of the file are not
     /// used, because the corners determine them.
     Stl,
-    /// glTF 2.0 file, as JSON (`.gltf`) or binary (`.glb`). The triangles, strips and fans of the default scene are read,
-    /// with the transforms of their nodes. Colours are the base colours of materials times the colours of vertices.
-    /// Textures, skins, morph targets and animations are not read. The format needs the feature `gltf`.
+    /// glTF 2.0 file, as JSON (`.gltf`) or binary (`.glb`). The triangles, strips and fans of the default scene are
+    /// read, with the transforms of their nodes. Colours are the base colours of materials times the colours of
+    /// vertices. Textures, skins, morph targets and animations are not read. The format needs the feature `gltf`.
     Gltf,
     /// Protein Data Bank file. The `ATOM` and `HETATM` records of its first model become spheres. If an atom has
     /// alternate locations, only the first is used.
@@ -182,7 +181,6 @@ pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Pl
     }
 }
 
-/// The content of a model file after reading.
 enum Content {
     /// A mesh that is not yet a scene. The file's bytes can be freed before the scene is made.
     Mesh(Model),

@@ -28,8 +28,8 @@ pub struct View {
     /// Matrix from world to eye coordinates, which only rotates and moves. Eye coordinates are right-handed with +y up,
     /// and the eye looks along -z.
     pub world_to_eye: Mat4,
-    /// Matrix from head to eye coordinates, which only rotates and moves. The matrix serves structures that are fixed
-    /// to the head.
+    /// Matrix from head to eye coordinates, which only rotates and moves. Structures that are fixed to the head are
+    /// drawn with this matrix.
     pub head_to_eye: Mat4,
     /// Matrix from eye to clip coordinates: -w <= x <= w (right), -w <= y <= w (up), 0 <= z <= w. The depth z/w grows
     /// from 0 at the near plane to 1 at the far plane.
@@ -211,7 +211,8 @@ impl Hmd {
 }
 
 /// Returns the rotation that moves a point onto the axis of view. The point lies `right` metres to the right and
-/// `ahead` metres ahead. Square roots have the same bits on every host.
+/// `ahead` metres ahead. The function uses square roots instead of angles, so its result has the same bits on every
+/// host.
 fn turn_towards(right: f64, ahead: f64) -> DMat4 {
     let distance = (right * right + ahead * ahead).sqrt();
     let (sin, cos) = (right / distance, ahead / distance);

@@ -40,8 +40,8 @@ impl Fraction {
         Self { over: times * self.over + before.over, under: times * self.under + before.under }
     }
 
-    /// Returns the largest factor `times` with which numerator and denominator of `followed(times, before)` stay within
-    /// [`LIMIT`].
+    /// Returns the largest factor `times` with which the result of [`Self::followed`] has no numerator or denominator
+    /// above [`LIMIT`].
     fn fits(self, before: Self) -> u128 {
         let above = (LIMIT - before.over).checked_div(self.over).unwrap_or(u128::MAX);
         above.min((LIMIT - before.under).checked_div(self.under).unwrap_or(u128::MAX))

@@ -2,7 +2,6 @@
 
 use std::fmt::{self, Display, Write};
 
-/// An element with its name, attributes and content.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
     name: &'static str,
@@ -16,7 +15,6 @@ impl Element {
         Self { name, attributes: String::new(), content: None }
     }
 
-    /// Adds an attribute.
     pub(crate) fn with(mut self, attribute: &str, value: impl Display) -> Self {
         // Writing to a string cannot fail.
         let _ = write!(self.attributes, " {attribute}=\"{}\"", escape(&value.to_string()));
@@ -29,30 +27,25 @@ impl Element {
         self
     }
 
-    /// Appends a child element.
     pub(crate) fn child(mut self, child: &Self) -> Self {
         self.add(child);
         self
     }
 
-    /// Appends child elements.
     pub(crate) fn children(mut self, children: impl IntoIterator<Item = Self>) -> Self {
         children.into_iter().for_each(|child| self.add(&child));
         self
     }
 
-    /// Appends a child element in place.
     pub(crate) fn add(&mut self, child: &Self) {
         let _ = write!(self.content(), "{child}");
     }
 
-    /// Appends a child element and a line feed in place.
     pub(crate) fn add_line(&mut self, child: &Self) {
         self.add(child);
         self.end_line();
     }
 
-    /// Appends a line feed.
     pub(crate) fn end_line(&mut self) {
         self.content().push('\n');
     }

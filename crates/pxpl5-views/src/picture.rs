@@ -20,8 +20,8 @@ pub enum PictureError {
     /// The number of periods is out of range, or the display has no surface with the chosen number.
     #[error(transparent)]
     Setting(#[from] SettingError),
-    /// The PNG encoder refuses the picture, for example a picture without pixels, or a text with a key that PNG does not
-    /// allow.
+    /// The PNG encoder refuses the picture, for example a picture without pixels, or a text with a key that PNG does
+    /// not allow.
     #[error("a picture cannot be encoded: {0}")]
     Png(#[from] png::EncodingError),
 }

@@ -7,7 +7,6 @@ use pxpl5_sim::Time;
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId};
 
-/// A display port with its name.
 pub(crate) struct DisplayPort {
     pub(crate) name: String,
     pub(crate) node: NodeId,

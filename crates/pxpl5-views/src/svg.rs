@@ -46,7 +46,6 @@ impl Display for Tenths {
     }
 }
 
-/// Returns the root element of an SVG document.
 pub(crate) fn document() -> Element {
     Element::new("svg").with("xmlns", "http://www.w3.org/2000/svg")
 }

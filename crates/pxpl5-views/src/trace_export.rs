@@ -1,5 +1,5 @@
 //! A run as a trace for viewers, in the Perfetto trace format or as Chrome's JSON. The viewer ui.perfetto.dev opens
-//! both.
+//! both formats.
 //!
 //! [`Trace::of`] collects tracks from the observations. [`perfetto`] and [`chrome`] write the tracks. Tracks of
 //! messages and counters of the ring and the FIFOs need

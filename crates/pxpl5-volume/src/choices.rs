@@ -1,4 +1,4 @@
-//! Settings that are choices with names: clips, projections, tie rules, bins, coverage.
+//! Settings that are choices with names: clips, projections, rules for points on a boundary, bins, coverage.
 
 use spatialgl::{BinTolerance, Binning, Combine, Coverage, Rotation, Strobes, TieRule};
 
@@ -11,7 +11,8 @@ pub enum ClipKind {
     UserPlanes,
     /// Clip by both boundary planes in the fragment program, which gives exactly the volume of the slice.
     Exact,
-    /// Clip by planes around the slice that are a fixed distance apart at the axis, in two drawing passes.
+    /// Clip by two planes whose distance grows with the radius: a fixed number of pixels at the axis, and the exact
+    /// thickness of the slice at the rim. Each side of the axis has its own drawing pass.
     Tapered,
     /// Clip by both boundary planes of the slice, moved outwards.
     Parallel,
@@ -25,7 +26,7 @@ impl ClipKind {
         [Self::Prism, Self::UserPlanes, Self::Exact, Self::Tapered, Self::Parallel, Self::Hyperbolic];
 }
 
-/// One of the three projections.
+/// A projection of points near a slice onto the slice's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProjectionKind {
     /// Projection along the normal of the slice.

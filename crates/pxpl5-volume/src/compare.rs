@@ -64,7 +64,7 @@ pub struct VariantRow {
 /// The comparison of a scene's volumes for all combinations of clip, projection, samples and coverage.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeComparison {
-    /// Name and version of this record's layout.
+    /// Name and version of the JSON layout of this data.
     pub schema: &'static str,
     /// Name of the scene that all variants draw.
     pub scene: String,
@@ -76,12 +76,12 @@ pub struct VolumeComparison {
     pub seed: u64,
     /// One row for each variant.
     pub variants: Vec<VariantRow>,
-    /// Views of the variants, in the order of `variants`, all with one exposure.
+    /// Views of the variants, in the order of `variants`. All have the same exposure (brightness of one lit pixel).
     #[serde(skip)]
     pub pictures: Vec<RgbImage>,
 }
 
-/// The position of the eye in the pictures of a comparison.
+/// The viewpoint of the pictures in a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparePoint {
     /// Azimuth of the eye: angle around the axis from +z to +x, degrees.
@@ -247,9 +247,9 @@ impl VolumeComparison {
         Some(grid(pictures, columns as u32))
     }
 
-    /// Returns five views with the hyperbolic clip side by side. The views are orthographic with 1 sample, jittered,
-    /// orthographic with 4 and with 16 samples, and with connected coverage. Returns `None` for a comparison without
-    /// pictures.
+    /// Returns five views with the hyperbolic clip side by side. The first view has an orthographic projection and one
+    /// sample per pixel. The other views differ from the first by jitter, by 4 samples, by 16 samples, and by connected
+    /// coverage. Returns `None` for a comparison without pictures.
     #[must_use]
     pub fn samples_and_coverage(&self) -> Option<RgbImage> {
         let shown: Vec<RgbImage> = self

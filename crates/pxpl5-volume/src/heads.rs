@@ -40,7 +40,6 @@ use tracking::view::HmdView;
 /// not change the mean.
 pub const POINTS: usize = 512;
 
-/// Picoseconds in a second.
 const PS_PER_S: f64 = 1e12;
 
 /// Errors of both displays at one instant, over all points and both eyes.
@@ -78,13 +77,13 @@ pub struct HeadSample {
 /// The errors of a volume and of a head-mounted display during a motion of the head.
 #[derive(Clone, Debug, Serialize)]
 pub struct HeadStudy {
-    /// Name and version of this record's layout.
+    /// Name and version of the JSON layout of this data.
     pub schema: &'static str,
     /// Name of the scene that both displays show.
     pub scene: String,
     /// Latency of the head-mounted display, milliseconds.
     pub latency_ms: f64,
-    /// Origin of the latency: "the volume's" if both displays have the same latency, or "given".
+    /// Origin of the latency: "the volume's" if both displays have the same latency, or "given" if the user chose it.
     pub latency_is: &'static str,
     /// Latency with which the volume shows changes of the scene, in milliseconds, or `None` if no GPU drew the volume.
     pub volume_latency_ms: Option<f64>,
@@ -122,9 +121,9 @@ pub struct HeadComparison<'a> {
 
 impl Volume {
     /// Returns the latency with which the volume shows changes of the scene, in milliseconds. The latency is the
-    /// model's time for one volume, plus two mean waits. The waits are half a turn until strobe 0 (the first flash of a
-    /// turn), and then a quarter turn until the screen reaches the changed plane. Returns `None` if the volume was not
-    /// drawn by a GPU.
+    /// model's time for one volume, plus two mean waits. The first wait is half a turn until strobe 0 (the first flash
+    /// of a turn). The second wait is a quarter turn until the screen reaches the changed plane. Returns `None` if the
+    /// volume was not drawn by a GPU.
     #[must_use]
     pub fn latency_ms(&self) -> Option<f64> {
         let turn_ms = 60e3 / self.settings.display.spin_rpm as f64;
@@ -279,11 +278,8 @@ impl<'a> HeadComparison<'a> {
         Ok(grid(&shown, 2))
     }
 
-    /// Returns the exposure of the left eye's view at an instant, for use in all pictures.
-    ///
-    /// # Errors
-    ///
-    /// The same as [`Self::picture`].
+    /// Returns the exposure that suits the left eye's view at an instant. Exposure is the brightness of one lit pixel
+    /// of the volume, and all pictures use the same exposure.
     pub fn exposure(&self, time_ps: u64, side: u32, workers: &dyn Workers) -> Result<f64, SettingError> {
         self.look(time_ps, -1.0, side)?.exposure(self.volume, workers)
     }
@@ -357,8 +353,8 @@ fn placed(head: &Pose, volume: &Volume, viewer: &ViewerNumbers) -> DMat4 {
     DMat4::from_scale(DVec3::splat(pixels_per_metre)) * turn * DMat4::from_translation(-middle)
 }
 
-/// Returns azimuth and elevation of a position in degrees, as for cameras: the azimuth from +z to +x, the elevation
-/// above the horizon.
+/// Returns azimuth and elevation of a position in degrees. The azimuth runs from +z to +x, and the elevation is above
+/// the horizon.
 fn around(place: DVec3) -> [f64; 2] {
     let level = libm::hypot(place.x, place.z);
     [libm::atan2(place.x, place.z).to_degrees(), libm::atan2(place.y, level).to_degrees()]

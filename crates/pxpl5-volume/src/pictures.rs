@@ -67,8 +67,8 @@ impl Look {
         }
     }
 
-    /// Returns the picture with the given exposure. Without a given exposure, the picture uses the result of
-    /// [`Self::exposure`].
+    /// Returns the picture with the exposure `exposure`. With `None`, the picture has the exposure that
+    /// [`Self::exposure`] returns.
     ///
     /// # Errors
     ///

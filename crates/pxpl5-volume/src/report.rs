@@ -13,7 +13,7 @@ const RING_PX: u32 = 8;
 /// The report of one volume. All counts are exact. Each time comes from a model and is reported with its formula.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeReport {
-    /// Name and version of this record's layout.
+    /// Name and version of the JSON layout of this data.
     pub schema: &'static str,
     /// Name of the scene that was drawn.
     pub scene: String,
@@ -101,7 +101,7 @@ pub struct VolumeReport {
     pub host_seconds: f64,
 }
 
-/// The cost of a volume that the renderers of Pixel-Planes 5 draw. This is an addition to the SpatialGL paper.
+/// The cost of a volume that the renderers of Pixel-Planes 5 draw. The SpatialGL paper does not have these renderers.
 #[derive(Clone, Debug, Serialize)]
 pub struct PixelPlanesReport {
     /// Counts of clocks, commands, words and sent tiles.
@@ -186,9 +186,9 @@ pub struct ModelTimes {
 pub struct Override {
     /// Path of the number, as after `--set`.
     pub path: String,
-    /// Value of the number with which the volume was drawn.
+    /// Value of the setting with which the volume was drawn.
     pub value: Value,
-    /// Value or range that the SpatialGL paper gives.
+    /// Value or range of the setting that the SpatialGL paper gives.
     pub papers: Value,
 }
 

@@ -24,7 +24,7 @@ pub struct VolumeSettings {
     pub rotation: Rotation,
     /// Method of clipping the scene to a slice.
     pub clip: ClipKind,
-    /// Offset, bias and precision of the clips.
+    /// Offset and bias of the methods that clip to a slice, and the precision of their planes.
     pub clip_numbers: ClipNumbers,
     /// Rule for points that lie exactly in the planes between slices.
     pub ties: TieRule,
@@ -60,7 +60,7 @@ pub struct VolumeSettings {
     pub viewer: ViewerNumbers,
 }
 
-/// A table of parameters, and the first part of their paths.
+/// A table of parameters, with the first part of the paths of these parameters.
 pub(crate) type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
 
 impl VolumeSettings {
@@ -92,7 +92,7 @@ impl VolumeSettings {
         }
     }
 
-    /// Returns all tables of parameters, each with the first part of their paths.
+    /// Returns all tables of parameters, each with the first part of the paths of its parameters.
     pub(crate) fn tables(&self) -> [NamedTable<'_>; 9] {
         [
             ("display", &self.display),

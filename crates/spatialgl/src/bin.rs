@@ -30,14 +30,14 @@ pub struct BinLayout {
     pub tolerance: f64,
 }
 
-/// The choice of the planes with which the test for each bin decides if a primitive belongs to the bin.
+/// Choice of the plane equations that decide if a primitive belongs to a bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
     /// The test of a region uses only the two planes that bound the region, so a primitive gets into more bins than
-    /// with all planes. This is the first version in the SpatialGL paper.
+    /// with all planes. This test is the first version in the SpatialGL paper.
     TwoPlanes,
     /// The test of each region uses all planes of the layout.
     #[default]
@@ -45,7 +45,7 @@ pub enum Binning {
 }
 
 impl Binning {
-    /// All choices with their names in options and files.
+    /// All methods of binning, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 3] =
         [("off", Self::Off), ("two-planes", Self::TwoPlanes), ("all-planes", Self::AllPlanes)];
 }
@@ -67,7 +67,7 @@ pub enum BinTolerance {
 }
 
 impl BinTolerance {
-    /// All choices with their names in options and files.
+    /// All tolerances except fixed distances, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("clip", Self::OfTheClip), ("codes", Self::Codes)];
 }
 
@@ -165,8 +165,8 @@ impl Codes {
 /// second is true if any part of the primitive lies on this side.
 ///
 /// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
-/// plane is therefore drawn by the slices on both sides, because the half-open rule may assign the triangle to either
-/// side.
+/// plane is therefore drawn by the slices on both sides of the plane. The rule for points on a boundary may assign the
+/// triangle to either side.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {
         BinTolerance::Codes => return (least >= 0.0, most >= 0.0),

@@ -12,7 +12,8 @@ pub enum SliceClip {
     /// Clipping uses only the near and far planes of an orthographic projection. The volume is a prism as thick as the
     /// exact slice at the rim.
     Prism,
-    /// Each pass clips with two user clip planes. Each lobe (half) of the double wedge has its own pass.
+    /// Each pass clips with two user clip planes. The volume of a slice is a double wedge around the axis, and each
+    /// half (lobe) of the double wedge has its own pass.
     UserPlanes,
     /// The fragment program tests the product of the interpolated distances from both boundary planes of the slice.
     /// This gives the exact volume in one pass.
@@ -124,7 +125,7 @@ impl SliceClip {
         }
     }
 
-    /// Returns the slice volume that this method gives for a slice with these boundary planes.
+    /// Returns the slice volume that this method gives for a slice with the boundary planes `planes`.
     #[must_use]
     pub fn volume(self, planes: WedgePlanes, ties: TieRule, wedge: HalfWedge) -> SliceVolume {
         match self {

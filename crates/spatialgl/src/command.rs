@@ -1,5 +1,5 @@
 //! The recorded draw calls of a context: vertices in world coordinates, their primitives, and the rule for several
-//! fragments on one pixel. A recording does not depend on the display.
+//! fragments on one pixel. Recorded draw calls do not depend on the display.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,13 +17,12 @@ pub enum Combine {
 }
 
 impl Combine {
-    /// All choices with their names in options and files.
+    /// All rules for the colour, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 3] = [("last", Self::Last), ("max", Self::Max), ("add", Self::Add)];
 }
 
 pxpl5_sim::parameters::named!(Combine, "way to combine slices", Combine::ALL);
 
-/// The kind of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {
     Triangle,
@@ -33,7 +32,7 @@ pub(crate) enum Shape {
     Point(f64),
 }
 
-/// A triangle, line or point of a recording. A line uses two vertices, and a point uses one.
+/// A triangle, line or point of a command buffer. A line uses two vertices, and a point uses one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Primitive {
     pub(crate) shape: Shape,
@@ -58,10 +57,10 @@ impl Primitive {
     }
 }
 
-/// An immutable recording of draw calls. The recording is replayed for every slice and every pass, on any display.
+/// An immutable list of draw calls. The list is replayed for every slice and every pass, on any display.
 ///
-/// Vertices are in world coordinates, and their colours include the lighting. Each vertex was transformed once, during
-/// recording.
+/// Vertices are in world coordinates, and their colours include the lighting. Each vertex was transformed once, when
+/// its draw call was recorded.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CommandBuffer {
     pub(crate) positions: Vec<[f64; 3]>,

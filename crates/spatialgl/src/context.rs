@@ -89,8 +89,8 @@ pub struct TwoSidedLight {
     pub diffuse: f64,
 }
 
-/// The drawing state and the current recording of draw calls. [`DrawContext::present`] returns the recording and starts
-/// a new recording. The drawing state does not change.
+/// The drawing state, and the draw calls recorded since the last call of [`DrawContext::present`]. That function
+/// returns the recorded draw calls and does not change the drawing state.
 #[derive(Clone, Debug)]
 pub struct DrawContext {
     /// Matrix from object to world coordinates. The matrix must scale uniformly if there is a light.
@@ -129,8 +129,8 @@ impl DrawContext {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the range exceeds the buffer, if a point size or line width is not above zero, or if
-    /// the matrix is not finite.
+    /// Returns a [`SettingError`] if the range exceeds the buffer, or if the matrix is not finite. A point size and a
+    /// line width must be above zero.
     pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SettingError> {
         let vertices = buffer.len();
         let Some(run) = buffer.vertices.get(range.clone()) else {
@@ -166,7 +166,7 @@ impl DrawContext {
         Ok(())
     }
 
-    /// Ends the current recording of draw calls and returns the recording.
+    /// Returns the draw calls recorded so far, and starts a new list.
     #[must_use]
     pub fn present(&mut self) -> CommandBuffer {
         std::mem::take(&mut self.recording)

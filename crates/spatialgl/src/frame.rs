@@ -41,9 +41,10 @@ impl BitPlanes {
         &self.words[k as usize * words..][..words]
     }
 
-    /// Returns the words of a slice for writing.
+    /// Returns the words of a slice, so that they can be changed.
     ///
     /// # Panics
+    ///
     /// Panics if there is no such slice.
     pub fn slice_mut(&mut self, k: u32) -> &mut [u32] {
         let words = words_of_slice(self.size);
@@ -75,7 +76,6 @@ impl BitPlanes {
     }
 }
 
-/// Returns the number of words of one slice.
 pub(crate) const fn words_of_slice(size: Size) -> usize {
     (size[0] / 8) as usize * size[1] as usize
 }

@@ -17,8 +17,8 @@
 //! # Behaviour
 //!
 //! - A display consists of views and slice volumes ([`SpatialDisplay`]). The pipeline uses no other property of a
-//!   display, and a recording of draw calls does not depend on the display. [`SweptDisplay`] is the spinning screen of
-//!   the paper. [`PlaneStack`] and [`FlatDisplay`] show the same recordings.
+//!   display, and the recorded draw calls do not depend on the display. [`SweptDisplay`] is the spinning screen of
+//!   the paper. [`PlaneStack`] and [`FlatDisplay`] show the same draw calls.
 //! - The boundary planes of swept slices come from one table in which opposite planes are exact negatives. Neighbouring
 //!   slices therefore compute the same number for a point between them. [`TieRule`] assigns the point to one of the two
 //!   slices.

@@ -101,8 +101,8 @@ fn rows_of_slice(
     rows
 }
 
-/// Returns Pearson's correlation of the percentages of shown samples in two slices, over the rows with samples in both.
-/// Returns `None` if the percentage is constant in either slice.
+/// Returns Pearson's correlation of the percentages of shown samples in two slices, over the rows that have samples in
+/// both slices. Returns `None` if the percentage is constant in either slice.
 fn correlation(one: &[Connected], other: &[Connected]) -> Option<f64> {
     let both: Vec<[f64; 2]> = one
         .iter()

@@ -1,5 +1,5 @@
-//! Perspecta: a diffuse screen that rotates about its vertical axis, and a projector that flashes (strobes) a picture
-//! at each of 396 angles of a revolution. Each pixel has one bit per colour.
+//! Perspecta: a diffuse screen that rotates about its vertical axis, and a projector. The projector flashes (strobes) a
+//! picture at each of 396 angles of a revolution. Each pixel has one bit per colour.
 //!
 //! ```text
 //!  ring --map, tiles--> [ frame store 0 | frame store 1 ] --strobe k--> screen at k d --> [ viewer ] --> picture

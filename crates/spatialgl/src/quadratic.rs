@@ -1,15 +1,16 @@
-//! The hyperbolic clip on the plane of a triangle, as a quadratic in screen coordinates. This clip tests the product of
-//! the distances from both boundary planes of the slice, plus a bias. Hardware that evaluates quadratics can use this
-//! form, for example the renderers of Pixel-Planes 5. **Beyond the SpatialGL paper.**
+//! The hyperbolic clip as a quadratic function over the plane of a triangle, in screen coordinates. The hyperbolic clip
+//! multiplies the distances from both boundary planes of a slice, adds a bias, and tests the sign. Hardware that
+//! evaluates quadratics can use this form, for example the renderers of Pixel-Planes 5. **Beyond the SpatialGL paper.**
 
 use crate::clip::HalfWedge;
 
 /// The quadratic Q(u, v) = uu u^2 + uv u v + vv v^2 + u u + v v + one. The slice contains the samples at which Q is not
 /// negative.
 ///
-/// Q is A B + b, with A B = u^2 S^2 - s^2 C^2 on the triangle's plane s = a u + c v + d. S and C are the sine and the
-/// cosine of half the angle between slices. Coordinates are pixels of the slice, and values are square pixels. The
-/// projection is orthographic. Projections with a shear or from a perspective eye also give quadratics.
+/// Q is the product of the distances from both boundary planes of the slice, plus the bias b. On the triangle's plane s
+/// = a u + c v + d, the product is u^2 S^2 - s^2 C^2. S and C are the sine and the cosine of half the angle between
+/// slices. Coordinates are pixels of the slice, and values are square pixels. The projection is orthographic.
+/// Projections with a shear or from a perspective eye also give quadratics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipQuadratic {
     /// Coefficient of u^2, dimensionless.
@@ -78,7 +79,7 @@ mod tests {
 
     const WEDGE: fn() -> HalfWedge = || HalfWedge::new(396, 384.0);
 
-    /// Checks case 27 of the specification, to its last digit.
+    /// Compares the coefficients and the values of a quadratic with known numbers, to their last digit.
     #[test]
     fn case_27_the_quadratic_of_a_plane() {
         let q = ClipQuadratic::of_plane([0.5, -0.25], -20.0, WEDGE(), 0.25);

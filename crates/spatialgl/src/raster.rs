@@ -27,13 +27,14 @@ pub enum Coverage {
     /// A primitive covers the pixels whose centres lie inside the primitive.
     #[default]
     Sampled,
-    /// The pixels of `Sampled`, plus a line of adjacent pixels along the intersection with the slice. **Beyond the
-    /// SpatialGL paper**, which calls for this coverage but states that GPUs do not offer it.
+    /// The pixels of `Sampled`, plus a line of adjacent pixels along the curve in which the primitive intersects the
+    /// plane of the slice. **Beyond the SpatialGL paper**, which calls for this coverage but states that GPUs do not
+    /// offer it.
     Connected,
 }
 
 impl Coverage {
-    /// All choices with their names in options and files.
+    /// Both rules for covered pixels, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("sampled", Self::Sampled), ("connected", Self::Connected)];
 }
 
@@ -57,13 +58,13 @@ pub struct SliceStats {
 /// drawing.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceWork<'a> {
-    /// Recording whose primitives are drawn.
+    /// Recorded draw calls, which contain the primitives.
     pub commands: &'a CommandBuffer,
     pub bin: &'a Bin,
     pub coverage: Coverage,
 }
 
-/// A renderer of slices. [`SliceImage::clear`] has cleared the image in which a slice is drawn.
+/// A renderer of slices, which draws into an image that [`SliceImage::clear`] has cleared.
 pub trait SliceRenderer: Send + Sync {
     /// Draws one slice with all its passes.
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats;

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Choice of the slices of a turn that are drawn. Slices that are not drawn are mirrored copies of drawn slices.
+/// Choice of the slices of a turn that are drawn. All other slices are mirrored copies of drawn slices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strobes {
@@ -32,7 +32,7 @@ pub enum Strobes {
 }
 
 impl Strobes {
-    /// All choices with their names in options and files.
+    /// Both choices of drawn slices, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("each", Self::Each), ("mirror", Self::Mirror)];
 }
 
@@ -58,8 +58,8 @@ pub struct VolumeConfig {
 }
 
 impl VolumeConfig {
-    /// Returns the SpatialGL paper's algorithms. The bins have a tolerance, so no fragments are lost, and Bayer's
-    /// matrix has 8 x 8 elements.
+    /// Returns settings with the algorithms of the SpatialGL paper: bins, tiles, and all slices of a turn drawn. The
+    /// bins have a tolerance, so that no fragment is lost. The dither matrix has 8 x 8 elements.
     ///
     /// # Panics
     /// Never panics, because the matrix has a valid size.
@@ -147,7 +147,7 @@ impl Bins {
     }
 }
 
-/// The words of a slice, and of its mirror image if there is one. All pixels are dark at first.
+/// Memory for the packed pixels of a slice, and of its mirror image if there is one. All pixels are dark at first.
 struct SliceWords<'a> {
     own: &'a mut [u32],
     turned: Option<&'a mut [u32]>,

@@ -1,5 +1,5 @@
-//! Recordings of scenes from `pxpl5-scene`. A scene is centred on the axis and scaled to a given radius, and its
-//! spheres become triangles.
+//! Conversion of scenes of the crate `pxpl5-scene` to draw calls. A scene is centred on the axis and scaled to a given
+//! radius, and its spheres become triangles.
 
 use crate::command::CommandBuffer;
 use crate::context::{ColouredVertex, DrawContext, Topology, TwoSidedLight, VertexBuffer};
@@ -19,7 +19,7 @@ pub const SCENE_REACH: f64 = 0.9;
 ///
 /// # Errors
 ///
-/// Returns a [`SettingError`] if the scene has vertices that a recording cannot hold.
+/// Returns a [`SettingError`] if a vertex of the scene is not finite.
 pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuffer, SettingError> {
     let (centre, reach) = scene.bounding_sphere();
     // A scene of a single point is not scaled.

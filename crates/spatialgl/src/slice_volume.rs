@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The rule for a point exactly on a boundary plane of a wedge. The SpatialGL paper's rule "signs equal" is ambiguous
-/// there.
+/// The rule for a point exactly on a boundary plane of a slice's volume, which is a double wedge around the axis. The
+/// SpatialGL paper's rule "signs equal" is ambiguous for such a point.
 ///
-/// The values `a` and `b` are the signed distances from the two boundary planes. Both are positive in the + lobe: the
-/// half of the double wedge on the +u side.
+/// The values `a` and `b` are the signed distances of the point from the two boundary planes. Both are positive in the
+/// positive lobe: the half of the double wedge on the +u side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
@@ -26,7 +26,7 @@ pub enum TieRule {
 }
 
 impl TieRule {
-    /// All choices with their names in options and files.
+    /// All rules for points on a boundary, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 4] = [
         ("half-open", Self::HalfOpen),
         ("product-positive", Self::ProductPositive),
@@ -61,9 +61,10 @@ impl TieRule {
 /// z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WedgePlanes {
-    /// Coefficients of x and z of plane A. The plane's positive side contains the + lobe (half of the double wedge).
+    /// Coefficients of x and z of plane A. Points of the positive lobe (half of the double wedge) lie on its positive
+    /// side.
     pub a: [f64; 2],
-    /// Coefficients of x and z of plane B. The plane's positive side contains the + lobe.
+    /// Coefficients of x and z of plane B. Points of the positive lobe lie on its positive side.
     pub b: [f64; 2],
     /// Fraction bits to which both planes are rounded at every sample, or `None` for double precision.
     pub fraction_bits: Option<u32>,

@@ -96,14 +96,14 @@ pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
 parameter_table! {
     /// The Polhemus Fastrak, a magnetic tracker.
     pub struct Fastrak {
-        /// Measurement rate of the Fastrak, shared by all receivers.
+        /// Number of measurements that the Fastrak makes per second. All receivers share these measurements.
         rate: 120, "Hz", Published, 120..=120 in 1..=10000, "PF";
         /// Time from the Fastrak's sync signal to the first character on the serial cable.
         sync_to_output: f64 = 5.5, "ms", Published, 5.5..=5.5 in 0.0..=10000.0, "PF";
         /// Effective latency of the Fastrak, from the middle of the measurement to the first character on the serial
         /// cable.
         latency: f64 = 3.75, "ms", Published, 3.75..=5.5 in 0.0..=10000.0, "PF";
-        /// Length of an ASCII record of the Fastrak.
+        /// Length of the text that the Fastrak sends for one measurement.
         record: 47, "bytes", Published, 8..=200 in 1..=1000, "PF";
         /// Rate of the Fastrak's serial cable.
         baud: 115200, "baud", Published, 300..=115200 in 300..=1000000, "PF";
@@ -115,11 +115,11 @@ parameter_table! {
         position_noise: f64 = 0.2, "mm", Assumed, 0.0..=0.8 in 0.0..=10000.0, "PF gives no value; assumed below the tracker's static accuracy";
         /// Random orientation error of the Fastrak that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.03, "deg", Assumed, 0.0..=0.15 in 0.0..=90.0, "PF gives no value; assumed below the tracker's static accuracy";
-        /// Constant position error of the Fastrak, the same in every report of a run. The value is the root mean square
-        /// of this error along each axis, over all seeds.
+        /// Constant position error of the Fastrak. Each run draws the error once from its seed. The value is the root
+        /// mean square along each axis, over all seeds.
         position_bias: f64 = 0.8, "mm", Published, 0.0..=2.0 in 0.0..=10000.0, "PF";
-        /// Constant orientation error of the Fastrak, the same in every report of a run. The value is the root mean
-        /// square of this error about each axis, over all seeds.
+        /// Constant orientation error of the Fastrak. Each run draws the error once from its seed. The value is the
+        /// root mean square about each axis, over all seeds.
         orientation_bias: f64 = 0.15, "deg", Published, 0.0..=0.5 in 0.0..=90.0, "PF";
     }
 }
@@ -137,13 +137,14 @@ parameter_table! {
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "none published: less than the static accuracy";
         /// Random orientation error of the Flock of Birds that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "none published: less than the static accuracy";
-        /// Constant position error of the Flock of Birds, the same in every report of a run. The value is the root mean
-        /// square of this error along each axis, over all seeds.
+        /// Constant position error of the Flock of Birds. Each run draws the error once from its seed. The value is the
+        /// root mean square along each axis, over all seeds.
         position_bias: f64 = 2.5, "mm", Published, 0.0..=5.0 in 0.0..=10000.0, "Ascension data sheet";
-        /// Constant orientation error of the Flock of Birds, the same in every report of a run. The value is the root
-        /// mean square of this error about each axis, over all seeds.
+        /// Constant orientation error of the Flock of Birds. Each run draws the error once from its seed. The value is
+        /// the root mean square about each axis, over all seeds.
         orientation_bias: f64 = 0.5, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "Ascension data sheet";
-        /// Time from the first report of a Flock of Birds until a host with a patched Unix kernel crashes.
+        /// Time from the first report of a Flock of Birds to the crash of the host. Only a host whose Unix kernel is
+        /// patched to receive every character at once crashes.
         crash: f64 = 1000.0, "ms", Assumed, 0.0..=600000.0, "TR94 says that it crashes, not when";
     }
 }
@@ -159,11 +160,11 @@ parameter_table! {
         position_noise: f64 = 1.5, "mm", Assumed, 0.6..=2.0 in 0.0..=10000.0, "at most WARD92's resolution of 2 mm, at least 2/sqrt(12); between by the angle's";
         /// Random orientation error of the optical ceiling tracker that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.15, "deg", Assumed, 0.06..=0.2 in 0.0..=90.0, "at most WARD92's resolution of 0.2 deg, at least 0.2/sqrt(12); with 0.1 to 0.15 prediction cuts the error 2 to 3 times below 80 ms, as A95 measured on this tracker";
-        /// Constant position error of the optical ceiling tracker, the same in every report of a run. The value is the
-        /// root mean square of this error along each axis, over all seeds.
+        /// Constant position error of the optical ceiling tracker. Each run draws the error once from its seed. The
+        /// value is the root mean square along each axis, over all seeds.
         position_bias: f64 = 0.0, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "WARD92 gives none; 0 for a calibrated ceiling";
-        /// Constant orientation error of the optical ceiling tracker, the same in every report of a run. The value is
-        /// the root mean square of this error about each axis, over all seeds.
+        /// Constant orientation error of the optical ceiling tracker. Each run draws the error once from its seed. The
+        /// value is the root mean square about each axis, over all seeds.
         orientation_bias: f64 = 0.0, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "WARD92 gives none; 0 for a calibrated ceiling";
     }
 }
@@ -171,7 +172,7 @@ parameter_table! {
 parameter_table! {
     /// The Polhemus 3Space, a magnetic tracker, above a steel floor.
     pub struct ThreeSpace {
-        /// Measurement rate of the 3Space, shared by all receivers.
+        /// Number of measurements that the 3Space makes per second. All receivers share these measurements.
         rate: 60, "Hz", Assumed, 30..=60 in 1..=10000, "usual figure of the product";
         /// Latency of the 3Space, from measurement to output.
         latency: f64 = 28.5, "ms", Assumed, 10.0..=90.0 in 0.0..=10000.0, "tens of milliseconds";
@@ -179,17 +180,17 @@ parameter_table! {
         position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "as the Flock";
         /// Random orientation error of the 3Space that changes with each report, rms about each axis.
         orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "as the Flock";
-        /// Constant position error of the 3Space, the same in every report of a run. The value is the root mean square
-        /// of this error along each axis, over all seeds.
+        /// Constant position error of the 3Space. Each run draws the error once from its seed. The value is the root
+        /// mean square along each axis, over all seeds.
         position_bias: f64 = 2.5, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "as the Flock";
-        /// Constant orientation error of the 3Space, the same in every report of a run. The value is the root mean
-        /// square of this error about each axis, over all seeds.
+        /// Constant orientation error of the 3Space. Each run draws the error once from its seed. The value is the root
+        /// mean square about each axis, over all seeds.
         orientation_bias: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
-        /// Depth of the position error by metal, at 1 m from the transmitter. Near metal, measured positions on a flat
-        /// surface form a bowl.
+        /// Position error that metal in the floor causes at 1 m from the transmitter. With this error, measured
+        /// positions on a flat surface form a bowl.
         bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
         /// Distance from the transmitter at which the position error by metal is half of `bowl` times the squared
-        /// distance in metres. With this error, measured positions on a flat surface form a bowl.
+        /// distance in metres. Much farther away, the error is nearly constant.
         bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0 in 0.001..=1000.0, "keeps the error finite out of range";
     }
 }
@@ -277,11 +278,12 @@ parameter_table! {
 parameter_table! {
     /// Assumptions of the prediction filters about noise and motion.
     pub struct Filter {
-        /// Assumed strength of random changes of the head's acceleration. The value is the root of the spectral density
-        /// of white jerk in the position filter.
+        /// Strength of random changes of the head's acceleration, as the position filter assumes it. The filter treats
+        /// jerk (the change of acceleration) as white noise. The value is the root of the spectral density of this
+        /// noise.
         position_jerk: f64 = 0.4, "m/s^3/sqrt(Hz)", Assumed, 0.01..=1000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 0.2 to 0.6; used where the filter is not tuned";
-        /// Assumed strength of random changes of the head's angular acceleration. The value is the root of the spectral
-        /// density of white jerk in the orientation filter.
+        /// Strength of random changes of the head's angular acceleration, as the orientation filter assumes it. The
+        /// filter treats angular jerk as white noise. The value is the root of the spectral density of this noise.
         orientation_jerk: f64 = 14.0, "rad/s^3/sqrt(Hz)", Assumed, 0.1..=10000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 10 to 20; used where the filter is not tuned";
         /// Standard deviation that a filter assumes for the head's speed before the first report.
         start_speed: f64 = 1.0, "m/s", Assumed, 0.01..=10.0 in 0.000001..=1000.0, "above the mean translation speed";
@@ -291,8 +293,8 @@ parameter_table! {
         start_turn: f64 = 2.0, "rad/s", Assumed, 0.01..=20.0 in 0.000001..=1000.0, "the 95th percentile of recorded traces";
         /// Standard deviation that a filter assumes for the head's angular acceleration before the first report.
         start_turn_acceleration: f64 = 20.0, "rad/s^2", Assumed, 0.01..=1000.0 in 0.000001..=100000.0, "100 ms to reach the above";
-        /// Distance, as a number of reports, between the two poses whose difference gives a velocity. A value of 1
-        /// stands for neighbouring reports.
+        /// Number of reports from the older to the newer of the two poses whose difference gives a velocity. With 1,
+        /// the two poses are from successive reports.
         baseline: 4, "reports", Assumed, 1..=16, "noise of the velocity falls with it, delay rises";
         /// Longest time ahead for which a predictor extrapolates. For later instants the predictor returns the last
         /// reported pose.
@@ -314,8 +316,8 @@ parameter_table! {
         /// Angle between two successive reported orientations that noise alone can cause. This angle is subtracted
         /// before the turn is compared with the limit `turn`.
         angle: f64 = 6.0, "deg", Assumed, 0.1..=90.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
-        /// Number of successive reports, rejected because of a jump of the pose, after which a predictor accepts the
-        /// new pose.
+        /// Number of successive reports that a predictor rejects after a jump of the pose. The predictor accepts the
+        /// pose of the next report and restarts.
         patience: 5, "reports", Assumed, 1..=100, "42 ms at 120 Hz";
         /// Time without reports after which a filter restarts with unknown velocities.
         gap: f64 = 250.0, "ms", Assumed, 10.0..=10000.0, "30 reports at 120 Hz; longer than any planned prediction";

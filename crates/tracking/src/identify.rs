@@ -117,7 +117,7 @@ impl PredictorConfig {
 }
 
 /// Writes the value of a parameter only if the value differs from the papers' value. Thus an experiment with the
-/// papers' values keeps the name that it had before the parameter became a setting.
+/// papers' values keeps its identifier from earlier versions, in which the parameter was no setting.
 fn write_unusual(settings: &mut SettingSink, of: &str, entry: &Entry) {
     if entry.value != entry.info.papers {
         settings(&format!("{of}.{}", entry.info.name), &entry.value);

@@ -1,8 +1,9 @@
 //! Lists the settings of motions, trackers and predictors as keys and values. The names of experiments derive from
 //! these texts. Renaming a type or a field must therefore not change a text.
 //!
-//! [`Display`] formats every number. The text of an `f64` is the shortest text that parses to the same number. The
-//! functions destructure each struct, so that code without a newly added field does not compile.
+//! [`Display`] formats every number. The text of an `f64` is the shortest text that parses to the same number. Each
+//! function names all fields of its struct. If a struct gets a new field, the code does not compile until the function
+//! handles this field.
 
 use core::fmt::Display;
 
@@ -13,7 +14,6 @@ use crate::pose::Pose;
 /// A callback that receives settings one after the other, each as a key and a value.
 pub type SettingSink<'a> = dyn FnMut(&str, &dyn Display) + 'a;
 
-/// Writes the three coordinates of a position or direction as one setting.
 pub(crate) fn write_vector(settings: &mut SettingSink, key: &str, vector: DVec3) {
     let [x, y, z] = vector.to_array();
     settings(key, &format_args!("{x} {y} {z}"));

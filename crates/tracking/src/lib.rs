@@ -4,8 +4,8 @@
 //! ```text
 //!  motion ──pose(t)──▶ tracker ──▶ cable ──▶ host port ──Report──▶ predict ──pose(t')──▶ view
 //!    │                  rate, latency,  47 bytes   polled every        none, v, a,        pixel error,
-//!    │                  noise, filter,  a record   30 ms, or           Kalman             dual list, VDRT,
-//!    │                  metal, faults              per character                          frameless
+//!    │                  noise, filter,  a record   30 ms, or           Kalman             raster offset,
+//!    │                  metal, faults              per character                          dual list, frameless
 //!    └──▶ rig: pendulum, photodiodes, D/A line, oscilloscope
 //! ```
 //!

@@ -9,8 +9,8 @@ use crate::rotation;
 /// looks along its own -z axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Position of the head in the world, metres: the point between the eyes. With a single picture this is the
-    /// position of the eye.
+    /// Position of the head in the world, metres. This is the point between the eyes, or the eye itself if there is
+    /// only one picture.
     pub position: DVec3,
     /// Unit quaternion that rotates head axes into world axes.
     pub orientation: DQuat,

@@ -7,8 +7,8 @@
 //! output to the step of the screen.
 //!
 //! This module has the parts outside of the emulated system: the pendulum and the oscilloscope. The module also has the
-//! host's detection of low points. The caller simulates the system and supplies the steps of the host's D/A output and
-//! the light on the screen.
+//! host's detection of low points. A program that uses this module simulates the system and supplies the steps of the
+//! host's D/A output and the light on the screen.
 
 mod detection;
 mod measurement;
@@ -28,8 +28,8 @@ use crate::tracker::TrackerModel;
 /// Greatest time without a detected low point, ps. After this time the measurement fails.
 const PATIENCE_PS: u64 = 10 * PS_PER_S;
 
-/// Number of equal parts into which half a swing is divided. Noise may make the detection of a low point early by up to
-/// one of these parts.
+/// Divisor of half a swing. Noise may make the detection of a low point early by at most half a swing divided by this
+/// number.
 const EARLY_PART: u64 = 10;
 
 /// The pendulum rig, which measures latency from outside the machine. The pendulum's pivot and the tracker's origin are
@@ -122,9 +122,9 @@ impl PendulumRig {
         Ok(Measurement::new(self.detection, tracker, place_ps, outside.ok_or(no_light)?, inside))
     }
 
-    /// Returns the instant of the pendulum's low point that caused a step of the host's D/A output. This is the last
-    /// low point before the step, or the next low point if noise caused an early detection. The result is correct for
-    /// tracking latencies below nine tenths of a half swing, 0.64 s.
+    /// Returns the instant of the pendulum's low point that caused a step of the host's D/A output. The result is the
+    /// last low point before the step, or the next low point if noise caused an early detection. The result is correct
+    /// for tracking latencies below nine tenths of a half swing, 0.64 s.
     fn low_point_before(&self, dac_ps: u64) -> u64 {
         let half_ps = self.half_swing_ps();
         let guess = dac_ps.saturating_add(half_ps / EARLY_PART).saturating_sub(half_ps / 2) / half_ps;

@@ -54,8 +54,8 @@ pub fn slerp(from: DQuat, to: DQuat, s: f64) -> DQuat {
     (exp(difference(from, to) * s) * from).normalize()
 }
 
-/// Returns the rotation by yaw about the y axis, then by pitch about the turned x axis, then by roll about the turned z
-/// axis (radians).
+/// Returns the rotation by three angles in radians: yaw about the y axis, then pitch about the turned x axis, then roll
+/// about the turned z axis.
 pub fn from_yaw_pitch_roll(yaw: f64, pitch: f64, roll: f64) -> DQuat {
     about_y(yaw) * about_x(pitch) * about_z(roll)
 }

@@ -1,4 +1,4 @@
-//! Arithmetic of the reference model at the gate level, in words of a given width.
+//! Arithmetic of the reference model at the gate level, for words of any number of bits.
 
 /// Truncates a number to a signed word of `bits` bits. Higher bits are lost.
 pub(super) const fn signed(value: i64, bits: u64) -> i64 {

@@ -8,7 +8,6 @@ use crate::texel::{DEPTH_FARTHEST, FaceSet, TexelFormat, narrowed, widened};
 pub(super) struct Cell {
     /// Stored bits of the depth. All bits are one for an empty texel.
     pub(super) depth: u32,
-    /// Stored bits of the colour.
     pub(super) colour: u32,
 }
 
@@ -55,7 +54,6 @@ impl BankedMemory {
         self.banks[texel.bank() as usize][self.place(texel)]
     }
 
-    /// Returns the depth of an empty texel.
     pub(super) const fn farthest(&self) -> u32 {
         DEPTH_FARTHEST >> (24 - self.format.depth_bits)
     }

@@ -56,7 +56,7 @@ fn nearer(first: Candidate, second: Candidate) -> Candidate {
     nearest
 }
 
-/// Interpolates the four texels of every candidate that is left in the comparator tree.
+/// Interpolates the four texels of each memory that the comparators have not yet eliminated.
 pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) {
     let Some(footprint) = registers.footprint else { return };
     let products = footprint.weights(composition.weight_bits);
@@ -90,7 +90,7 @@ pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[
     }
 }
 
-/// Rule for rounding away the bits below the last bit of a word.
+/// Rule for rounding a number when its lowest bits are removed.
 #[derive(Clone, Copy)]
 enum Rounding {
     Nearest,

@@ -95,8 +95,9 @@ impl CellAssignment {
         if memory == 0 { 0.0 } else { self.inside_block(place, self.last_ring(memory - 1)) }
     }
 
-    /// Returns the horizontal distance, in metres, between a position and the border of memory k = `memory` to memory k
-    /// + 1, which is drawn less often. The distance is 0 outside the border.
+    /// Returns the horizontal distance, in metres, from a position inside the outer border of memory k = `memory` to
+    /// this border. Beyond the border lie the cells of memory k + 1, which is drawn less often. Outside the border, the
+    /// distance is 0.
     ///
     /// Returns `None` for the last memory (the least often drawn), which has no outer border.
     #[must_use]

@@ -29,8 +29,8 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 impl PriorityTiming {
-    /// Checks that all parameters are within their limits, and that the falloff (distance over which warping decreases)
-    /// is not longer than the side of a cell.
+    /// Checks that all parameters are within their limits. The falloff (distance over which warping decreases) must not
+    /// be longer than the side of a cell.
     ///
     /// # Errors
     ///

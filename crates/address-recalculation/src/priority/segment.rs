@@ -30,7 +30,7 @@ pub struct CutVertex {
 pub struct Segmentation {
     /// The vertices of the mesh, followed by the vertices that cuts have created.
     pub vertices: Vec<DVec3>,
-    /// Origin of each vertex that a cut has created, in the order of `vertices`. The origin serves to interpolate
+    /// Origin of each vertex that a cut has created, in the order of `vertices`. Programs use the origin to interpolate
     /// colours and normals.
     pub cuts: Vec<CutVertex>,
     /// The triangles in each cell, with the orientation of the original triangles.
@@ -38,7 +38,7 @@ pub struct Segmentation {
 }
 
 impl Segmentation {
-    /// Cuts triangles at the planes x = i a and z = i a for all integers i, where a is the side of a cell.
+    /// Cuts triangles at the planes x = i a and z = i a for all integers i. The length a is the side of a cell.
     ///
     /// # Errors
     ///

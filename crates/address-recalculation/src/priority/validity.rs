@@ -19,10 +19,10 @@ pub struct Threshold {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Translation {
-    /// 2 d sin(theta / 2) for a point at distance d, as in a drawing in the papers on priority rendering.
+    /// The eye may move by 2 d sin(theta / 2), a chord, as in a drawing in the papers on priority rendering.
     #[default]
     Chord,
-    /// d sin(theta), the shortest movement of the eye that can change the direction of a point at distance d by theta.
+    /// The eye may move by d sin(theta), which is the shortest movement that can change the direction by theta.
     Sine,
 }
 

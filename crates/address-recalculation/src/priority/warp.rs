@@ -42,8 +42,8 @@ impl Falloff {
     }
 }
 
-/// The displacement of a memory's vertices near a border. Beyond the border lie the objects of the slower memory: among
-/// the memories that are drawn less often, the one that is drawn most often.
+/// The displacement of a memory's vertices near a border. Beyond the border lie the objects of the next memory in the
+/// order of indices, which is drawn less often. This memory is called the slower memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionWarp {
     falloff: Falloff,
@@ -66,7 +66,7 @@ impl RegionWarp {
     }
 
     /// Returns the position at which a vertex is drawn. `to_slower_m` is the vertex's distance to the border of the
-    /// less often drawn memory, or `None` if there is none.
+    /// slower memory, or `None` if no memory is slower.
     ///
     /// A vertex on the border moves by the whole displacement. Its direction and depth are then the same in both
     /// memories.

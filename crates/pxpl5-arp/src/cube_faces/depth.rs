@@ -11,7 +11,7 @@ pub struct DepthRange {
 }
 
 impl DepthRange {
-    /// Creates the range between a near and a far plane, given in metres.
+    /// Creates the range from the near plane at `near_m` to the far plane at `far_m`, metres.
     ///
     /// # Errors
     ///

@@ -27,13 +27,11 @@ impl Linear {
         self.y * y + self.c
     }
 
-    /// Returns the weighted sum of three functions.
     pub(crate) fn sum(parts: [Self; 3], times: [f64; 3]) -> Self {
         Self::of(parts[0].vector() * times[0] + parts[1].vector() * times[1] + parts[2].vector() * times[2])
     }
 }
 
-/// The edge functions of a triangle on a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edges {
     /// Edge functions, positive inside the triangle. Function i belongs to the edge opposite to corner i.
@@ -69,10 +67,10 @@ impl Edges {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
     pub(crate) edge: Linear,
-    /// True if points exactly on the edge count as inside. The inside of such an edge has larger x, or larger y if the
-    /// edge is horizontal.
+    /// True for left edges and horizontal upper edges. Points exactly on such an edge count as inside.
     has_edge: bool,
-    /// Factor that converts the constant part of a row's edge function to a number of columns.
+    /// Factor that converts the constant part of the edge function in a row to the column of the crossing, relative to
+    /// `middle`.
     columns_of: f64,
     /// Column index of the face's middle, with a fraction.
     middle: f64,
@@ -93,8 +91,9 @@ impl Crossing {
 
     /// Restricts a range of columns to the columns on the inner side of this edge.
     ///
-    /// A quotient estimates the column at which the edge crosses the row. The function `takes` then determines the
-    /// exact column. The rounded value of the edge function rises or falls monotonically along a row.
+    /// A quotient estimates the column at which the edge crosses the row. The function `takes` then finds the exact
+    /// column. There is only one such column, because the rounded value of the edge function only rises or only falls
+    /// along a row.
     #[inline(always)]
     pub(crate) fn narrow(&self, row: f64, columns: Columns, range: &mut [i64; 2]) {
         // A horizontal edge accepts the whole row or nothing.

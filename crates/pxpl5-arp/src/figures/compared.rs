@@ -19,8 +19,8 @@ fn small(settings: &WalkSettings) -> WalkSettings {
 
 /// Counts the texels in which the combined picture of all memories differs from the picture of a single memory.
 ///
-/// All memories are drawn at once from one position. The single memory draws the same segments in the order of the
-/// memories.
+/// All memories are drawn at once from one position. The single memory draws the same parts of objects (segments), in
+/// the order of the memories.
 pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, SettingError> {
     let settings = small(settings);
     // Draw all memories from one position.
@@ -42,8 +42,9 @@ pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVe
     Ok(all.filter(|texel| composed(*texel) != one.texel(*texel)).count() as u64)
 }
 
-/// Number of frames that a renderer of [`STALLED_TRIANGLES_PER_S`] needs to draw all memories once.
+/// Number of frames after which the stalled renderer has drawn all memories once.
 const FRAMES: u64 = 200;
+/// Triangles that the stalled renderer draws per second.
 const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 
 /// Counts the pixels that differ between the pictures of an ideal renderer and of a stalled renderer, while a head at a

@@ -1,5 +1,5 @@
 //! Numbers that are computed from numbers printed in the paper CPR05 (Chow, Pose and Regan, ACSC 2005). No simulation
-//! could change these results, so the results have no verdict.
+//! could change these results, so they are no evidence for the model.
 
 use super::fit::RATES_HZ;
 use address_recalculation::ArpTiming;
@@ -7,15 +7,15 @@ use address_recalculation::priority::{draws_per_s, saved_percent};
 use pxpl5_sim::figures::Definition;
 use pxpl5_sim::parameters::Provenance;
 
-/// Number of segments (parts of objects) in each display memory, with and without cutting objects at the borders of
-/// cells (table 2 of the paper CPR05).
+/// Number of segments (parts of objects) in each display memory, from table 2 of the paper CPR05. The first row is for
+/// objects that are cut at the borders of cells, and the second row for uncut objects.
 pub const SEGMENTS: [[u64; 4]; 2] = [[87, 14, 20, 62], [160, 8, 3, 42]];
 
 fn definition(id: &'static str, statement: String, value: f64, unit: &'static str) -> Definition {
     Definition { id, statement: statement.into(), source: "derived", value, unit, provenance: Provenance::Derived }
 }
 
-/// Returns all definitions.
+/// Returns all numbers that follow from printed numbers.
 #[must_use]
 pub fn definitions() -> Vec<Definition> {
     let mut all = Vec::new();

@@ -30,9 +30,9 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
     size_limits(&mut text, &all.size_limits);
     let _ = writeln!(
         text,
-        "\n## E9: a straight edge through the lens\n\nThe experiment shows a vertical edge, 20 degrees to the right, through a radial lens with k1 = 0.32. The display\n\
-         chooses the texels for this lens. The edge bends by {:.1} pixels on the screen. Seen through the lens, the edge bends\n\
-         by {:.2} pixels. The edge counts as straight if it bends by less than a pixel.",
+        "\n## E9: a straight edge through the lens\n\nExperiment E9 shows a vertical edge, 20 degrees to the right, through a radial lens with k1 = 0.32. The display chooses\n\
+         the texels for the radial lens. The edge bends by {:.1} pixels on the screen. Seen through the lens, the edge bends by\n\
+         {:.2} pixels. The edge counts as straight if it bends by less than a pixel.",
         all.lens_px[0], all.lens_px[1]
     );
     pictures(&mut text);
@@ -42,9 +42,9 @@ pub fn markdown(all: &Experiments, rows: &[FigureRow]) -> String {
 fn pictures(text: &mut String) {
     text.push_str(
         "\n## E10: Pictures\n\n\
-         The command `pxpl5 arp figures --out DIR` makes the pictures. The command also writes pictures of the effect of a lens,\n\
-         of the errors, and of the updates of the memories. The papers' pictures cannot be reproduced, because their scene is\n\
-         not known. The project's pictures show the same effects in the scene `gallery`.\n\n\
+         The command `pxpl5 arp figures --out DIR` makes the pictures. The command `pxpl5 arp figures --out DIR` also writes\n\
+         pictures of the effect of a lens, of the errors, and of the updates of the memories. The papers' pictures cannot be\n\
+         reproduced, because their scene is not known. The project's pictures show the same effects in the scene `gallery`.\n\n\
          | experiment | figures of the papers | pictures |\n|---|---|---|\n",
     );
     for (experiment, figures, names) in OF_FIGURES {
@@ -57,7 +57,7 @@ fn pictures(text: &mut String) {
          memory 1 is yellow, memory 2 is green, and the slowest memory 3 is blue. Black pixels are tears.\n\n\
          ![Tears](pictures/arp-tears.png)\n\nThe scene is cut into segments, and vertices are not warped. The background is white, so white gaps appear between\n\
          segments that were drawn from different positions.\n\n\
-         ![Warped](pictures/arp-warped.png)\n\nThe picture shows the frame of the previous picture, drawn with warped vertices.\n\n\
+         ![Warped](pictures/arp-warped.png)\n\nThe picture *Warped* shows the same frame as the picture *Tears*, drawn with warped vertices.\n\n\
          ![Errors](pictures/arp-error.png)\n\nThe picture shows the error of each pixel, which arises because the memory was drawn from another position of the eye.\n\
          The scale of the colours ends at an error of two pixels.\n",
     );
@@ -76,16 +76,16 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          the path of the scene at 1 m/s for {EXPERIMENT_FRAMES} frames of 1/60 s. The renderer is ideal: it draws without delay.\n\
          The column *provenance* has these values:\n\n\
          - *checked*: The row is simulated, and no number was fitted.\n\n\
-         - *fitted*: One number of the model was chosen so that the model reproduces this row.\n\n\
+         - *fitted*: One number of the model was chosen so that the model reproduces the row.\n\n\
          - *depends on the interpretation*: The row is met if the printed number lies between the smallest and the largest\n  \
            result of all interpretations of the papers.\n\n\
          - *cannot be reproduced, shape checked*: The row depends on conditions that the papers do not print.\n\n\
-         The papers do not print their scene, path, cells, threshold and resolution. For rows that depend on these conditions,\n\
-         only these properties (the *shape*) are checked: The update rates fall from memory to memory. Cutting the scene moves\n\
-         segments to slower memories and saves drawing, and the cuts cause tears.\n\n\
-         The table has only rows for which the code under test could have given another value. Other numbers are listed under\n\
-         [Definitions](#definitions).\n\n\
-         The model meets {met} of {} rows that can be reproduced. Of the other {} rows, {shown} have the printed shape.\n\n",
+         The papers do not print their scene, path, cells, threshold and resolution. For rows whose conditions are not printed,\n\
+         only the following properties (the *shape*) are checked: The update rates fall from memory to memory. Cutting the scene\n\
+         moves segments to slower memories and saves drawing, and the cuts cause tears.\n\n\
+         The table has only rows for which the code under test could have given another value. The section\n\
+         [Definitions](#definitions) lists the numbers that follow from other numbers by arithmetic.\n\n\
+         The model meets {met} of {} rows that can be reproduced. Of the {} rows that cannot be reproduced, {shown} have the printed shape.\n\n",
         numbers.count(),
         shapes.count()
     );
@@ -117,7 +117,7 @@ pub fn missed(rows: &[FigureRow]) -> String {
         let both = [row.published, row.simulated].map(four);
         let _ = writeln!(
             text,
-            "- Row **{}** (\"{}\") is missed. The papers print {} {}, and the model gives {}. {}\n",
+            "- Row **{}** (\"{}\") is missed: the papers print {} {}, and the model gives {}. {}\n",
             row.id,
             row.statement,
             both[0],
@@ -138,8 +138,8 @@ fn defined(text: &mut String) {
     ];
     let _ = write!(
         text,
-        "\n## Definitions\n\nThe numbers of this table follow from printed or assumed numbers alone. No simulation could change these numbers, so\n\
-         they are not called met or missed.\n\n{}",
+        "\n## Definitions\n\nThe numbers in the table of definitions follow from printed or assumed numbers alone. No simulation could change a\n\
+         definition, so a definition is neither met nor missed.\n\n{}",
         figures::table(&columns, &definitions())
     );
 }
@@ -158,7 +158,7 @@ fn fits(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
         "\n## E5: table 1\n\nThe scene is `gallery`. The side of a cell (its length in metres) was fitted so that the update rate of memory 1 is as\n\
-         near as possible to 39.25 Hz. The side of a cell then also determines the rates of the other memories.\n\n\
+         near as possible to 39.25 Hz. The side of a cell also determines the update rates of the other memories.\n\n\
          | rules | side | rates of memories 0 to 3, Hz | errors of 1 (fitted), 2 and 3 |\n|---|---|---|---|\n\
          | published | | {} | |\n",
         rates(&RATES_HZ)
@@ -172,9 +172,9 @@ fn fits(text: &mut String, all: &Experiments) {
 #[must_use]
 pub fn interpretations(all: &Interpretations) -> String {
     let mut text = "\n## Interpretations of table 1\n\n\
-         The paper does not print the widths of the rings of cells, how distances are measured, the path or the hall. The table\n\
-         therefore combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
-         fitted to the rates of memories 1 to 3. The error is the root mean square over these three memories. For the column\n\
+         The paper CPR05 does not print the widths of the rings of cells, how distances are measured, the path or the hall. The\n\
+         table of rules combines each set of rules with each of four halls and paths. For each combination, the side of a cell is\n\
+         fitted to the rates of memories 1 to 3. The error of a fit is the root mean square over memories 1 to 3. For the column\n\
          *left out*, each rate is predicted with the side of a cell that fits the other two rates best. The rules are ranked by\n\
          their mean error over all four halls and paths, because the paper's hall and path are unknown.\n\n"
         .to_owned();
@@ -200,7 +200,8 @@ pub fn interpretations(all: &Interpretations) -> String {
     text
 }
 
-/// Returns two results as Markdown: the best single fit, and the prediction of each update rate from the other rates.
+/// Returns two results as Markdown. The first is the best fit of one set of rules to all update rates. The second is
+/// the prediction of each rate by a fit to the other rates.
 fn best_of_all(all: &Interpretations) -> String {
     let mut text = String::new();
     // The best fit of all combinations of rules, hall and path.
@@ -209,8 +210,8 @@ fn best_of_all(all: &Interpretations) -> String {
         let Trial { cell_m, rates_hz } = best.best;
         let _ = writeln!(
             text,
-            "\nThe best single fit has the rules \"{}\" and the path \"{}\". The cells of this fit have a side of {cell_m:.2} m, its rates\n\
-             are {} Hz, and its error is {:.1} %.",
+            "\nThe best single fit has the rules \"{}\" and the path \"{}\". The cells of the best fit have a side of {cell_m:.2} m, the\n\
+             rates are {} Hz, and the error is {:.1} %.",
             best.rules.text(),
             best.situation.text(),
             rates(&rates_hz),
@@ -218,8 +219,8 @@ fn best_of_all(all: &Interpretations) -> String {
         );
     }
     text.push_str(
-        "\nEach row of the next table leaves out one rate. The rules, the path, the hall and the side of a cell are chosen to fit\n\
-         the other two rates alone.\n\n\
+        "\nEach row of the next table leaves out one rate. For each rate that is left out, the rules, the path, the hall and the\n\
+         side of a cell are chosen to fit the other two rates.\n\n\
          | memory | predicted | error | the others' choice |\n|---|---|---|---|\n",
     );
     for LeftOutRate { memory, rules, situation, trial, error_percent } in &all.left_out {
@@ -239,21 +240,23 @@ fn best_of_all(all: &Interpretations) -> String {
 fn chosen(all: &Interpretations) -> String {
     let place = all.usual().map_or_else(String::new, |(place, ranked)| {
         format!(
-            "These rules have rank {place} of the rules without cascade, and their mean error is {:.1} %.",
+            "The rules of the project have rank {place} of the rules without cascade, and their mean error is {:.1} %.",
             ranked.mean_error_percent
         )
     });
     format!(
-        "\nThe project uses the rules **{}**. {place} These are the reasons:\n\n\
+        "\nThe project uses the rules **{}**. {place} The project has these reasons:\n\n\
          - *Rings that double*: The paper prints update rates of 60, 30 and 15 Hz, and so on (statement A5). If an object is\n  \
-           twice as far away, its picture stays correct for twice the time. The cells of each memory therefore begin at twice\n  \
-           the distance of the cells of the memory before.\n\n\
+           twice as far away, its picture stays correct for twice the time. The cells of each memory therefore begin at twice the\n  \
+           distance of the cells of the previous memory.\n\n\
          - *No cascade*: The cascade is a derived rule for warping, and the paper gives table 1 before it introduces warping.\n\n\
          - *To the block's border*: If distances are measured to occupied cells instead, the rates fit better for rings of equal\n  \
-           width, and worse for rings whose widths double. The parameter `priority.to_held_cells` selects one of the two rules.\n\n\
-         - *Reliability*: Three rates are little data. A rate is often 60 Hz divided by a whole number, so it stays constant\n  \
-           over a range of sides of a cell. Two rates may therefore predict the third rate badly, as the table shows. If the\n  \
-           rules are chosen by the rates of memories 2 and 3, the predicted rate of memory 1 equals the rate of memory 0.\n",
+           width. For rings whose widths double, the rates fit worse. The parameter `priority.to_held_cells` selects one of the\n  \
+           two rules for distances.\n\n\
+         - *Reliability*: Three rates are little data. A rate is often 60 Hz divided by a whole number, so it stays constant over\n  \
+           a range of sides of a cell. Two rates may therefore predict the third rate badly, as the table of left-out rates\n  \
+           shows. If the rules are chosen by the rates of memories 2 and 3, the predicted rate of memory 1 equals the rate of\n  \
+           memory 0.\n",
         Rules::USUAL.text()
     )
 }
@@ -266,9 +269,9 @@ fn thresholds(text: &mut String, all: &Experiments) {
          the papers limit the threshold. By statement A7, the threshold is the distance between neighbouring pixels of the\n\
          display memory or of the display. By statement A15, tears are a few pixels wide, which the project interprets as 2 to 5\n\
          pixels.\n\n\
-         If each memory is shown as soon as it is due, a tear is as wide as the threshold. If the slower memory is shown one\n\
-         frame late, the tear is wider by the movement of the content in one frame. A pixel is 60 degrees / 640, and a texel is\n\
-         90 degrees / 512.\n\n\
+         If each memory is shown as soon as it is due, a tear is as wide as the threshold. If the memory with the lower update\n\
+         rate is shown one frame late, the tear is wider by the movement of the content in one frame. A pixel is 60 degrees /\n\
+         640, and a texel is 90 degrees / 512.\n\n\
          | threshold | degrees | side | hall of 8 cells | tear, shown at once | tear, a frame late |\n|---|---|---|---|---|---|\n",
         all.fits[0].cell_m * address_recalculation::priority::PriorityTiming::PAPERS.theta_deg
     );
@@ -281,14 +284,14 @@ fn thresholds(text: &mut String, all: &Experiments) {
     }
     text.push_str(
         "\nThe project uses a threshold of 2 texels, which is one texel of the machine's faces of 256 texels. The project compared\n\
-         whole texels of faces with 128, 256, 384 and 512 texels. The chosen threshold is the widest of these whose tears are 2\n\
-         to 5 pixels wide. With this threshold, the hall has a side of 20 m, and eight cells lie along a side. With eight cells\n\
-         along a side, the objects of the hall have about as many sections as table 2 prints.\n",
+         whole texels of faces with 128, 256, 384 and 512 texels. The chosen threshold is the widest threshold whose tears are 2\n\
+         to 5 pixels wide. With a threshold of 2 texels, the hall has a side of 20 m, and eight cells lie along a side. With\n\
+         eight cells along a side, the objects of the hall have about as many sections as table 2 prints.\n",
     );
 }
 
-/// Writes a consequence for table 2 of the paper CPR05 (sections in each memory). Cutting does not change the number of
-/// sections.
+/// Writes two constraints on table 2 of the paper CPR05, which prints the number of segments in each memory. Both
+/// follow because the same segments are drawn with and without cutting, only in different memories.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();
@@ -304,13 +307,13 @@ fn conservation(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
         "\n## Table 2: what the conservation of sections demands\n\n\
-         A *section* is the part of an object in one cell. Segmentation cuts the objects into sections but does not change their\n\
-         number. Without segmentation, each section is in the same memory as with segmentation, or in a faster memory. Two\n\
-         constraints follow:\n\n\
+         A *section* is the part of an object in one cell. Segmentation cuts the objects into sections but does not change the\n\
+         number of sections. Without segmentation, each section is in the same memory as with segmentation, or in a faster\n\
+         memory. Two constraints follow:\n\n\
          1. The columns with and without segmentation have the same sum. The paper prints the sums {} and {}, so there are {:.0}\n   \
-            more sections without segmentation. The model has the sums {:.0} and {:.0}.\n\n\
-         2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. The\n   \
-            printed numbers and the numbers of the model both satisfy this constraint:\n\n\
+            more sections without segmentation. In the model, the sums of sections are {:.0} and {:.0}.\n\n\
+         2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. Both\n   \
+            the printed numbers and the numbers of the model satisfy the constraint for memories 0 to k:\n\n\
          | memories | printed, cut | printed, uncut | ours, cut | ours, uncut |\n|---|---|---|---|---|\n",
         cut.iter().sum::<f64>(),
         uncut.iter().sum::<f64>(),
@@ -326,11 +329,11 @@ fn conservation(text: &mut String, all: &Experiments) {
     }
     let _ = write!(
         text,
-        "\nThe printed numbers violate the first constraint, so the two columns do not describe the same set of sections. The\n\
-         printed saving of draws is 31.3 %. One part of this saving comes from {:.0} missing sections. The other part is the\n\
-         saving for each section. With segmentation, a section needs {with:.1} draws per second. Without segmentation, a section\n\
-         needs {without:.1}, so the saving is {:.1} %. Three of the four numbers of a column are independent, because the sum of\n\
-         the column determines the fourth number.\n",
+        "\nThe printed numbers violate the constraint of equal sums, so the two columns do not describe the same set of sections.\n\
+         The printed saving of draws is 31.3 %. One part of the saving of draws comes from {:.0} missing sections. The other part of\n\
+         the saving of draws is the saving for each section. With segmentation, a section needs {with:.1} draws per second. Without\n\
+         segmentation, a section needs {without:.1}, so the saving is {:.1} %. Three of the four numbers of a column are independent,\n\
+         because the sum of the column determines the fourth number.\n",
         uncut.iter().sum::<f64>() - cut.iter().sum::<f64>(),
         100.0 * (1.0 - with / without)
     );
@@ -340,7 +343,8 @@ fn walks(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
         "\n## E6, E7: the path walked four times\n\nWith the fitted cells, the gallery has {} segments. A vertex on the border of two cells can be in two memories, with a\n\
-         different direction in each memory. A tear is the angle between these two directions, in texels of 90 degrees / 512.\n\n\
+         different direction in each memory. A tear is the angle between the two directions of a vertex, in texels of 90 degrees\n\
+         / 512.\n\n\
          | walk | rates, Hz | segments | draws/s | saved | redeals | tears: half, 95 %, widest | stretch: widest |\n|---|---|---|---|---|---|---|---|\n",
         all.segments
     );
@@ -376,9 +380,9 @@ fn texels(width: f64) -> String {
 fn slowed(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E8: a renderer that is too slow\n\nThe experiment uses the walk \"cut, torn\" for 1,800 frames. The renderer draws due memories in the order of their\n\
-         numbers. The display chooses the texel of each pixel at scan-out, so the speed of the renderer does not affect the\n\
-         error for a rotation of the head.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
+        "\n## E8: a renderer that is too slow\n\nExperiment E8 uses the walk \"cut, torn\" for 1,800 frames. The renderer of experiment E8 draws due memories in the order\n\
+         of their numbers. The display chooses the texel of each pixel at scan-out, so the speed of the renderer does not affect\n\
+         the error for a rotation of the head.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
     );
     for SlowRendererResult { triangles_per_s: rate, rates_hz, missed } in &all.slowed {
         let rates: Vec<String> = rates_hz.iter().map(|rate| format!("{rate:.1}")).collect();
@@ -390,8 +394,8 @@ fn slowed(text: &mut String, all: &Experiments) {
 fn sizes(text: &mut String, all: &Experiments) {
     let _ = write!(
         text,
-        "\n## E3: size against translation\n\nThe centre of an object is 10 m away, and the eye approaches the object at 1 m/s. The table gives the time in ms for\n\
-         which the picture of the object stays correct, for a threshold of 90/512 degrees.\n\n\
+        "\n## E3: size against translation\n\nThe centre of an object is 10 m away, and the eye approaches the object at 1 m/s. The following table gives the time in\n\
+         ms for which the picture of the object stays correct, for a threshold of 90/512 degrees.\n\n\
          | size/distance | translation | size, disc | size, sphere | decides (disc, sphere) |\n|---|---|---|---|---|\n"
     );
     for row in &all.sizes {
@@ -403,15 +407,15 @@ fn sizes(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Writes the ratio of an object's size to its distance, above which the growth on the screen limits the validity
-/// period (statement A8 of the papers).
+/// Writes the ratios of size to distance that belong to statement A8 of the papers. For larger ratios, the growth of
+/// the object on the screen determines the validity period.
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
         "\nStatement A8, \"about ten times the distance\", leaves two questions open. One question is which angle describes the size\n\
          of an object, and by how much this angle may change. The other question is whether the distance is measured to the\n\
-         centre of the object or to its nearest point. The table is for a sphere whose centre moves. A larger sphere stays\n\
-         correct for a shorter time because of its size than because of its movement. The table gives the size at which the two\n\
-         times are equal.\n\n\
+         centre of the object or to its nearest point. The following table is for a sphere whose centre moves. A larger sphere\n\
+         stays correct for a shorter time because of its size than because of its movement. The table gives the size of a sphere\n\
+         for which size and movement give equal times.\n\n\
          | angle of the size | diameter over the distance of the middle | over that of the nearest point |\n|---|---|---|\n",
     );
     for SizeLimit { angle, of_middle, of_nearest, .. } in limits {
@@ -419,8 +423,8 @@ fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     }
     text.push_str(
         "\nFor the size of an object, the project uses the distance to the nearest point and the angle under which the radius\n\
-         appears. The patent US5841439 names a second angle for the size, without its value. If this second angle is 1.5 times\n\
-         the threshold theta, the model gives the printed factor of ten. The size of a disc never shortens the time for which\n\
-         its picture stays correct.\n",
+         appears. The patent US5841439 names a second angle for the size, without its value. If the second angle is 1.5 times the\n\
+         threshold theta, the model gives the printed factor of ten. The size of a disc never shortens the time for which its\n\
+         picture stays correct.\n",
     );
 }

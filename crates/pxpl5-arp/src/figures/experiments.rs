@@ -1,4 +1,5 @@
-//! The experiments E2 to E9 with an ideal renderer. The experiments are run once for all rows of the comparison.
+//! The experiments with an ideal renderer, numbered E2 to E9. Each experiment is run once for all rows of the
+//! comparison.
 
 use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;
@@ -72,8 +73,8 @@ pub struct Experiments {
     pub reductions: [f64; 2],
     /// Times for which an object's image is valid, for several ratios of size to distance.
     pub sizes: Vec<SizeRow>,
-    /// Ratios of an object's size to its distance, above which the growth of the object on the screen limits the
-    /// validity period, for each interpretation.
+    /// Limits of the ratio of an object's size to its distance, one for each interpretation. Above the limit, the
+    /// growth of the object on the screen determines the validity period.
     pub size_limits: Vec<SizeLimit>,
     /// Largest deviation of a straight edge from a straight line, in pixels: on the screen, and through the lens.
     pub lens_px: [f64; 2],
@@ -203,14 +204,16 @@ fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
     SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }
 
-/// Ratio of an object's size to its distance, above which the growth of the object on the screen limits the validity
-/// period. The papers do not define "size" and "distance", so there is one limit for each interpretation.
+/// A limit of the ratio of an object's size to its distance. Above the limit, the growth of the object on the screen
+/// determines the validity period. The papers do not define "size" and "distance", so each interpretation has its own
+/// limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimit {
     /// Name of the angle whose change is limited: the angle that the sphere's diameter covers, or the angle that the
     /// radius covers.
     pub angle: &'static str,
-    /// Allowed change of the angle that the radius covers, divided by the threshold for translation of the eye.
+    /// Allowed change of the angle that the sphere's radius covers, divided by the threshold for translation of the
+    /// eye. Both are angles.
     pub factor: f64,
     /// Greatest ratio of the sphere's diameter to the distance of its middle at which translation, not growth, limits
     /// the validity period.

@@ -55,10 +55,10 @@ pub(super) fn rates_hz(
     updates.into_iter().map(|count| count as f64 * numbers.frame_hz / frames as f64).collect()
 }
 
-/// Returns the cell side for which the rate of memory [`RATE_FITTED`] is nearest to table 1 of the paper CPR05, and the
-/// rates of all memories.
+/// Fits the side of a cell to table 1 of the paper CPR05: the update rate of memory [`RATE_FITTED`] comes nearest to
+/// the printed rate. Returns the side in metres, and the update rates of all memories with this side.
 ///
-/// The side is in metres, in steps of 0.1 m.
+/// The tested sides are multiples of 0.1 m.
 ///
 /// # Errors
 ///

@@ -6,7 +6,7 @@ use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
 /// Scale of the gallery in the experiments. The scaled gallery is 20 m wide: eight cells of 2.5 m. The gallery then has
-/// 191 segments. The two rows of table 2 of the paper CPR05 have 183 and 213.
+/// 191 segments (parts of objects in one cell). The two rows of table 2 of the paper CPR05 have 183 and 213 segments.
 const HALL_SCALE: f64 = 0.5;
 
 /// Returns the scaled gallery, and the viewer's path through the gallery.

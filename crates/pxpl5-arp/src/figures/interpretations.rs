@@ -1,9 +1,9 @@
-//! Interpretations of table 1 of the paper CPR05 (update rates). Each open question of the paper has several answers,
-//! which are simulated and ranked.
+//! Interpretations of table 1 of the paper CPR05 (update rates). Each question that the paper leaves open has several
+//! possible answers, which are simulated and ranked.
 //!
-//! If the hall and the path are measured in cells, the update rates depend only on the product of threshold and cell
-//! side. Therefore one number is fitted to three rates. In the results, each cell side therefore represents all pairs
-//! of threshold and cell side with the same product.
+//! In a hall and on a path that are measured in cells, the update rates depend only on the product of threshold and
+//! cell side. One number is therefore fitted to three rates. Each cell side in the results stands for all pairs of
+//! threshold and cell side with the same product.
 
 use super::fit::{RATES_HZ, policy_rates_hz, rates_hz};
 use super::gallery::gallery;
@@ -92,8 +92,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Returns the root mean square of the relative errors in percent, for the update rates of the given memories
-    /// compared with table 1 of the paper CPR05.
+    /// Returns the error of the update rates of `memories`, relative to table 1 of the paper CPR05: the root mean
+    /// square in percent.
     #[must_use]
     pub fn error_percent(&self, memories: &[usize]) -> f64 {
         let squares = memories.iter().map(|memory| self.miss(*memory).powi(2)).sum::<f64>();
@@ -157,13 +157,16 @@ pub struct LeftOutRate {
 pub struct Interpretations {
     /// Sets of rules with their results, in ascending order of the mean error.
     pub ranked: Vec<RankedRules>,
-    /// Prediction of each of the three update rates. Rules, hall and path are those that fit the other two rates best.
+    /// Predictions of the three update rates. For each rate, the rules, the hall, the path and the cell side are chosen
+    /// to fit the other two rates.
     pub left_out: Vec<LeftOutRate>,
 }
 
-/// Smallest cell side to try, in metres. Each larger cell side is [`STEP`] times the next smaller side.
+/// Smallest cell side to try, in metres.
 const FIRST_SIDE_M: f64 = 1.4;
+/// Ratio of each cell side to the next smaller cell side.
 const STEP: f64 = 1.06;
+/// Number of cell sides that are tried before the search near the best side.
 const STEPS: i32 = 20;
 
 impl Tried {
@@ -198,8 +201,8 @@ fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }
 
-/// Returns the trial with the smallest error over the given memories. Of several trials with equal errors, returns the
-/// first.
+/// Returns the trial with the smallest error over the memories `memories`. Of several trials with equal errors, returns
+/// the first.
 fn best_of<'a>(trials: &'a [Trial], memories: &[usize]) -> Option<&'a Trial> {
     trials.iter().min_by(|a, b| a.error_percent(memories).total_cmp(&b.error_percent(memories)))
 }
@@ -257,6 +260,7 @@ fn left_out(ranked: &[RankedRules], memory: usize) -> Option<LeftOutRate> {
 
 /// Angle of a pixel of the display in degrees, averaged over a line of pixels.
 pub const PIXEL_DEG: f64 = 60.0 / 640.0;
+/// Angle of a texel of an ideal face in degrees, averaged over an edge of the face.
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
 /// A threshold of the image error, with the cell side and the tears (gaps between memories) that follow. The product of
@@ -272,13 +276,13 @@ pub struct ThresholdRow {
     /// Widest tear (gap between two memories) if each update is shown in the frame in which the update is due, in
     /// pixels of the display.
     pub at_once_px: f64,
-    /// Widest tear (gap between two memories) if the update of the less often drawn memory is shown one frame of
-    /// walking too late, in pixels of the display.
+    /// Widest tear (gap between two memories), in pixels of the display, if the less often drawn memory is shown one
+    /// frame too late.
     pub frame_late_px: f64,
 }
 
-/// Returns several thresholds, given in pixels or texels, with their consequences. `fitted_cell_m` is the cell side
-/// that fits table 1 of the paper CPR05 at the default threshold.
+/// Returns several thresholds in pixels or texels, with their consequences. `fitted_cell_m` is the cell side that fits
+/// table 1 of the paper CPR05 at the default threshold.
 #[must_use]
 pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
     let product = fitted_cell_m * PriorityTiming::PAPERS.theta_deg;

@@ -9,7 +9,8 @@ pub fn row(id: &'static str, statement: &str, unit: &'static str, both: [f64; 2]
     let cause = match id {
         "A8" => "No interpretation of size and distance gives such a large factor.",
         "A12" => {
-            "The paper does not print its scene, path, rings of cells and threshold. Only the rate of memory 1 was fitted."
+            "The paper CPR05 does not print its scene, path, rings of cells and threshold. Of the update rates, only the rate of \
+             memory 1 was fitted."
         }
         _ => "",
     };
@@ -29,10 +30,10 @@ pub fn limit(id: &'static str, statement: &str, unit: &'static str, both: [f64; 
     FigureRow { is_met, ..row(id, statement, unit, both, Basis::Free) }
 }
 
-/// Returns the verdict on a row: `met`, `within`, `shape` or `**missed**`.
+/// Returns the outcome of a row's comparison: `met`, `within`, `shape` or `**missed**`.
 ///
 /// `within` means that the published number lies in the interval of all interpretations. `shape` means that the number
-/// cannot be reproduced, but the shape of its curve or table agrees with the print.
+/// cannot be reproduced, but the shape of its curve or table agrees with the paper.
 #[must_use]
 pub const fn verdict(row: &FigureRow) -> &'static str {
     match (row.is_met, row.basis) {

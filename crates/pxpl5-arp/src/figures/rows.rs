@@ -8,7 +8,7 @@ use super::row::{limit, row, shape};
 use address_recalculation::priority::saved_percent;
 use pxpl5_sim::figures::{Basis, FigureRow};
 
-/// Returns the rows of the experiments E1 to E9, except the rows of E1 that need a simulated machine.
+/// Returns the rows of the experiments E1 to E9. The rows of E1 that need a simulated machine are not included.
 ///
 /// Numbers that follow from printed numbers alone are in [`definitions`](super::definitions()).
 #[must_use]

@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Rules {
     /// Number of rings of cells around the viewer's cell in memory 0.
     pub inner_rings: u64,
-    /// Number of rings in a memory, divided by the number of rings in the next more often drawn memory.
+    /// Number of rings in a memory, divided by the number of rings in the memory before it, which is drawn more often.
     pub ring_growth: u64,
     /// True if distances are measured to cells that hold segments (parts of objects). False if distances are measured
     /// to the border of a block of cells.

@@ -12,6 +12,7 @@ use tracking::motion::Walk;
 
 /// Pixels of the drawing per metre of the hall.
 const SCALE: f64 = 14.0;
+/// Width of the empty border around a drawing, in pixels.
 const MARGIN: f64 = 30.0;
 
 fn colour(memory: usize) -> String {

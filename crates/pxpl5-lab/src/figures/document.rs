@@ -40,11 +40,12 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     let _ = write!(
         text,
         "\n## Times of primitives from the code instead\n\n\
-         The timing table takes 21.7 us for a triangle of optimised PPHIGS, which is the published rate. For a triangle of\n\
-         Slats, the table takes 30.0 us in 1994 and 55.8 us in 1995. The two times of Slats were fitted to figures 12 and 14.\n\n\
-         With `machine.times = \"code\"`, the simulator uses the times that the project's own i860 code needs. Each time is a mean\n\
-         over the application scenes, and no time is fitted. The page docs/gp-timing.md describes the measurement of these\n\
-         times. The table below lists the figures that differ from the figures with the timing table, at the transaction level.\n\n\
+         The timing table takes 21.7 us for a triangle of optimised PPHIGS, which is the published rate. For a triangle of Slats,\n\
+         the timing table takes 30.0 us in 1994 and 55.8 us in 1995. The two times of Slats were fitted to figures 12 and 14.\n\n\
+         With `machine.times = \"code\"`, the simulator uses the times that the project's own i860 code needs. Each time from the\n\
+         code is a mean over the application scenes, and no time is fitted. The page docs/gp-timing.md describes how the times of\n\
+         the code were measured. The following table lists the figures that change with the times of the code, at the transaction\n\
+         level.\n\n\
          | # | figure | published | table | error | code | error |\n|---|---|---|---|---|---|---|\n"
     );
     // Figures that do not depend on the times are left out.
@@ -66,13 +67,14 @@ fn of_code(text: &mut String, rows: &[FigureRow], of_code: &[FigureRow]) {
     }
     let _ = write!(
         text,
-        "\nThe mean error of the free checks is {:.1} % with the table and {:.1} % with the code. A figure that the run with the\n\
-         code cannot compute counts with an error of 100 %. The limits of Slats change most, because the times of the project's\n\
-         code differ from the fitted times. No triangle of these figures is clipped.\n\n\
-         The timing table with published and fitted times stays the default. Two of its three times follow from the limits of\n\
-         triangles in the papers. The published limits depend on the code of the papers, which is not available. The project's\n\
-         code is different code for the same processor, and some rules for waits of the i860 (freezes) and for memory are\n\
-         assumed. The comparison shows how well the project's code reproduces the figures without any fitted number.\n",
+        "\nThe mean error of the free checks is {:.1} % with the timing table and {:.1} % with the times of the code. A figure that\n\
+         cannot be computed with the times of the code counts with an error of 100 %. The limits of Slats change most, because\n\
+         the times of the project's code differ from the fitted times. No triangle of the figures in this table is clipped.\n\n\
+         The timing table with published and fitted times stays the default. Two of the three times in the timing table follow\n\
+         from the limits of triangles in the papers. The published limits depend on the code of the papers, which is not\n\
+         available. The project's code is different code for the same processor, and some rules for waits of the i860 (freezes)\n\
+         and for memory are assumed. The comparison of timing table and code shows how well the project's code reproduces the\n\
+         figures without any fitted number.\n",
         mean_error_percent(rows),
         mean_error_percent(of_code),
     );
@@ -100,14 +102,15 @@ fn of_readings(text: &mut String, readings: &Readings) {
          - Which machine drew the application scenes?\n\n\
          - Were back faces culled?\n\n\
          - Were the bins full with the triangles of one eye, or with the triangles of both eyes?\n\n\
-         The possible answers give {} combinations, which this section calls interpretations. In each interpretation, all\n\
-         figures use the same machine parameters. The table has results of the analytic level. The command `pxpl5 readings` also\n\
-         measures the best interpretations with events.\n\n\
-         The columns *mean* and *worst* give the mean and the largest error of the figures in percent. The column *log L* is the\n\
-         logarithm of the likelihood of the printed means and standard deviations. The likelihood allows an error of 2 % for the\n\
-         conditions that the papers do not give.\n\n\
-         The paper derives figures 3 and 5 from its rules and did not measure these figures. The table therefore compares\n\
-         figures 3 and 5 with the rules alone. Figures 3, 4b, 5 and 17 do not distinguish one interpretation from another.\n\n\
+         The possible answers to the questions give {} combinations, which are called *interpretations*. In each interpretation,\n\
+         all figures use the same machine parameters. The table of interpretations has results of the analytic level. The command\n\
+         `pxpl5 readings` also measures the best interpretations with events.\n\n\
+         In the table of interpretations, the columns *mean* and *worst* give the mean and the largest error of the figures in\n\
+         percent. The column *log L* is the logarithm of the likelihood of the printed means and standard deviations. The\n\
+         likelihood allows an error of 2 % for the conditions that the papers do not print.\n\n\
+         The paper TR94 derives figures 3 and 5 from its rules and did not measure these figures. The table of interpretations\n\
+         therefore compares figures 3 and 5 with the rules alone. Figures 3, 4b, 5 and 17 do not distinguish one interpretation\n\
+         from another.\n\n\
          | mean | worst | log L | {} | reading |\n|---|---|---|{}---|\n",
         fits.len(),
         readings::FIGURES.join(" | "),
@@ -118,22 +121,22 @@ fn of_readings(text: &mut String, readings: &Readings) {
     let _ = write!(
         text,
         "\nThe project uses the interpretation **{}**, which has rank {} in the list. The most likely interpretation is {:.2} times as likely as\n\
-         this interpretation.\n\
-         The number of interpretations that equal the first one within the printed digits ({:.2} % of a mean error) is {}.\n\n\
-         These reasons decide the choice:\n\n\
+         the interpretation of the project.\n\
+         The number of interpretations that equal the best interpretation within the printed digits ({:.2} % of a mean error) is {}.\n\n\
+         The following reasons decide the choice of the interpretation:\n\n\
          - *each eye, whole fields*: The papers print the latencies of application scenes in fields. Equal numbers of latencies\n  \
-           of 4 and 5 fields give a mean of 4.5 and a standard deviation of 0.5. The paper prints a mean of 4.47 and a deviation\n  \
-           of 0.502. The other printed mean and deviation, 4.61 and 0.589, also need a few latencies of 6 fields. The latencies\n  \
-           of the first eyes alone have a deviation of 0.1.\n\n\
+           of 4 and 5 fields give a mean of 4.5 and a standard deviation of 0.5. The paper TR94 prints a mean of 4.47 and a\n  \
+           deviation of 0.502. The other printed mean and deviation, 4.61 and 0.589, also need a few latencies of 6 fields. The\n  \
+           latencies of the first eyes alone have a deviation of 0.1.\n\n\
          - *room for all*: The 4,096 bits of a pixel hold 128 regions of 32 bits. A renderer could keep fewer regions only if a\n  \
-           rule of the software limited the number.\n\n\
-         - *wait*: With room for all regions, the latency of figure 4 is 6 % too long with the rule `store`, and 1 to 2 % too\n  \
-           long with the rule `wait`. The text of the paper allows both rules.\n\n\
+           rule of the software limited the number of regions.\n\n\
+         - *wait*: With room for all regions and the rule `store`, the latency of figure 4 is 6 % too long. With the rule `wait`,\n  \
+           the latency of figure 4 is 1 to 2 % too long. The text of the paper allows the rules `store` and `wait`.\n\n\
          - *large, culled*: The scene `head` takes twice the printed time on the small machine. The scene `head` also takes\n  \
            twice the printed time if back faces are drawn.\n\n\
-         - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed\n  \
-           293 ms. No paper states this rule. The rule of bins for one eye was chosen for figures 16b and 16c, and it affects no\n  \
-           other figure.\n\n\
+         - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed 293\n  \
+           ms. No paper states the rule of bins for one eye, which was chosen for figures 16b and 16c and affects no other\n  \
+           figure.\n\n\
          Each row of the next table leaves out one figure. The interpretation is chosen by the other figures and then predicts\n\
          the figure that was left out.\n\n\
          | # | error | the others' choice |\n|---|---|---|\n",
@@ -172,13 +175,13 @@ fn of_application(text: &mut String, times: &[ApplicationTime]) {
     text.push_str(
         "\n## The application's time a frame\n\n\
          The host ran the viewer's application. For each frame, the application took some time before it requested the next\n\
-         frame. No paper prints this time of the application, and the presets set the time to zero. The parameters\n\
-         `host.application_ns` and `host.application_jitter_ns` set the time and its spread.\n\n\
-         In the table, the mean time of the application is 0 to 40 ms, and its spread is 0 to 30 ms. A Unix host polls its\n\
-         serial lines every 30 ms (TR94). The largest mean (40 ms) and the largest spread (30 ms) are assumed. The table gives\n\
-         the mean latency in fields at the analytic level, with the deviation in brackets. No number is fitted. If the\n\
-         application always needs less than the 33.4 ms between two frames, it hardly changes the latency. The reason is that\n\
-         the host works on the next frame while the machine draws the current frame.\n\n\
+         frame. No paper prints the time of the application, and the presets set the time to zero. The parameters\n\
+         `host.application_ns` and `host.application_jitter_ns` set the time of the application and its spread.\n\n\
+         In the following table, the mean time of the application is 0 to 40 ms, and its spread is 0 to 30 ms. A Unix host polls\n\
+         its serial lines every 30 ms (TR94). The largest mean (40 ms) and the largest spread (30 ms) are assumed. The following\n\
+         table gives the mean latency in fields at the analytic level, with the deviation in brackets. No number is fitted. If\n\
+         the application always needs less than the 33.4 ms between two frames, the application hardly changes the latency. The\n\
+         reason for the small change is that the host works on the next frame while the machine draws the current frame.\n\n\
          | mean of the application | evenly spread by | 7 | 7b | 7c |\n|---|---|---|---|---|\n",
     );
     let cells = |figures: &[FlyThroughLatency]| {
@@ -200,11 +203,11 @@ fn sensitivity(text: &mut String, intervals: &[Interval]) {
         text,
         "\n## Which parameter moves which figure\n\n\
          For the column *one at a time*, each derived or assumed parameter is set to both ends of its range, and the others keep\n\
-         their values. For the column *joint*, random values within the ranges are chosen for all parameters of {SAMPLES}\n\
-         machines. For the column *rules*, one answer to an open question of the papers changes at a time. All results come from\n\
-         the analytic level. In the column *moved by*, the brackets give the figure at the low end and at the high end of the\n\
-         parameter's range, and then the elasticity. The elasticity is the relative change of the figure divided by the relative\n\
-         change of the parameter.\n\n\
+         their values. For the column *joint*, random values within the ranges are chosen for all parameters of {SAMPLES} machines. For\n\
+         the column *rules*, one answer to an open question of the papers changes at a time. All results about parameters come\n\
+         from the analytic level. In the column *moved by*, the brackets give the figure at the low end and at the high end of\n\
+         the parameter's range, and then the elasticity. The elasticity is the relative change of the figure divided by the\n\
+         relative change of the parameter.\n\n\
          | # | one at a time | joint | 5 % to 95 % | moved by | rules |\n|---|---|---|---|---|---|\n"
     );
     // Only the strongest parameters of each figure are listed.
@@ -239,21 +242,22 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          - *rule*: One rule of the model was chosen so that the model reproduces the figure.\n\n\
          A simulated value is a *miss* if it lies outside of the range that the paper prints. If the paper prints no range, an\n\
          error of more than {MISS_PERCENT} % is a miss.\n\n\
-         Some papers do not print a condition of an experiment, for example the position of a sensor. The brackets after the\n\
-         simulated value then give the minimum and the maximum over all possible conditions. The column *error* uses the value\n\
-         for one assumed condition. Such a figure is a miss only if the model misses the published figure under every condition.\n\n\
+         Some papers do not print a condition of an experiment, for example the position of a sensor. For an experiment with an\n\
+         unprinted condition, the brackets after the simulated value give the minimum and the maximum over all possible\n\
+         conditions. The column *error* uses the value for one assumed condition. A figure with an unprinted condition is a miss\n\
+         only if the model misses the figure under every condition.\n\n\
          The column *interval* gives the smallest and the largest value of the figure when unpublished parameters and the\n\
          interpretation of the papers vary. The parameters vary within their allowed ranges. The section \"Interpretations\" lists\n\
          the interpretations of the papers. The analytic level (formulas instead of events) computes the interval. The column\n\
          *analytic* gives the result of the analytic level with the normal parameters of the machines. The difference between\n\
          *analytic* and *simulated* is the error of the analytic level.\n\n\
-         A published figure is *out of reach* if it lies outside of the interval by more than the error of the analytic level.\n\
-         Such a figure shows an error in the rules of the model, because no allowed parameter reproduces the figure. If the\n\
-         interval is *not varied*, the figure depends only on the scenes or on a motion. The parameters of the machine do not\n\
-         change this figure.\n\n\
-         The intervals of figures 17, 19 and 19b come from simulations with events. These simulations vary the depth of a\n\
-         renderer's FIFO and the number of channels that a sender can use. The interval of figure 17 also covers the positions\n\
-         of the photodiode on the screen and the interpretations.\n\n\
+         A published figure is *out of reach* if it lies outside of the interval by more than the error of the analytic level. A\n\
+         figure that is out of reach shows an error in the rules of the model, because no allowed parameter reproduces the\n\
+         figure. If the interval is *not varied*, the figure depends only on the scenes or on a motion. The parameters of the\n\
+         machine do not change a figure whose interval is *not varied*.\n\n\
+         The intervals of figures 17, 19 and 19b come from simulations with events. The simulations of figures 17, 19 and 19b\n\
+         vary the depth of a renderer's FIFO and the number of channels that a sender can use. The interval of figure 17 also\n\
+         covers the positions of the photodiode on the screen and the interpretations.\n\n\
          The table has {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n",
         rows.len(),
         mean_error_percent(rows),

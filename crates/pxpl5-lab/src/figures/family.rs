@@ -68,11 +68,13 @@ impl FigureFamily {
         let _ = write!(
             text,
             "\n## {}\n\n\
-             This section compares experiments E1 to E9 with the papers by Regan, Pose and Chow. The page [{}]({}) has the details. That\n\
-             page also has the pictures of experiment E10, and the numbers that follow from the papers' tables without a simulation.\n\
-             Experiment E1 runs on Pixel-Planes 5 with the display of address recalculation. The other experiments use an ideal renderer.\n\
-             A row is *met* if its error is at most 1 %. The papers do not print the conditions of {shapes} rows. For these rows (*cannot\n\
-             be reproduced*), only the shape of the papers' drawings and tables is checked. The model misses {} of the {} other rows.\n\n{}\n{}\n",
+             This section compares experiments E1 to E9 with the papers by Regan, Pose and Chow. The page\n\
+             [{}]({}) has the details. The page docs/address-recalculation.md\n\
+             also has the pictures of experiment E10, and the numbers that follow from the papers' tables without a simulation.\n\
+             Experiment E1 runs on Pixel-Planes 5 with the display of address recalculation. The experiments E2 to E9 use an ideal\n\
+             renderer. A row is *met* if its error is at most 1 %. The papers do not print the conditions of {shapes} rows. For rows\n\
+             without printed conditions (*cannot be reproduced*), only the shape of the papers' drawings and tables is checked. The\n\
+             model misses {} of the {} rows with printed conditions.\n\n{}\n{}\n",
             self.title,
             self.document,
             self.document,

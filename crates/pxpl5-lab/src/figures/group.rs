@@ -64,7 +64,7 @@ impl FigureGroup {
     pub fn markdown(&self) -> String {
         let missed: Vec<&FigureRow> = self.rows.iter().filter(|row| !row.is_met).collect();
         let mut text = format!(
-            "\n## {}\n\n{}\n\nThe model misses {} of {} rows of this table.\n\n{}",
+            "\n## {}\n\n{}\n\nThe model misses {} of {} rows of the following table.\n\n{}",
             self.title,
             self.about,
             missed.len(),

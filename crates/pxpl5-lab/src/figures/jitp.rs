@@ -18,12 +18,12 @@ use tracking::tracker::TrackerConfig;
 
 pub(super) const TITLE: &str = "Just-in-time pixels";
 
-pub(super) const ABOUT: &str = "The head turns by 200 degrees a second, and the view is 60 degrees wide (JITP). The tracker has no error and no delay. \
-So the only cause of errors is the time between the instant for which a pixel is drawn and the instant at which it \
-lights. The error of a pixel is the angle between two directions: the direction that the pixel shows, and the direction \
-that it should show when it lights. The unit of the error is a pixel of the paper, with 600 pixels over 60 degrees. A \
-field or line lasts longer than its lit pixels, because a field and a line also include a retrace. Like the paper, the \
-model scales each angle to the whole time of the field or line.";
+pub(super) const ABOUT: &str = "The head turns by 200 degrees a second, and the view is 60 degrees wide (JITP). The tracker has \
+no error and no delay. So the only cause of errors is the time between the instant for which a pixel is drawn and the instant at \
+which it lights. The error of a pixel is the angle between two directions: the direction that the pixel shows, and the direction \
+that it should show when it lights. The unit of the error is a pixel of the paper JITP, with 600 pixels over 60 degrees. A field \
+or line lasts longer than its lit pixels, because a field and a line also include a retrace. Like the paper, the model scales \
+each angle to the whole time of the field or line.";
 
 /// Rate of a fast turn of the head in degrees per second, published in the paper on just-in-time pixels.
 const PAN: f64 = 200.0;
@@ -79,7 +79,7 @@ pub(super) fn measurements() -> Vec<Measurement> {
             (256.0, "times", None),
             "Both jitp-scanline-racing and jitp-field-racing run with one slave. The software of the slave takes no time, so no line is late. The \
              result is the number of vertices transformed in 20 fields.",
-            "A field has 240 visible lines, and nothing is drawn for the lines of the retrace. The paper prints a round number.",
+            "A field has 240 visible lines, and nothing is drawn for the lines of the retrace. The paper JITP prints a round number.",
             transforms,
         ),
     ]

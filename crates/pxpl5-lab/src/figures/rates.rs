@@ -12,13 +12,13 @@ use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl};
 
 pub(super) const TITLE: &str = "Peak rates";
 
-pub(super) const ABOUT: &str = "The rates of triangles are measured with the scene `typical:N` for one eye. The triangles of this scene are \
-right-angled, have 18 pixels, touch about 1.3 regions each, and are spread evenly. J. Leech of the Pixel-Planes 5 team \
-stated the published rates on 3 April 1991 in the newsgroup sci.virtual-worlds. Leech expected further optimization of \
-the code, and he stated neither the size of the machine nor the size of the triangles.\n\n\
-For the intervals, one parameter at a time is set to both ends of its range. The varied parameters are the depth of the \
-renderers' FIFO, the channels that a sender can use, and the channels for messages to FIFOs. The times of a triangle on a \
-processor and on a renderer also vary. All runs simulate events.";
+pub(super) const ABOUT: &str = "The rates of triangles are measured with the scene `typical:N` for one eye. The triangles of the \
+scene `typical:N` are right-angled, have 18 pixels, touch about 1.3 regions each, and are spread evenly. J. Leech of the \
+Pixel-Planes 5 team stated the published rates on 3 April 1991 in the newsgroup sci.virtual-worlds. Leech expected further \
+optimization of the code, and he stated neither the size of the machine nor the size of the triangles.\n\n\
+For the intervals of the rates, one parameter at a time is set to both ends of its range. The varied parameters are the \
+depth of the renderers' FIFO, the channels that a sender can use, and the channels for messages to FIFOs. The times of a \
+triangle on a processor and on a renderer also vary. All runs simulate events.";
 
 /// Parameters that limit the machine's triangle rate with Gouraud shading.
 const OF_GOURAUD: &[&str] = &[
@@ -53,8 +53,9 @@ pub(super) fn measurements() -> Vec<Measurement> {
 }
 
 fn of_machine() -> Vec<Measurement> {
-    let cause = "Each of the 20 renderers has one region, so the region with the most work decides the rate. A full FIFO also blocks a channel of the \
-                 ring. The source states neither the size of the machine nor its triangles.";
+    let cause = "Each of the 20 renderers has one region, so the region with the most work decides the rate. A full FIFO also \
+                 blocks a channel of the ring. The newsgroup article states neither the size of the machine nor the size of the \
+                 triangles.";
     vec![
         Measurement {
             figure: free(
@@ -94,8 +95,8 @@ fn of_machine() -> Vec<Measurement> {
 
 fn of_boards() -> Vec<Measurement> {
     let of_renderer = "typical:20000 mono on small-hmd with one renderer: the result is the number of commands divided by the working time of the array. Of 1,000 commands, 997 are triangles.";
-    let of_array = "The published rate is a round number, and its source states neither the shading nor the state of the machine. The rate of the model \
-                    follows from the bit-serial program of the array.";
+    let of_array = "The published rate is a round number, and its source states neither the shading nor the state of the \
+                    machine. The rate of the model follows from the bit-serial program of the pixel array.";
     vec![
         Measurement {
             figure: free(
@@ -125,8 +126,9 @@ fn of_boards() -> Vec<Measurement> {
                 "triangles a second of a processor: 1 M over 32",
                 (31_250.0, "triangles/s", None),
                 "typical:2000 mono on small-hmd with one slave: the result is the number of triangles divided by the time of TRANSFORM",
-                "The published figure is the design rate of the whole machine divided by its number of processors. The optimised code from 1991 is \
-                 faster. The parameter `gp.triangle_ns` has its own source, which describes the optimised code.",
+                "The published figure is the design rate of the whole machine divided by its number of processors. The optimised \
+                 code from 1991 is faster than the design rate. The parameter `gp.triangle_ns` has its own source, which \
+                 describes the optimised code.",
             ),
             measure: processor_rate,
             moved_by: &["gp.triangle_ns", "gp.bin_entry_ns"],

@@ -6,14 +6,13 @@ use super::one_structure;
 use crate::import::Mesh;
 use crate::scene::{Frame, Scene};
 
-/// Distances from the head to the nearest and to the farthest triangle, metres. Assumed, within the near and far planes
-/// of any display.
+/// Distance from the head to the nearest triangle, metres. Assumed, beyond the near plane of any display.
 const NEAR_M: f64 = 1.0;
+/// Distance from the head to the farthest triangle, metres. Assumed, before the far plane of any display.
 const FAR_M: f64 = 2.0;
 
-/// Tangent of the half angle that the triangles cover in each direction from each eye. The value 1 gives a field of
-/// view of 90 degrees. In this project, head-mounted displays have a field of view of 60 degrees, and faces of a cube
-/// have 90 degrees.
+/// Tangent of the half angle that the triangles cover in each direction from each eye. The value 1 gives 90 degrees. A
+/// head-mounted display needs only 60 degrees, and a face of a cube around the head needs all 90 degrees.
 const COVERED: f64 = 1.0;
 
 /// Distance of each eye from the centre of the head, metres: half of the greatest distance between two eyes, 74 mm.
@@ -40,9 +39,9 @@ pub(super) fn scene(count: u32) -> Scene {
 /// origin. The corners of the triangle lie at (-r, -r), (r, -s) and (-s, r), so no coordinate exceeds r. The lower
 /// right, the upper left and the upper right corner of the square each lie on one side of the triangle.
 ///
-/// No triangle is clipped in pictures of up to 1,500 pixels across. At a field of view of 60 degrees, a corner is at
-/// most 4.4 times half of the picture's width away from the picture's centre. The guard band ends 4,095 pixels minus
-/// half of the width from the centre.
+/// No triangle is clipped in pictures of up to 1,500 pixels across with a field of view of 60 degrees. In a picture w
+/// pixels across, a corner is at most 2.2 w from the centre. The guard band, beyond which triangles are clipped, ends
+/// 4,095 - w / 2 from the centre.
 fn push(mesh: &mut Mesh, depth: f64, colour: [u8; 3]) {
     let half = COVERED * depth + EYES_M;
     let far = REACH * half;

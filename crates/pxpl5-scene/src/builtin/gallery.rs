@@ -16,13 +16,16 @@ use crate::sway::Sway;
 /// Half the length and half the width of the hall, metres.
 const HALF_M: f64 = 20.0;
 
-/// Heights of the hall, of its partitions and of a viewer's eyes, metres.
+/// Height of the hall, metres.
 const HEIGHT_M: f64 = 4.0;
+/// Height of the partitions, metres.
 const PARTITION_M: f64 = 3.0;
+/// Height of the viewer's eyes, metres.
 const EYE_M: f64 = 1.7;
 
-/// Distance of the path from the near side of a partition, and thickness of a partition, metres.
+/// Distance of the path from the near side of a partition, metres.
 const BESIDE_M: f64 = 1.0;
+/// Thickness of a partition, metres.
 const THICKNESS_M: f64 = 0.1;
 
 /// Beginning and end of a partition, as fractions of the length of the straight part of the path beside the partition.
@@ -43,9 +46,10 @@ const CORNERS: [[f64; 2]; 10] = [
     [-17.0, 2.0],
 ];
 
-/// Colours of floor, ceiling and the walls at +x, -x, +z and -z.
+/// Colour of the floor.
 const FLOOR: [u8; 3] = [120, 100, 80];
 const CEILING: [u8; 3] = [225, 225, 215];
+/// Colours of the walls at +x, -x, +z and -z.
 const WALLS: [[u8; 3]; 4] = [[170, 140, 120], [120, 150, 170], [165, 165, 120], [130, 160, 130]];
 
 /// Colours of the partitions, used in turn.

@@ -10,9 +10,9 @@ use crate::motion::HeadMotion;
 use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
 use crate::trig;
 
-/// Number of meridians. With 191 parallels, the head has 2 x 156 x 191 = 59,592
-/// triangles, including 156 at each pole.
+/// Number of vertices around the head. The head has 2 x 156 x 191 = 59,592 triangles, including 156 at each pole.
 const MERIDIANS: usize = 156;
+/// Number of rings of vertices between the two poles.
 const PARALLELS: usize = 191;
 
 const SKIN: Colour = [226, 178, 150];
@@ -95,8 +95,9 @@ struct Ray {
     direction: DVec3,
 }
 
-/// Origins and inclinations of rays from crown to base. Each row has three numbers: the position from crown (0) to base
-/// (1), the height of the origin in centimetres, and the downward angle of the ray in degrees.
+/// Origins and inclinations of rays from crown to base. Each row has three numbers. The first number is the position
+/// from crown (0) to base (1). The second number is the height of the origin in centimetres, and the third number is
+/// the downward angle of the ray in degrees.
 const SPINE: [(f64, f64, f64); 8] = [
     (0.0, 2.5, -90.0),
     (0.24, 2.5, -24.0),

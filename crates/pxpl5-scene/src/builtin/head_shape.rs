@@ -1,5 +1,5 @@
-//! The shape of a human head as a signed distance function in centimetres. +x is the left of the head, +y is up, +z is
-//! the face.
+//! The shape of a human head as a signed distance function in centimetres. The axis +x points to the left of the head,
+//! +y points up, and +z points ahead of the face.
 //!
 //! The distance is negative inside the head. Proportions follow the usual rules of drawing. The eyes are half-way
 //! between crown and chin, the face is five eyes wide, and the ears reach from brow to nose. The functions use only
@@ -11,8 +11,9 @@ const fn xyz(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Centre of the left eyeball, and its radius, centimetres.
+/// Centre of the left eyeball, centimetres.
 pub(super) const EYE: DVec3 = xyz(3.15, 0.75, 6.6);
+/// Radius of both eyeballs, centimetres.
 pub(super) const EYE_RADIUS: f64 = 1.3;
 
 /// Returns the signed distance of a point from the surface of the head, centimetres. The head is symmetric in x. Near
@@ -98,21 +99,21 @@ fn ears(d: f64, p: DVec3) -> f64 {
     join(d, ear, 0.45)
 }
 
-/// Returns the distance from the union of two solids, given the distances `a` and `b` from each. The edge between them
-/// is rounded over a width `k`.
+/// Returns the distance from the union of two solids. `a` and `b` are the distances from the two solids. The edge
+/// between the solids is rounded over a width `k`.
 fn join(a: f64, b: f64, k: f64) -> f64 {
     let h = (k - (a - b).abs()).max(0.0) / k;
     a.min(b) - h * h * k / 4.0
 }
 
-/// Returns the distance from the intersection of two solids, given the distances `a` and `b` from each. The edge
-/// between them is rounded over a width `k`.
+/// Returns the distance from the intersection of two solids. `a` and `b` are the distances from the two solids. The
+/// edge between the solids is rounded over a width `k`.
 fn meet(a: f64, b: f64, k: f64) -> f64 {
     -join(-a, -b, k)
 }
 
-/// Returns the distance from the first solid without the second, given the distances `a` and `b` from each. The edge
-/// between them is rounded over a width `k`.
+/// Returns the distance from the first solid without the second solid. `a` and `b` are the distances from the two
+/// solids. The edge between the solids is rounded over a width `k`.
 fn carve(a: f64, b: f64, k: f64) -> f64 {
     meet(a, -b, k)
 }

@@ -73,9 +73,9 @@ fn finish(mut solid: Solid) -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// Returns the motion of a head around the aircraft. The nearest point is within the span of the wings, where the
-/// aircraft overflows the view. The farthest point is five radii of the aircraft away, where the aircraft appears
-/// small.
+/// Returns the motion of a head around the aircraft. At the nearest point, the head is closer to the centre than the
+/// tips of the wings, so the aircraft is larger than the view. At the farthest point, five radii of the aircraft away,
+/// the aircraft appears small.
 pub(super) fn fly_through() -> HeadMotion {
     let path = HeadPath::FlyThrough {
         target: glam::Vec3::ZERO,

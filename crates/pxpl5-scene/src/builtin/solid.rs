@@ -57,8 +57,8 @@ impl Solid {
         self.append(part);
     }
 
-    /// Adds a band of surface for each side of the cross-sections. Normals are smooth along a band, and the edges
-    /// between bands are sharp.
+    /// Adds a surface between successive closed cross-sections. Each side of the cross-sections gives a band, which has
+    /// smooth normals along its length. The edges between bands are sharp.
     pub(super) fn plates(&mut self, sections: &[Vec<DVec3>], colour: Colour) {
         let sides = sections[0].len();
         for side in 0..sides {

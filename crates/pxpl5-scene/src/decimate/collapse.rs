@@ -26,8 +26,8 @@ struct Candidate {
     cost: f64,
     from: u32,
     onto: u32,
-    /// For each of the edge's two end points, the number of changes before the cost was computed. If a point has
-    /// changed again, the cost is outdated.
+    /// Number of changes of each end point of the edge at the time when the cost was computed. If an end point has
+    /// changed since, the cost is outdated.
     changes: [u32; 2],
 }
 
@@ -61,8 +61,8 @@ pub(super) struct Decimator {
     pub(super) surface: Surface,
     quadrics: Vec<Quadric>,
     changes: Vec<u32>,
-    /// Least number of triangles that any collapse tried so far would have left. All decisions so far are the same for
-    /// every wanted number up to this number.
+    /// Least number of triangles that any collapse tried so far would have left. A decimation to at most this number of
+    /// triangles would have made the same decisions so far.
     least_left: usize,
 }
 
@@ -88,19 +88,18 @@ impl FirstPass {
         Self { decimator, queue }
     }
 
-    /// Returns true if a decimation to `wanted` triangles also leads to the present surface and can continue from
-    /// there.
+    /// Returns true if a decimation to `wanted` triangles also passes through the present surface, so that it can
+    /// continue from this surface.
     pub(super) const fn serves(&self, wanted: usize) -> bool {
         wanted <= self.decimator.least_left
     }
 
-    /// Returns the number of triangles that remain.
     pub(super) const fn left(&self) -> usize {
         self.decimator.surface.left
     }
 
-    /// Collapses edges until at most `pause` triangles remain or the pass ends. `wanted` is the number of triangles that
-    /// should remain in the end.
+    /// Collapses edges until at most `pause` triangles remain or the pass ends. `wanted` is the number of triangles
+    /// that should remain in the end.
     pub(super) fn until(&mut self, pause: usize, wanted: usize) {
         self.decimator.pass(&mut self.queue, pause, wanted, FIRST);
     }

@@ -19,7 +19,8 @@ pub(super) struct Quadric {
 }
 
 impl Quadric {
-    /// Returns the squared distance, times `weight`, from the plane through `point` with the unit normal `normal`.
+    /// Returns the function of a point p that is `weight` times the squared distance of p from a plane. The plane
+    /// contains `point` and has the unit normal `normal`.
     pub(super) fn of_plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
         let offset = -normal.dot(point);
         let [x, y, z] = normal.to_array();

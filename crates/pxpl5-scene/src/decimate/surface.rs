@@ -11,7 +11,6 @@ use crate::scene::{Scene, Vertex};
 #[derive(Clone)]
 pub(super) struct Surface {
     vertices: Arc<[Vertex]>,
-    /// Position of each point.
     pub(super) places: Vec<DVec3>,
     /// Index of the point at which each vertex lies.
     point_of: Vec<u32>,
@@ -83,7 +82,6 @@ impl Surface {
         Some(corners.map(|vertex| self.point_of[vertex as usize]))
     }
 
-    /// Returns every remaining triangle with its three points.
     pub(super) fn all(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
         (0..self.triangles.len() as u32).filter_map(|triangle| Some((triangle, self.points(triangle)?)))
     }
@@ -130,7 +128,6 @@ impl Surface {
         }
     }
 
-    /// Removes a triangle. `points` are the three points of the triangle.
     pub(super) fn remove(&mut self, triangle: u32, points: [u32; 3]) {
         for point in points {
             self.around[point as usize].retain(|other| *other != triangle);

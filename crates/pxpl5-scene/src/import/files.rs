@@ -15,7 +15,7 @@ use crate::scene::Scene;
 ///
 /// # Errors
 ///
-/// Returns a [`FileError`] if the path does not lead to a model file. All errors of [`crate::from_bytes`] can also occur.
+/// Returns a [`FileError`] if the path does not lead to a model file, and in the same cases as [`crate::from_bytes`].
 pub fn load(path: impl AsRef<Path>) -> Result<Scene, FileError> {
     load_placed(path, Placement::Fitted)
 }

@@ -87,10 +87,10 @@ const OF_INDICES: [ComponentType; 3] = [ComponentType::U8, ComponentType::U16, C
 
 struct Reader<'a> {
     document: &'a Document<'a>,
-    /// Number of bytes of the parsed JSON and of decoded buffers.
+    /// Number of bytes of memory that the parsed JSON and the decoded buffers take.
     held: usize,
     model: Model,
-    /// Number of primitives that consist of points or lines.
+    /// Number of glTF primitives that consist of points or lines, which are not read.
     skipped: usize,
     /// Number of nodes whose meshes are deformed by a skin.
     skinned: usize,
@@ -161,7 +161,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds the triangles of a primitive.
+    /// Adds the triangles of a glTF primitive, which is a part of a mesh with one material.
     fn primitive(&mut self, part: &str, primitive: &Primitive, to_world: DMat4) -> Result<(), FileError> {
         let document = self.document;
         let mode = match primitive.mode {
@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the numbers of an accessor.
+    /// Returns the numbers of a glTF accessor, which describes an array of vectors or indices.
     ///
     /// # Errors
     ///
@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
         Numbers::of(self.document, accessor, components, kinds)
     }
 
-    /// Adds a primitive that has normals: all its vertices, and the triangles between these vertices.
+    /// Adds a glTF primitive that has normals: all its vertices, and the triangles between these vertices.
     fn push_smooth(
         &mut self,
         vertices: &PrimitiveVertices<'_>,
@@ -241,8 +241,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds each triangle of a primitive without normals with three vertices of its own. The format demands that such
-    /// triangles are flat.
+    /// Adds each triangle of a glTF primitive without normals with three vertices of its own. The format demands that
+    /// such triangles are flat.
     fn push_flat(
         &mut self,
         vertices: &PrimitiveVertices<'_>,
@@ -263,7 +263,6 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds a vertex of a primitive to the model.
     fn push(&mut self, vertices: &PrimitiveVertices<'_>, vertex: usize) -> Result<(), FileError> {
         let place = vertices.place(vertex);
         if place.is_nan() || place.abs().max_element() > MAX_COORDINATE {
@@ -365,7 +364,7 @@ fn is_triangle([a, b, c]: [u32; 3]) -> bool {
     a != b && b != c && c != a
 }
 
-/// The vertices of a primitive, with the transform from its node to the world.
+/// The vertices of a glTF primitive (a part of a mesh), with the transform from its node to the world.
 struct PrimitiveVertices<'a> {
     positions: Numbers<'a>,
     normals: Option<Numbers<'a>>,
@@ -415,7 +414,7 @@ fn encoded(linear: f64) -> u8 {
     (part * 255.0 + 0.5) as u8
 }
 
-/// The corners of the triangles of a primitive.
+/// The corners of the triangles of a glTF primitive (a part of a mesh).
 struct Corners<'a> {
     /// Indices of the vertices at the corners. `None` if the corners are all vertices in their order.
     indices: Option<Numbers<'a>>,

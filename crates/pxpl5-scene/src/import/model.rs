@@ -77,7 +77,7 @@ impl Places {
 /// bytes, because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
-/// The meaning of the second number of a [`Corner`]. This number distinguishes vertices at one point.
+/// The meaning of the second number of a [`Corner`]: a normal or a colour.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
     /// The index of a normal, counted from 1: a normal of the file, or the computed normal of a flat face. A corner
@@ -186,8 +186,8 @@ impl Model {
         self.check_reading_bytes(source, more_triangles.saturating_mul(size_of::<[u32; 3]>()))
     }
 
-    /// Returns an error if the model needs too much memory for the size of its files. `more` is the number of bytes that
-    /// the reader needs in addition to the model.
+    /// Returns an error if the model needs too much memory for the size of its files. `more` is the number of bytes
+    /// that the reader needs in addition to the model.
     pub(super) fn check_reading_bytes(&self, source: &Source<'_>, more: usize) -> Result<(), FileError> {
         let of_files = source.bytes.len() + self.more_file_bytes;
         let found = of_files + self.lists_bytes() + self.corners.len() * TABLE_BYTES;
@@ -300,8 +300,8 @@ impl Model {
         if self.detail == Detail::Colour { self.places.len() } else { self.vertices() }
     }
 
-    /// Returns the number of groups whose mean normals are computed at a time. The sums are in double precision. The
-    /// sums of all groups together would need as much memory as the positions.
+    /// Returns the number of groups of vertices whose mean normals are computed in one pass. The sums of all groups at
+    /// once would need as much memory as the positions, because sums are in double precision.
     fn shadings_per_pass(&self) -> usize {
         (self.shaded() / 8).max(1 << 16)
     }

@@ -12,7 +12,6 @@ use super::{Placement, Source};
 use crate::error::{FilePlace, nothing_to_draw};
 use crate::scene::{Scene, Sphere};
 
-/// An atom of a Protein Data Bank file.
 pub(crate) struct Atom {
     /// Name of the atom within its residue, such as "CA" for the alpha carbon.
     pub(crate) name: String,

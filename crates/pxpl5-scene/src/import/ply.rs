@@ -76,9 +76,10 @@ struct Rows<'a> {
     coloured: Vertices,
 }
 
-/// Greatest length of a list in a file without vertices. Each vertex allows `LIST_PER_VERTEX` more items. Assumed:
-/// strips of single triangles take 8 corners for each vertex of a closed surface.
+/// Greatest length of a list in a file without vertices.
 const LIST: usize = 1 << 16;
+/// Number of items by which each vertex of a file raises the greatest length of a list. Assumed: if every triangle of a
+/// closed surface is a strip of its own, the strips have 8 items per vertex.
 const LIST_PER_VERTEX: usize = 8;
 
 /// If no line `end_header` ends the header, the reader parses only this number of bytes, to find the error. The number
@@ -381,7 +382,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Names of the three components of a colour.
+/// Names that files use for red, green and blue. Each entry is one convention.
 const COLOURS: [[&str; 3]; 3] =
     [["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
 

@@ -102,6 +102,7 @@ struct Measures {
 
 /// Number of drawing units per pixel.
 const UNITS_A_PIXEL: u32 = 10;
+/// Number of drawing units per millimetre.
 const UNITS_A_MM: f64 = 40.0;
 /// Height of text in a paper's column, in millimetres: 7.5 points of 25.4/72 mm.
 const COLUMN_EM_MM: f64 = 7.5 * 25.4 / 72.0;
@@ -109,6 +110,7 @@ const COLUMN_EM_MM: f64 = 7.5 * 25.4 / 72.0;
 const COLUMN_HEIGHT: f64 = 0.66;
 /// Height of a row of the legend, relative to the height of text.
 const NAME_HEIGHT_EM: f64 = 1.4;
+/// Number of entries in a row of the legend.
 const NAMES_A_LINE: usize = 2;
 
 impl ChartSize {

@@ -31,7 +31,6 @@ impl Look {
         Self { place, colour: RGBColor(red, green, blue), em, is_hollow: false }
     }
 
-    /// Returns the same look, with a hollow marker if `is_hollow` is true.
     pub(super) const fn hollow(self, is_hollow: bool) -> Self {
         Self { is_hollow, ..self }
     }

@@ -26,7 +26,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Creates an axis whose range contains all elements of `numbers`. NaN and numbers without a position are ignored.
+    /// Creates an axis whose range contains all elements of `numbers`, except NaN and numbers that the scale cannot
+    /// show.
     pub(super) fn reaching(scale: &AxisScale, numbers: impl Iterator<Item = f64>) -> Self {
         let blank = Self { scale: scale.clone(), ends: (0.0, 1.0) };
         let places = numbers.map(|number| blank.place(number)).filter(|place| place.is_finite());
@@ -51,7 +52,6 @@ impl Axis {
         }
     }
 
-    /// Returns the positions of the tick marks.
     pub(super) fn marks(&self) -> Vec<f64> {
         let (low, high) = self.ends;
         match &self.scale {
@@ -67,7 +67,6 @@ impl Axis {
         }
     }
 
-    /// Returns the label of the tick mark at a position.
     pub(super) fn label(&self, place: f64) -> String {
         match &self.scale {
             AxisScale::Decades => 10f64.powi(place as i32).to_string(),

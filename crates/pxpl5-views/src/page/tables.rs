@@ -6,8 +6,8 @@ use super::section::image;
 use super::values::{cell, heading, number_cell, paragraph, row, table};
 use crate::markup::Element;
 
-/// A table of results with texts, charts and pictures. If the table has no columns, the page omits the table and shows
-/// the rest.
+/// A table of results with texts, charts and pictures. If the table has no columns, the page shows only the texts,
+/// charts and pictures.
 #[derive(Clone, Debug, Default)]
 pub struct PageTable {
     /// Heading of the table.

@@ -12,8 +12,8 @@ pub(super) fn utilisation(report: &Value) -> Vec<Element> {
     all
 }
 
-/// A kind of board: the title, the keys of the fraction of busy time in the report, and the keys and labels of other
-/// fractions of time.
+/// A kind of board in the report: its name on the page, then the two keys that lead to its fractions of busy time. The
+/// last element has further fractions of time, each as its key and its name on the page.
 type Kind = (&'static str, [&'static str; 2], &'static [(&'static str, &'static str)]);
 
 const KINDS: [Kind; 4] = [

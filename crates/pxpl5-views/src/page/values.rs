@@ -29,7 +29,6 @@ pub(super) fn list(value: &Value) -> &[Value] {
     value.as_array().map(Vec::as_slice).unwrap_or_default()
 }
 
-/// Returns a heading within a section.
 pub(super) fn heading(text: &str) -> Element {
     Element::new("h3").text(text)
 }

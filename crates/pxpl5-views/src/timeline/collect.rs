@@ -12,8 +12,8 @@ use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
-/// Divisor for the largest overlap of two bars that share a lane (a part of a row). The largest overlap is the drawn
-/// time span divided by this number.
+/// Divisor for the greatest overlap of two bars in one lane (a part of a row). Bars may overlap by the drawn time span
+/// divided by this number. If they overlap more, they get separate lanes.
 const TOUCHING: u64 = 300;
 
 /// Smallest number of display periods in a drawing, if the user gives no number.

@@ -294,7 +294,6 @@ const fn emphasis(chosen: bool) -> &'static str {
     if chosen { "chosen" } else { "other" }
 }
 
-/// Returns the tooltip of a bar.
 fn about(bar: &Bar, timeline: &Timeline) -> String {
     let letters = letters(bar, &timeline.surfaces);
     let begin = milliseconds(bar.begin);

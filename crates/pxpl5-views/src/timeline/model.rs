@@ -28,7 +28,7 @@ pub struct Bar {
     pub end: Time,
     /// Index of the bar's lane in its row, counted from the top. Lanes divide a row in which bars overlap.
     pub lane: usize,
-    /// For COPY: time spans in which the port received data.
+    /// Time spans in which the port received data. The list is empty for all stages except COPY.
     pub receiving: Vec<(Time, Time)>,
 }
 
@@ -79,7 +79,7 @@ pub struct Timeline {
     pub surfaces: Vec<Surface>,
     /// Picture whose dependencies are drawn.
     pub picture: Option<PictureNumber>,
-    /// Number of the SEND that supplied the head pose of the picture whose dependencies are drawn.
+    /// Number of the SEND whose head pose was used for the picture whose dependencies are drawn.
     pub update: Option<PictureNumber>,
     /// Dependencies of the picture in [`Timeline::picture`].
     pub arrows: Vec<Arrow>,

@@ -15,7 +15,7 @@ pub struct TimelineOptions {
     pub fields: Option<u64>,
     /// Title above the drawing.
     pub title: Option<String>,
-    /// True to leave out the rows of the host and the tracker.
+    /// True if the rows of the host and the tracker are left out.
     pub without_host: bool,
 }
 

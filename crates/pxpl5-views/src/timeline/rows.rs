@@ -56,12 +56,11 @@ fn stage_bar(run: &SoFar<'_>, span: &StageSpan) -> Bar {
     }
 }
 
-/// Returns true if the machine has more than one surface.
 fn has_many_surfaces(record: &Record) -> bool {
     record.surfaces().nth(1).is_some()
 }
 
-/// COPY bars of a row. The key is the number of the picture, and the number of the part of the picture.
+/// COPY bars of a row. The key of a bar has the number of its picture and the number of the part of this picture.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
 /// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two

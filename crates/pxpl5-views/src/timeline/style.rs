@@ -60,7 +60,8 @@ pub(super) const fn pattern(surface: Option<SurfaceId>) -> &'static str {
     }
 }
 
-/// Returns the letters of a bar as in the papers: E, TL, TR, RL, RR, CL or CR.
+/// Returns the letters of a bar as in the papers: E, TL, TR, RL, RR, CL or CR. The first letter is the stage (EDIT,
+/// TRANSFORM, RENDER, COPY), and the second letter is the surface (left, right).
 ///
 /// A half of a picture that is copied separately has an additional `t` (top) or `b` (bottom).
 pub(super) fn letters(bar: &Bar, surfaces: &[Surface]) -> String {
@@ -77,7 +78,6 @@ pub(super) fn letters(bar: &Bar, surfaces: &[Surface]) -> String {
     stage.chars().chain(surface).chain(half).collect()
 }
 
-/// Returns the style sheet.
 pub(super) fn style() -> Element {
     let mut text = String::from(
         ".page{fill:#fff}.row{fill:#f5f5f5}.blank{fill:#fff}.heading{font-size:17px;font-weight:bold}\

@@ -160,12 +160,10 @@ fn ended(record: &Record, mark: &Mark, begin: Time) -> Slice {
     stage_slice(mark.stage, mark.picture, surface.map(|surface| surface.label), [begin, mark.time])
 }
 
-/// Returns the name of the board at a port.
 fn name_of(groups: &[Group], node: NodeId) -> &str {
     groups.iter().find(|group| group.node == Some(node)).map_or("", |group| &group.name)
 }
 
-/// Returns the display that has a surface.
 fn display_of(record: &Record, surface: SurfaceId) -> Option<&dyn Display> {
     let mut first = 0;
     for display in record.displays() {

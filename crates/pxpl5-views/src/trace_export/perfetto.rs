@@ -125,7 +125,6 @@ fn event(kind: u64, track: u64) -> Message {
     Message::default().number(EVENT_TYPE, kind).number(EVENT_TRACK, track)
 }
 
-/// Returns the events of a track with their times.
 fn events(track: u64, events: &Events) -> Vec<(u64, Message)> {
     match events {
         Events::Slices(slices) => slices.iter().flat_map(|slice| ends(track, slice)).collect(),

@@ -21,8 +21,9 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingEr
     Ok(rows)
 }
 
-/// Width and height in pixels of the small slices on which passes are counted. The exact volume of such a slice is more
-/// than one pixel thick at the rim. A taper from one pixel at the axis is therefore possible.
+/// Width and height in pixels of the small slices on which passes are counted. At the rim, the exact volume of such a
+/// slice is thicker than a pixel. The tapered clip needs this, because it is a pixel thick at the axis and becomes
+/// thicker towards the rim.
 const SMALL: u64 = 192;
 
 /// Returns figure P5: the number of draws of one triangle per slice, without bins.
@@ -45,7 +46,7 @@ fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     published.into_iter().map(count).collect()
 }
 
-/// Returns a recording of the triangle [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
+/// Returns the draw call of the triangle [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
 fn small_triangle() -> Result<CommandBuffer, SettingError> {
     let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
     let corner = |corner: [f64; 3]| ColouredVertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);
@@ -55,8 +56,8 @@ fn small_triangle() -> Result<CommandBuffer, SettingError> {
     Ok(context.present())
 }
 
-/// Returns figures D8, P9 and D7. These figures are the numbers of queries and clears for a volume, with and without
-/// batches, and the number of words in a slice.
+/// Returns figures P9 (pixels per word), D7 (bytes of a packed slice) and D8. D8 is the number of queries and stencil
+/// clears of a volume, with and without batches.
 fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let drawn = |batch| {
         // The same triangle is drawn with batches of one slice and of four slices.
@@ -79,7 +80,9 @@ fn batches(display: &SweptDisplay, workers: &dyn Workers) -> Result<Vec<FigureRo
     ])
 }
 
-/// Returns figures D1, D2 and D5 from the matrices of the views and the instants of the strobes (flashes).
+/// Returns figures D1, D2 and D5, computed from the matrices of the views and the instants of the strobes (flashes). D1
+/// is the angle between neighbouring slices. D2 is the number of distinct planes, and how often per second each plane
+/// is shown. D5 is the distance between the same pixel of neighbouring slices at the rim.
 fn planes(views: &[SliceView]) -> Vec<FigureRow> {
     let across = |k: usize| views[k].view.transpose().x_axis.truncate();
     let angle = |k: usize| {
@@ -111,7 +114,8 @@ fn planes(views: &[SliceView]) -> Vec<FigureRow> {
     ]
 }
 
-/// Returns the plane of a slice as the bits of its normal. Both directions of the normal give the same bits.
+/// Returns the plane of a slice in a form that can be compared: the bits of its normal. Both directions of the normal
+/// give the same bits.
 fn plane(view: &SliceView) -> [u64; 2] {
     let normal = view.view.transpose().z_axis;
     let sign = if normal.x < 0.0 || (normal.x == 0.0 && normal.z < 0.0) { -1.0 } else { 1.0 };

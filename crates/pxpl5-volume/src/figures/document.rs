@@ -39,8 +39,8 @@ fn head(text: &mut String, figures: &VolumeFigures) {
          - *derived*: The number follows from printed numbers by a formula.\n\n\
          - *measured*: The number was counted in the computed volume of a scene, with the hyperbolic clip and a projection along\n  \
            the normal of each slice.\n\n\
-         The paper prints no times, rates or speed-ups. The times that `pxpl5 volume run` prints come from a model of a computer\n\
-         of 2005.\n\n\
+         The SpatialGL paper prints no times, rates or speed-ups. The times that `pxpl5 volume run` prints come from a model of a\n\
+         computer of 2005.\n\n\
          The table has only rows for which the code could have produced another value. The section \"Definitions\" lists the\n\
          inputs of the model and the numbers that follow from these inputs by arithmetic. The model meets {met} of {} rows.\n\n",
         figures.figures.len()
@@ -79,7 +79,7 @@ fn missed(text: &mut String, rows: &[FigureRow]) {
         let scene = row.scene.as_deref().unwrap_or("the model");
         let _ = writeln!(
             text,
-            "\n- Row **{}** (\"{}\") is missed. The expected value is {} {}, and the value of {scene} is {}. {}",
+            "\n- Row **{}** (\"{}\") is missed: the expected value is {} {}, and the value of {scene} is {}. {}",
             row.id,
             row.statement,
             expected(row),
@@ -101,8 +101,8 @@ fn definitions(text: &mut String, all: &[Definition]) {
     let _ = write!(
         text,
         "\n## Definitions\n\n\
-         The table lists the inputs that the paper prints, and the numbers that follow from these inputs by arithmetic. No\n\
-         simulation could change these numbers.\n\n{}",
+         The following table lists the inputs that the paper prints, and the numbers that follow from these inputs by arithmetic.\n\
+         No simulation could change the numbers in the table of definitions.\n\n{}",
         table(&columns, all)
     );
 }
@@ -146,15 +146,15 @@ fn pictures(text: &mut String) {
     text.push_str(
         "\n## Pictures\n\n\
          ![Figures 4 to 12](pictures/volumetric-figures.png)\n\n\
-         The picture shows figures 4 to 12 of the paper, row by row. The paper has no figures 1 to 3. The command `pxpl5 volume\n\
-         figures --out DIR` draws the figures from values that the model computes for every pixel. The first row of the picture\n\
-         shows a slice volume, its orientation and a tapered clip. The second row shows a biased evaluation, a hyperbola and a\n\
-         sliver. The third row shows bin planes, outcodes and a tile query.\n\n\
+         The picture shows figures 4 to 12 of the SpatialGL paper, row by row. The SpatialGL paper has no figures 1 to 3. The\n\
+         command `pxpl5 volume figures --out DIR` draws the figures from values that the model computes for every pixel. The\n\
+         first row of the picture shows a slice volume, its orientation and a tapered clip. The second row of the picture shows a\n\
+         biased evaluation, a hyperbola and a sliver. The third row of the picture shows bin planes, outcodes and a tile query.\n\n\
          ![Clips and projections](pictures/volumetric-variants.png)\n\n\
          The picture shows the Mig for a viewer 40 degrees to the right and 25 degrees above. All views have the same exposure.\n\
-         The command `pxpl5 volume compare --scene mig --out DIR` makes the picture. From top to bottom, the rows are prism,\n\
-         user planes, exact, tapered, parallel and hyperbola. The columns are a projection along the normal of each slice, a\n\
-         projection for one eye position in all slices, and a jittered projection.\n",
+         The command `pxpl5 volume compare --scene mig --out DIR` makes the picture. From top to bottom, the rows of the picture\n\
+         are prism, user planes, exact, tapered, parallel and hyperbola. The columns of the picture are a projection along the\n\
+         normal of each slice, a projection for one eye position in all slices, and a jittered projection.\n",
     );
 }
 
@@ -162,8 +162,8 @@ fn pictures(text: &mut String) {
 fn numbers(text: &mut String) {
     let _ = write!(
         text,
-        "\n## Numbers\n\nThe table lists the settings of the model. An assumed number has a range of values, because the paper does not print the\n\
-         number. The option `--set PATH=VALUE` changes a setting.\n\n\
+        "\n## Numbers\n\nThe following table lists the settings of the model. An assumed number has a range of values, because the paper does not\n\
+         print the number. The option `--set PATH=VALUE` changes a setting.\n\n\
          | path | value | unit | provenance | range | source |\n|---|---|---|---|---|---|\n"
     );
     for (path, Entry { info, value }) in VolumeSettings::paper().numbers() {

@@ -23,7 +23,7 @@ pub struct FigureDrawing {
     pub number: u32,
     /// Subject of the figure in the SpatialGL paper's caption, and meaning of the pixels.
     pub about: &'static str,
-    /// The drawing itself.
+    /// Pixels of the drawing.
     pub picture: RgbImage,
 }
 
@@ -134,9 +134,9 @@ fn plan(clip: ClipKind) -> Result<RgbImage, SettingError> {
     }))
 }
 
-/// Draws points red where the distance from the first plane is positive, and green where the distance from the second
-/// plane is positive. The lobe (half of the double wedge) with two positive distances is yellow, and the lobe with two
-/// negative distances is dark.
+/// Draws the disc of a display seen from above, to show the signs of the distances from the boundary planes of a slice.
+/// Points are red on the positive side of the first plane, and green on the positive side of the second plane. The half
+/// of the double wedge with two positive signs is yellow, and the half with two negative signs is dark.
 fn orientation() -> Result<RgbImage, SettingError> {
     let display = few(ClipKind::Exact)?;
     let spatialgl::SliceVolume::Wedge(planes, _) = display.views()[1].volume else {

@@ -154,8 +154,8 @@ fn stencil(frame: &VolumeFrame) -> Vec<FigureRow> {
     ]
 }
 
-/// Returns figure P19: the largest shift of a point by the shear at the near or far plane of a slice, and the number of
-/// distinct eyes.
+/// Returns the rows of figure P19. The first row is the largest shift of a point by the shear, at the near or far plane
+/// of a slice. The other rows are the numbers of distinct eyes and of distinct matrices.
 fn jitter() -> Result<Vec<FigureRow>, SettingError> {
     let clip = SliceClip::Hyperbolic(0.25);
     let wedge = HalfWedge::new(396, 384.0);

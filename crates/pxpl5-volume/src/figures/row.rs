@@ -8,11 +8,11 @@ use serde::Serialize;
 /// All figures of the SpatialGL paper, with the results of the model.
 #[derive(Clone, Debug, Serialize)]
 pub struct VolumeFigures {
-    /// Name and version of this record's layout.
+    /// Name and version of the JSON layout of this data.
     pub schema: &'static str,
     /// One row for each figure that the code computes or counts: printed figures by number, then derived figures.
     pub figures: Vec<FigureRow>,
-    /// Inputs of the model, and numbers that follow from inputs by arithmetic alone, all without a verdict.
+    /// Inputs of the model, and numbers that follow from inputs by arithmetic alone. These numbers are not compared.
     pub definitions: Vec<Definition>,
     /// Statements of the SpatialGL paper without numbers, each with the measurements that test it.
     pub shown: Vec<ShownStatement>,

@@ -47,7 +47,7 @@ const LARGEST_COEFFICIENT: f64 = (1u64 << 53) as f64;
 
 impl SliceTriangle {
     /// Creates the command for three corners in the image of a slice. Returns `None` for a triangle without area, or if
-    /// the coefficients of its planes do not fit the machine's words.
+    /// the coefficients of its planes have too many bits for the machine.
     #[must_use]
     pub fn of_corners(corners: [SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> Option<Self> {
         let [a, b, c] = corners.map(|corner| corner.place.map(i64::from));
@@ -148,9 +148,9 @@ fn clip(corners: &[SliceCorner; 3], size: Size, wedge: HalfWedge, bias: f64) -> 
     Some(Quadratic { xx, xy, yy, x, y, one })
 }
 
-/// Returns a colour channel as a linear function over the triangle. Half a level is added, so that truncation of the
-/// fraction rounds to the nearest. The gradient of a very thin triangle may not fit the words. The mean of the corners
-/// then replaces the linear function.
+/// Returns a colour channel as a linear function over the triangle. Half a level is added, so that truncation rounds to
+/// the nearest level. If the triangle is so thin that the gradient has too many bits, the mean of the corners replaces
+/// the linear function.
 fn gradient(corners: &[SliceCorner; 3], area: f64, channel: usize) -> Linear {
     let one = f64::from(1 << COLOUR_FRACTION_BITS);
     let value = corners.map(|corner| corner.colour[channel]);

@@ -13,10 +13,11 @@ use spatialgl::{Combine, HalfWedge, SliceImage, SliceRenderer, SliceStats, Slice
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-/// The pixel array that draws.
+/// A model of the pixel array, with which slices are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArrayKind {
-    /// The fast array, which computes whole values, only for the pixels that a command touches.
+    /// The fast array, which computes with whole numbers instead of single bits, and only for the pixels that a command
+    /// touches.
     Lanes,
     /// The reference model of the array, which executes one bit of one instruction at a time. The model skips only
     /// steps that cannot change a result.
@@ -33,7 +34,7 @@ pub struct RendererWork {
     /// Number of triangle commands. A triangle counts once for each region that the triangle touches in a slice.
     pub commands: u64,
     /// Number of omitted triangles. A triangle is omitted if it has no area on the sub-pixel grid, or if the
-    /// coefficients of its planes do not fit the words.
+    /// coefficients of its planes have too many bits for the machine.
     pub left_out: u64,
     /// Number of clocks for clears, triangles and halftones.
     pub clocks: u64,
@@ -119,8 +120,7 @@ impl PixelPlanesRenderer {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the work for each of these slices at the time when the slice was last drawn. The work is zero for a
-    /// slice that was never drawn.
+    /// Returns the work of the last drawing of each of these slices. The work is zero for a slice that was never drawn.
     #[must_use]
     pub fn loads(&self, views: &[SliceView]) -> Vec<SliceLoad> {
         let loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
@@ -207,8 +207,8 @@ impl PixelPlanesRenderer {
     }
 }
 
-/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so all commands are
-/// legal.
+/// Executes a list of commands and returns its clocks and colours. This crate made the commands, so every command is
+/// valid.
 fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> (u64, std::sync::Arc<[Word]>) {
     let clocks = array.execute(words).expect("pxpl5-volume: commands of our own").clocks;
     (clocks, array.read_colour(width, height))

@@ -51,7 +51,7 @@ pub struct SimulatedRow {
     pub ms: f64,
     /// Volumes per second if each volume begins after all tiles of the previous volume have arrived.
     pub volumes_hz: f64,
-    /// Lower bound of the time for the same messages, given by the slowest part of the machine.
+    /// Lower bound of the time for the same messages: the time of the slowest part of the machine.
     pub bound: BoundRow,
     /// Difference between the simulated time and its lower bound, as a percentage of the bound.
     pub over_bound_percent: f64,
@@ -70,7 +70,8 @@ pub struct SimulatedRow {
 /// Number of ring words that a [`CopyTarget`] takes in a command.
 const COPY_WORDS: u32 = 9;
 
-/// Simulates the messages of a volume on a machine with the given numbers of boards, each 1 or more.
+/// Simulates the messages of a volume on a machine with `renderers` renderers and `processors` graphics processors,
+/// each 1 or more.
 ///
 /// # Errors
 ///
@@ -84,7 +85,6 @@ pub fn simulate(
     Ok(Machine::new(traffic, renderers, processors)?.run(bounds))
 }
 
-/// The events of the simulation.
 #[derive(Debug)]
 enum Event {
     Ring(RingEvent),
@@ -418,9 +418,9 @@ fn words_of(body: &Body) -> u32 {
     if let Body::Words(words) = body { words.len() as u32 } else { 0 }
 }
 
-/// Returns the renderer's times for drawing slices. The time of a slice triangle replaces the time of a triangle, and
-/// the time of a halftone replaces the time of deferred shading. The programs for slices use the codes of the replaced
-/// commands.
+/// Returns the renderer's times for drawing slices. The programs for slices use the codes of other commands, so these
+/// codes get the times of the programs for slices. A slice triangle takes the place of a triangle, and a halftone takes
+/// the place of deferred shading.
 fn slice_timing(layout: &Layout) -> RendererTiming {
     RendererTiming {
         triangle_clocks: u64::from(SliceTriangle::clocks(layout)),

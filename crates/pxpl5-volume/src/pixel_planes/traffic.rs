@@ -18,7 +18,6 @@ pub struct SliceTraffic {
     pub(super) slices: Vec<SliceMessages>,
 }
 
-/// The messages of one slice.
 #[derive(Clone, Debug)]
 pub(super) struct SliceMessages {
     pub(super) load: SliceLoad,

@@ -22,7 +22,7 @@ pub enum Rotation {
 }
 
 impl Rotation {
-    /// All choices with their names in options and files.
+    /// Both directions of the turn, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("x-to-z", Self::XToZ), ("z-to-x", Self::ZToX)];
 }
 
@@ -191,8 +191,8 @@ fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     if is_turned { (-sin, -cos) } else { (sin, cos) }
 }
 
-/// Returns the boundary planes A = L_k and B = -L_(k+1) of slice k. L_k(p) is z cos b_k - x sin b_k, and the angle b_k
-/// is the angle of slice k minus half the angle between slices.
+/// Returns the two boundary planes of slice k. Plane A is L_k, and plane B is -L_(k+1), with L_k(p) = z cos b_k - x sin
+/// b_k. The angle b_k is the angle of slice k minus half the angle between slices.
 fn boundaries(config: &SweptConfig, k: u32) -> WedgePlanes {
     let (sin, cos) = direction(config, 2 * i64::from(k) - 1);
     let (next_sin, next_cos) = direction(config, 2 * i64::from(k) + 1);

@@ -1,6 +1,6 @@
 //! The figures of the SpatialGL paper. A [`FigureRow`] compares a number of the paper with a number that the code
-//! computes or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone. A
-//! definition has no verdict.
+//! computes or counts. A [`Definition`] is an input of the model, or follows from inputs by arithmetic alone, so no
+//! comparison is possible.
 
 use crate::perspecta::timing::PerspectaConfig;
 use crate::{
@@ -51,8 +51,8 @@ fn source(id: &str) -> &'static str {
 fn cause(id: &str) -> &'static str {
     match id {
         "P17" => {
-            "The paper says \"most scenes\" and does not name them. The interval from 5 to 20 is an assumption of the project. A slender \
-             object such as the Mig leaves most of the volume empty."
+            "The SpatialGL paper says \"most scenes\" and does not name these scenes. The interval from 5 to 20 is \
+             an assumption of the project. A slender object such as the Mig leaves most of the volume empty."
         }
         "section 6" => {
             "The expected value holds for small triangles. The triangles of the Mig are large, so they \
@@ -62,10 +62,10 @@ fn cause(id: &str) -> &'static str {
     }
 }
 
-/// Least and greatest number of months in which the performance of GPUs doubles (published, P20).
+/// Least and greatest number of months in which the performance of GPUs doubles (figure P20 of the SpatialGL paper).
 pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
 
-/// Number of months in which the performance of CPUs doubles (published, P20).
+/// Number of months in which the performance of CPUs doubles (figure P20 of the SpatialGL paper).
 pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
 
 /// Returns the inputs of the model that the SpatialGL paper prints, and the numbers that follow from them by
@@ -83,10 +83,10 @@ fn defined(id: &'static str, statement: &'static str, value: f64, unit: &'static
     Definition { id, statement: statement.into(), source: source(id), value, unit, provenance: origin(id) }
 }
 
-/// Number of bits of a pixel on the GPU: 4 channels of 8 bits (published, P6).
+/// Number of bits of a pixel on the GPU: 4 channels of 8 bits (figure P6 of the SpatialGL paper).
 const GPU_PIXEL_BITS: f64 = 32.0;
 
-/// Number of bits of a pixel on the projector: 3 channels of 1 bit (published, P7).
+/// Number of bits of a pixel on the projector: 3 channels of 1 bit (figure P7 of the SpatialGL paper).
 const PROJECTOR_PIXEL_BITS: f64 = 3.0;
 
 fn inputs(config: &PerspectaConfig) -> Vec<Definition> {
@@ -122,8 +122,8 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
     ]
 }
 
-/// Returns figures P20 and D12. P20 states how fast processors improve. D12 is the fraction of the time that the CPU
-/// will need in 18 months, if CPU and GPU need equal times today.
+/// Returns figures P20 and D12. P20 states how fast processors improve. D12 is the CPU's percentage of the total time
+/// in 18 months, if CPU and GPU take equal times today.
 fn doubling() -> Vec<Definition> {
     // In 18 months the CPU takes half of its time. A GPU that doubles every m months takes 2^(-18/m) of its time.
     let share = |months: f64| 100.0 / (1.0 + libm::exp2(1.0 - CPU_DOUBLES_MONTHS / months));

@@ -32,8 +32,8 @@ pub(crate) enum StoreMessage<'a> {
     Tile { slice: u32, number: u32, tile: u32, words: &'a [Word] },
 }
 
-/// Parses a message. Returns `None` if the message is neither a map nor a tile. This function does not check that the
-/// slices and tiles of the message exist. The frame store checks this.
+/// Parses a message. Returns `None` if the message is neither a map nor a tile. The frame store later checks that the
+/// slices and tiles of the message exist.
 pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
     let (header, rest) = words.split_at_checked(HEADER_WORDS)?;
     let [kind, numbers, tile] = *header else { return None };

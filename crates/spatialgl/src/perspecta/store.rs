@@ -126,7 +126,6 @@ impl FrameStore {
         Some(buffer)
     }
 
-    /// Returns the words of a slice of the visible store.
     pub(crate) fn shown(&self, slice: usize) -> Option<&[Word]> {
         self.volumes[self.shown].get(slice).map(|words| words.as_slice())
     }

@@ -46,8 +46,8 @@ impl PerspectaConfig {
     }
 
     /// Returns the instant at which strobe (flash) `slice` of a revolution begins, and the duration of the strobe. For
-    /// strobe k of N in revolution n, the instant is (n + k / N) / f, where f is the number of revolutions per second.
-    /// The duration is `lit_percent` of the interval between strobes.
+    /// strobe k of N in revolution n, the instant is (n + k / N) / f, for f revolutions per second. The duration is
+    /// `lit_percent` of the interval between strobes.
     #[must_use]
     pub fn strobe(&self, revolution: u64, slice: u64) -> (Time, Span) {
         let begin = self.instant(revolution, slice);

@@ -75,7 +75,7 @@ impl Iterator for ReachablePrimitives<'_> {
     }
 }
 
-/// The primitives of a recording that a group of slices draws, in the order of drawing.
+/// The primitives of a command buffer that a group of slices draws, in the order of drawing.
 #[derive(Clone, Debug, Default)]
 pub struct Bin {
     primitives: Vec<u32>,
@@ -84,10 +84,11 @@ pub struct Bin {
 }
 
 impl Bin {
-    /// Creates a bin from the indices of primitives in the recording. The indices must be in ascending order.
+    /// Creates a bin from the indices of primitives in the command buffer. The indices must be in ascending order.
     ///
     /// # Panics
-    /// Panics if the recording has no such primitive.
+    ///
+    /// Panics if the command buffer has no such primitive.
     #[must_use]
     pub fn new(commands: &CommandBuffer, primitives: Vec<u32>) -> Self {
         let balls = primitives.chunks(CLUSTER).map(|cluster| ball(commands, cluster)).collect();
@@ -95,7 +96,7 @@ impl Bin {
         Self { primitives, balls, each }
     }
 
-    /// Returns the indices of the primitives in the recording.
+    /// Returns the indices of the primitives in the command buffer.
     #[must_use]
     pub fn primitives(&self) -> &[u32] {
         &self.primitives

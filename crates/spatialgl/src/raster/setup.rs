@@ -87,7 +87,6 @@ impl Edge {
         self.b * (y - self.y) + self.c
     }
 
-    /// Returns the value of the edge function at a homogeneous point.
     #[inline(always)]
     fn dot(&self, corner: &Place) -> f64 {
         if corner.w > 0.0 {
@@ -224,7 +223,6 @@ fn extent(values: [f64; 3], most: f64) -> [u32; 2] {
     [first as u32, end as u32]
 }
 
-/// Returns the sum of the corners' values, weighted by `weights`.
 #[inline(always)]
 pub(super) fn weighted(weights: [f64; 3], values: [f64; 3]) -> f64 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]

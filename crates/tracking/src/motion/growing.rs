@@ -26,8 +26,8 @@ impl GrowingRecording {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] unless the first new sample is later than the last existing sample. Nothing is appended
-    /// in this case.
+    /// Returns a [`SettingError`] unless the first new sample is later than the last existing sample. Nothing is
+    /// appended in this case.
     pub fn extend(&self, more: &Recording) -> Result<(), SettingError> {
         let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
         let (last_ps, found_ps) = (known.span_ps().1, more.span_ps().0);

@@ -32,10 +32,11 @@ const FARTHEST_M: f64 = 1e8;
 /// the tracker has lost and found the head.
 const FASTEST: f64 = 1e6;
 
-/// Least length of a gap, as a multiple of the median time between two samples. A gap must also be longer than `GAP_S`
-/// seconds. Both are assumed, with ranges of 3 to 20 and 0.1 to 1. At 200 degrees per second a head turns by 40 degrees
-/// in 0.2 s, which no interpolation can reconstruct.
+/// Least length of a gap, as a multiple of the median time between two samples. Assumed, 3 to 20. A gap must also be
+/// longer than `GAP_S`.
 const GAP_TIMES: u64 = 5;
+/// Least length of a gap, seconds. Assumed, 0.1 to 1. At 200 degrees per second a head turns by 40 degrees in 0.2 s,
+/// which no interpolation can reconstruct.
 const GAP_S: f64 = 0.2;
 
 /// The time stamp (ps) and the pose of a sample.
@@ -107,8 +108,9 @@ impl Recording {
         Self::read_as(input, &RecordingFormat::default())
     }
 
-    /// Reads a file of poses with given columns and axes. If the format maps columns, the file may have other columns
-    /// too, and time counts from the first line. Commas, semicolons, tabs or blanks separate the columns.
+    /// Reads a file of poses with the columns and axes of `format`. If [`RecordingFormat::columns`] is not empty, the
+    /// file may have other columns too, and time counts from the first line. Commas, semicolons, tabs or blanks
+    /// separate the columns.
     ///
     /// # Errors
     ///
@@ -129,8 +131,8 @@ impl Recording {
 
     /// Creates a recording from samples: ascending times in seconds, each with the pose at this time.
     ///
-    /// The axes are those of [`Axes::OpenGl`]. Times are rounded to picoseconds. The same limits apply as in files. If
-    /// several samples have the same time, only the first is kept.
+    /// The axes follow [`Axes::OpenGl`]. Times are rounded to picoseconds. Times and positions have the same
+    /// limits as in a file. If several samples have the same time, only the first is kept.
     ///
     /// ```
     /// use glam::DVec3;

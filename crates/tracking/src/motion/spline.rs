@@ -11,7 +11,8 @@ use crate::time::seconds;
 /// quintic B-spline, which equals the centre value of the B-spline of degree 11: 655177 / 1663200.
 const VARIANCE: f64 = 655_177.0 / 1_663_200.0;
 
-/// Number of successive knots with the same activity level, so that calm and lively periods last some seconds.
+/// Number of successive knots with the same activity level, so that periods of weak and of strong motion last some
+/// seconds.
 const KNOTS_PER_SPELL: u64 = 8;
 
 /// The distribution of the random activity level of a head. The level multiplies the motion's amplitude. With u uniform
@@ -48,7 +49,7 @@ pub(super) struct Spline {
 
 impl Spline {
     /// Creates splines whose values have the standard deviations `deviation`. Splines with the same seed `spells` have
-    /// their lively periods at the same times.
+    /// their periods of strong motion at the same times.
     pub(super) fn new(spacing_ps: u64, deviation: DVec3, activity: Activity, seed: u64, spells: u64) -> Self {
         let seeds = core::array::from_fn(|axis| stream(seed, axis as u64));
         Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, seeds, spells }

@@ -20,11 +20,11 @@ pub struct Band {
     pub spacing_s: f64,
     /// Standard deviations of the motion: yaw, pitch and roll in degrees, or x, y and z in metres.
     pub deviation: [f64; 3],
-    /// Amplitude of the calmest periods relative to the liveliest, 0 to 1. A value of 1 makes all periods equally
-    /// lively.
+    /// Amplitude of the periods of weakest motion, relative to the periods of strongest motion, 0 to 1. With 1, all
+    /// periods have the same amplitude.
     pub calm: f64,
-    /// Exponent that makes lively periods rare, 1 to 16. The amplitude of a period is calm + (1 - calm) u^power with u
-    /// uniform in 0 to 1.
+    /// Exponent that makes periods of strong motion rare, 1 to 16. The amplitude of a period is calm + (1 - calm)
+    /// u^power with u uniform in 0 to 1.
     pub power: u32,
 }
 

@@ -5,9 +5,7 @@ use crate::rotation;
 /// A prediction filter for one quantity, either position or orientation. The filter must receive measured values in
 /// order of time.
 pub(super) trait Channel<T>: Send {
-    /// Discards all past values and starts again from this value.
     fn restart(&mut self, t_ps: u64, value: T);
-    /// Adds a measured value.
     fn update(&mut self, t_ps: u64, value: T);
     /// Returns the predicted value at `dt_s` seconds after the last update. A negative `dt_s` gives an earlier value.
     fn extrapolate(&self, dt_s: f64) -> T;
@@ -16,9 +14,7 @@ pub(super) trait Channel<T>: Send {
 /// A quantity whose differences are vectors: a position (difference in m) or an orientation (difference as a rotation
 /// vector, rad).
 pub(super) trait VectorDifference: Copy + Send {
-    /// Returns the difference from `origin` to `self` as a vector.
     fn since(self, origin: Self) -> DVec3;
-    /// Returns the quantity after a change by a vector.
     fn moved(self, by: DVec3) -> Self;
 }
 

@@ -11,9 +11,9 @@ use crate::config as table;
 use crate::error::check;
 use crate::tracker::TrackerConfig;
 
-/// Least position noise (m) and least orientation noise (degrees) that a Kalman filter may assume. A noise of 0 would
-/// make the covariance matrix singular.
+/// Least position noise that a Kalman filter may assume, m. With a noise of 0 the covariance matrix would be singular.
 const LEAST_NOISE_M: f64 = 1e-6;
+/// Least orientation noise that a Kalman filter may assume, degrees.
 const LEAST_NOISE_DEG: f64 = 1e-4;
 
 /// A prediction method, which computes a pose at another instant from the tracker's reports.
@@ -25,9 +25,9 @@ pub enum PredictorKind {
     ConstantVelocity,
     /// Constant acceleration: the last reported pose plus velocity x time plus half the acceleration x time squared.
     ConstantAcceleration,
-    /// Two Kalman filters. The filter for position is linear, and its state [p, v, a] is position, velocity and
-    /// acceleration. The filter for orientation is extended, and its state [q, omega, domega] is quaternion, angular
-    /// velocity and angular acceleration.
+    /// Two Kalman filters. The filter for position is linear and estimates position, velocity and acceleration. The
+    /// filter for orientation is an extended Kalman filter and estimates a quaternion, the angular velocity and the
+    /// angular acceleration.
     Kalman,
 }
 
@@ -54,21 +54,21 @@ pxpl5_sim::parameters::named!(PredictorKind, "predictor", PredictorKind::ALL.map
 pub struct PredictorConfig {
     /// Prediction method of the predictor.
     pub kind: PredictorKind,
-    /// Distance, as a number of reports from 1 to 16, between the two positions whose difference gives a velocity.
+    /// Number of reports, 1 to 16, from the older to the newer of the two positions whose difference gives a velocity.
     /// Kalman filters ignore this number.
     pub position_baseline: u32,
-    /// Distance, as a number of reports from 1 to 16, between the two orientations whose difference gives an angular
-    /// velocity. Kalman filters ignore this number.
+    /// Number of reports, 1 to 16, from the older to the newer of the two orientations whose difference gives an
+    /// angular velocity. Kalman filters ignore this number.
     pub orientation_baseline: u32,
     /// Random position error that the filter assumes for each report, rms along each axis, m.
     pub position_noise_m: f64,
     /// Random orientation error that the filter assumes for each report, rms about each axis, degrees.
     pub orientation_noise_deg: f64,
-    /// Assumed strength of random changes of the head's acceleration, m/s^3/sqrt(Hz): the root of the spectral density
-    /// of white jerk.
+    /// Strength of random changes of the head's acceleration, as a Kalman filter assumes it, m/s^3/sqrt(Hz). The jerk
+    /// is white noise, and the value is the root of its spectral density.
     pub position_jerk: f64,
-    /// Assumed strength of random changes of the head's angular acceleration, rad/s^3/sqrt(Hz): the root of the
-    /// spectral density of white jerk.
+    /// Strength of random changes of the head's angular acceleration, as a Kalman filter assumes it, rad/s^3/sqrt(Hz).
+    /// The angular jerk is white noise, and the value is the root of its spectral density.
     pub orientation_jerk: f64,
     /// Longest time ahead for which the predictor extrapolates, ps. For later instants the predictor returns the last
     /// reported pose.
@@ -165,9 +165,8 @@ impl PredictorConfig {
         Ok(())
     }
 
-    /// Returns these settings as a parameter table. The table has room for one baseline, the distance in reports
-    /// between two poses whose difference gives a velocity. `baseline` is therefore the baseline of either the position
-    /// or the orientation.
+    /// Returns these settings as a parameter table. The table has only one baseline, so `baseline` is the value for
+    /// either position or orientation. A baseline is the number of reports between the two poses of a difference.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,

@@ -31,9 +31,9 @@ impl PredictionDeviation {
     }
 }
 
-/// Computes the errors of a predictor for each prediction interval. Only reports whose orientation was measured at or
-/// after `from_ps` and before `until_ps` are evaluated. A prediction interval begins when the orientation of the last
-/// report was measured.
+/// Computes the errors of a predictor for each prediction interval in `horizons_ps`. An interval begins when the
+/// orientation of the last report was measured. Only reports whose orientation was measured at or after `from_ps` and
+/// before `until_ps` are evaluated.
 ///
 /// # Errors
 ///

@@ -21,10 +21,11 @@ struct Covariance {
     acceleration: DMat3,
 }
 
-/// Extended Kalman filter for orientation with state [q, omega, domega], driven by white angular jerk.
+/// Extended Kalman filter for orientation. The state is a quaternion, the angular velocity omega (rad/s) and the
+/// angular acceleration domega (rad/s^2) in the world frame. Angular jerk is white noise.
 ///
-/// The error of the quaternion is a world-frame rotation vector (the multiplicative form). The covariance is therefore
-/// 9 x 9 and regular, and the quaternion keeps its length. omega (rad/s) and domega (rad/s^2) are in the world frame.
+/// The filter describes the error of the quaternion by a rotation vector. The covariance is therefore 9 x 9 and
+/// regular, and the quaternion keeps its length.
 #[derive(Clone, Debug)]
 pub(super) struct OrientationKalman {
     belief: NoiseModel,
@@ -144,7 +145,6 @@ impl Channel<DQuat> for OrientationKalman {
     }
 }
 
-/// Returns the covariance matrix of three independent axes with the variance `variance`.
 fn isotropic(variance: f64) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(variance))
 }

@@ -8,14 +8,15 @@ use crate::time::span_s;
 pub(super) struct NoiseModel {
     /// Variance of the measurement noise along each axis.
     pub(super) measurement: f64,
-    /// Spectral density of the white jerk of the motion.
+    /// Spectral density of the motion's jerk, which the filter treats as white noise.
     pub(super) jerk: f64,
     /// Variances of the head's velocity and acceleration that the filter assumes before the first measurement.
     pub(super) start: (f64, f64),
 }
 
-/// Returns the increase over `dt` seconds of the covariance of value, velocity and acceleration, caused by white jerk
-/// of density 1. The increase is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T over s.
+/// Returns the covariance that is added over `dt` seconds for value, velocity and acceleration. The cause is jerk that
+/// is white noise of spectral density 1. The covariance is the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T for s from 0 to
+/// `dt`.
 pub(super) fn white_jerk(dt: f64) -> DMat3 {
     let d2 = dt * dt;
     let d3 = dt * dt * dt;
@@ -26,8 +27,8 @@ pub(super) fn white_jerk(dt: f64) -> DMat3 {
     )
 }
 
-/// Linear Kalman filter with state [p, v, a] for each axis, driven by white jerk. All axes have the same noise and
-/// measurement times, so they share one covariance.
+/// Linear Kalman filter for position. Its state is position, velocity and acceleration along each axis, and jerk is
+/// white noise. All axes have the same noise and measurement times, so they share one covariance.
 #[derive(Clone, Debug)]
 pub(super) struct PositionKalman {
     belief: NoiseModel,

@@ -9,10 +9,11 @@ use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{TrackerModel, TrackerReport};
 
-/// Length in seconds of the motion on which a filter is tuned. The first `SETTLING_S` seconds are not evaluated. Lively
-/// periods are rare, so the motion must be long. With 20 seconds, a filter tuned for 200 ms predicted 200 ms of another
-/// motion worse than a filter tuned for 50 ms.
+/// Length in seconds of the motion on which a filter is tuned. The motion must be long, because periods of fast motion
+/// are rare. With only 20 seconds, the filter tuned for predictions of 200 ms was worse on another motion than the
+/// filter tuned for 50 ms.
 const TRAINING_S: u64 = 100;
+/// Time at the start of the motion that is not evaluated, seconds.
 const SETTLING_S: u64 = 1;
 
 /// Greatest number of reports on which a filter is tuned: a 120 Hz tracker sends this number in `TRAINING_S`. A faster
@@ -23,11 +24,13 @@ const MOST_REPORTS: usize = 12_000;
 /// uses the next seed.
 const TRAINING_SEED: u64 = 0x7475_6e65;
 
-/// Range of the decimal logarithm in the search for the best white jerk. The search has `ROUNDS` rounds with
-/// `JERKS_A_ROUND` values each. The distance of two values in the last round is 0.2 decades or less. This distance
-/// changes the filter's time constant by 8 %, because the time constant varies with the sixth root of the jerk.
+/// Range of the decimal logarithm of the jerk's strength that the search covers.
 const JERK_DECADES: (f64, f64) = (-6.0, 6.0);
+/// Number of values that each round of the search tries. In the last round, two neighbouring values differ by a factor
+/// of 10^0.2 or less. The time constant of a filter varies with the sixth root of the jerk, so this factor changes the
+/// time constant by only 8 %.
 const JERKS_A_ROUND: usize = 13;
+/// Number of rounds of the search. The second round covers only the neighbourhood of the best value of the first round.
 const ROUNDS: usize = 2;
 
 /// Greatest number of reports between the two poses whose difference gives a velocity.
@@ -63,8 +66,8 @@ pub struct Tuned {
     pub training: Option<Training>,
 }
 
-/// Returns a seed for the tracker's noise during the tuning. The result always differs from `evaluated_seed`, the seed of the
-/// noise in the evaluated run.
+/// Returns a seed for the tracker's noise during the tuning. The result always differs from `evaluated_seed`, the seed
+/// of the noise in the evaluated run.
 pub fn training_seed(evaluated_seed: u64) -> u64 {
     if evaluated_seed == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
 }
@@ -72,11 +75,11 @@ pub fn training_seed(evaluated_seed: u64) -> u64 {
 /// Finds the predictor settings with the least mean error on a motion. The predicted instant is `interval_ps` after the
 /// instant at which the reported pose was true.
 ///
-/// For a Kalman filter the search covers the white jerk: 10^-6 to 10^6, in two rounds over a grid of its logarithm. For
-/// a prediction by differences, the search covers the baseline, which is the distance (1 to 16 reports) between the two
-/// poses of a difference. Position and orientation have separate values. The predictor assumes the noise that the
-/// tracker model adds. The assumed speeds and accelerations before the first report are the root mean squares of the
-/// motion.
+/// For a Kalman filter, the search covers the assumed strength of the head's jerk, from 10^-6 to 10^6. The search has
+/// two rounds over a grid of the logarithm of this strength. For a prediction by differences, the search covers the
+/// baseline, which is the distance (1 to 16 reports) between the two poses of a difference. Position and orientation
+/// have separate values. The predictor assumes the noise that the tracker model adds. The assumed speeds and
+/// accelerations before the first report are the root mean squares of the motion.
 ///
 /// The tuning uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
 /// tracker has no bias, metal or faults, and the seed of its noise differs from `evaluated_seed`. The same (motion,
@@ -176,7 +179,8 @@ impl TrainingData {
         Ok(sums.map(|sum| sum / (self.reports.len() - self.settled) as f64))
     }
 
-    /// Returns the settings with the best white jerks, and their mean errors in metres and degrees.
+    /// Returns the settings with the strengths of jerk that give the least errors. The second value has these mean
+    /// errors in metres and degrees.
     fn best_jerks(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut spans = [JERK_DECADES; 2];
         let mut best = [(f64::INFINITY, 0.0); 2];
@@ -198,8 +202,8 @@ impl TrainingData {
         Ok((PredictorConfig { position_jerk, orientation_jerk, ..*base }, best.map(|(error, _)| error)))
     }
 
-    /// Returns the settings with the best numbers of reports between the poses of a difference, and their mean errors
-    /// in metres and degrees.
+    /// Returns the settings with the baselines that give the least errors. A baseline is the number of reports between
+    /// the two poses of a difference. The second value has these mean errors in metres and degrees.
     fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut best = [(f64::INFINITY, 1.0); 2];
         for baseline in 1..=LONGEST_BASELINE {
@@ -221,8 +225,8 @@ fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     }
 }
 
-/// Returns the white jerk with the decimal logarithm `decades`, limited to the range that the filters of position and
-/// orientation both allow.
+/// Returns the strength of jerk with the decimal logarithm `decades`, limited to the range that the filters of position
+/// and orientation both allow.
 fn jerk(decades: f64) -> f64 {
     within("position_jerk", libm::pow(10.0, decades))
 }

@@ -15,7 +15,6 @@ pub enum Detection {
 }
 
 impl Detection {
-    /// Returns the greatest delay from the low point to its detection, in halves of a report interval.
     pub(super) fn greatest_delay_half_intervals(self) -> u64 {
         match self {
             Self::Crossing => 2,
@@ -28,8 +27,8 @@ impl Detection {
     }
 }
 
-/// A detector of the pendulum's low points in a sequence of reports. For a quarter of a swing after each detected low
-/// point, the detector detects no other low point.
+/// A detector of the pendulum's low points in a sequence of reports. After each low point, the detector ignores further
+/// low points for a quarter of a swing, because noise could cause them.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,

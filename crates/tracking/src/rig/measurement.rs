@@ -74,8 +74,8 @@ impl Side {
 /// Greatest rounding error of a mean latency, seconds: one picosecond, the unit of all instants.
 const ROUNDING_S: f64 = 1e-12;
 
-/// Latencies of the same passes of the pendulum, measured outside and inside, with limits of the differences. "Outside"
-/// means by oscilloscope, "inside" by time stamps.
+/// Latencies of the same passes of the pendulum, measured by oscilloscope ("outside") and by time stamps ("inside").
+/// The measurement also has limits of the differences between both methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// Measurements with the oscilloscope, one for each pass of the pendulum in order.

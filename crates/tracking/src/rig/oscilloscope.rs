@@ -49,7 +49,7 @@ impl ScopeTrace {
         &self.edges
     }
 
-    /// Returns the level of the trace at an instant. At a step this is the new level.
+    /// Returns the level of the trace at an instant. At a step, the result is the new level.
     pub fn level(&self, t_ps: u64) -> bool {
         let after = self.edges.partition_point(|edge| edge.t_ps <= t_ps);
         after > 0 && self.edges[after - 1].high

@@ -30,11 +30,11 @@ pub struct TrackerConfig {
     pub position_noise_m: f64,
     /// Random orientation error that changes with each report (white noise), rms about each axis, degrees.
     pub orientation_noise_deg: f64,
-    /// Constant position error, computed once from the seed and then the same in every report. The value is the root
-    /// mean square of this error along each axis, over all seeds, m.
+    /// Constant position error, m. Each run draws the error once from its seed. The value is the root mean square along
+    /// each axis, over all seeds.
     pub position_bias_m: f64,
-    /// Constant orientation error, computed once from the seed and then the same in every report. The value is the root
-    /// mean square of this error about each axis, over all seeds, degrees.
+    /// Constant orientation error, degrees. Each run draws the error once from its seed. The value is the root mean
+    /// square about each axis, over all seeds.
     pub orientation_bias_deg: f64,
     /// Gain a of the tracker's low-pass filter, above 0. The filter replaces its output x' by a x + (1 - a) x' at each
     /// measurement x. A gain of 1 turns the filter off.

@@ -6,8 +6,9 @@ use crate::pose::Pose;
 use crate::rotation;
 use crate::time::span_s;
 
-/// The raster offset of VDRT (Breglia 1981). Just before scan-out, a picture drawn for a predicted pose is shifted by
-/// the yaw and pitch error of the prediction. During the field the shift changes at the rates of yaw and pitch.
+/// The raster offset, a method of Breglia's display VDRT (1981). Just before scan-out, a picture drawn for a predicted
+/// pose is shifted by the yaw and pitch error of the prediction. During the field the shift changes at the rates of yaw
+/// and pitch.
 ///
 /// Yaw and pitch are about the axes of the head. A projector can rotate its whole raster. The offset is then exact for
 /// yaw and pitch errors of distant points. A flat raster can only be shifted, so the offset is exact only in the

@@ -9,7 +9,6 @@ use crate::import::Source;
 pub(super) const COMPRESSION: [&str; 3] =
     ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// A parsed file with its buffers.
 pub(super) struct Document<'a> {
     pub(super) source: &'a Source<'a>,
     pub(super) root: Root,

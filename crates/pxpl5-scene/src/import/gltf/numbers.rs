@@ -1,4 +1,5 @@
-//! Numbers of an accessor: vectors or indices in a buffer, possibly with sparse replacements.
+//! Numbers of an accessor, which describes an array of vectors or indices in a buffer of a glTF file. A sparse accessor
+//! also has a list of items that replace items of the array.
 
 use gltf_json::accessor::{Accessor, ComponentType, Type};
 use gltf_json::validation::Checked;

@@ -53,7 +53,6 @@ impl Axes {
         }
     }
 
-    /// Converts a recorded pose to this crate's axes.
     pub(super) fn convert(self, recorded: Pose) -> Pose {
         if self == Self::OpenGl {
             return recorded;

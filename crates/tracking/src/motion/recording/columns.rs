@@ -2,7 +2,7 @@ use pxpl5_sim::parameters::{FileError, FileErrorKind, SettingError};
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-/// Description of a complete mapping, for error messages.
+/// Text for error messages: a mapping that gives a column to every quantity of a sample.
 const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
 
 /// A mapping from the quantities of a sample to the columns of a text file. A column is given by its name in the header
@@ -137,7 +137,7 @@ fn number(column: &str) -> Option<usize> {
 impl FromStr for Columns {
     type Err = SettingError;
 
-    /// Parses a mapping like [`Columns::parse`].
+    /// Parses the same text as [`Columns::parse`].
     fn from_str(text: &str) -> Result<Self, SettingError> {
         Self::parse(text)
     }
