@@ -1,11 +1,11 @@
-//! Configuration of Rendering Control: the boards and the picture.
+//! Settings of Rendering Control: the boards and the picture.
 
 use crate::rules::EyeDrawing;
 use pphigs::{Picture, Share};
 use pxpl5_geometry::Viewport;
 use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// The boards of the pipeline, and the kind of picture that they make.
+/// The boards of the pipeline, and the settings of its pictures.
 #[derive(Clone, Debug)]
 pub struct RenderingControlConfig {
     /// Ring port of the host, which sends views and edits.
@@ -16,20 +16,19 @@ pub struct RenderingControlConfig {
     pub slaves: Vec<NodeId>,
     /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// First ring port of each frame buffer. A mono picture has one frame buffer. A stereo picture has one frame buffer
-    /// for the left eye and one for the right eye.
+    /// First ring port of each frame buffer: one frame buffer for a mono picture, or a frame buffer for each eye.
     pub frame_buffers: Vec<NodeId>,
-    /// All ring ports of the frame buffers. The list starts with the first port of each frame buffer, followed by the
-    /// second ports, and so on. The regions of an eye use the ports of its frame buffer in turn.
+    /// All ring ports of the frame buffers: the first port of each frame buffer, then the second ports, and so on. The
+    /// regions of an eye's picture use the ports of its frame buffer in turn.
     pub frame_buffer_ports: Vec<NodeId>,
-    /// Parameters of the picture that is drawn for each eye.
+    /// Settings of each eye's picture.
     pub picture: Picture,
-    /// Largest number of finished regions in the backing store of a renderer. A finished region waits there until its
-    /// frame buffer is available.
+    /// Largest number of finished regions in the backing store of a renderer, where the regions wait for the frame
+    /// buffer.
     ///
-    /// In the meantime, the renderer continues with the next region. With a value of 0, the renderer keeps a finished
-    /// region in pixel memory and waits until the region is copied. The size of the backing store limits the number to
-    /// `renderer.backing_bits / renderer.kept_bits`.
+    /// Meanwhile, the renderer draws the next region. With a value of 0, the renderer keeps a finished region in pixel
+    /// memory and waits for its copy. The size of the backing store limits the number to `renderer.backing_bits /
+    /// renderer.kept_bits`.
     pub regions_stored: usize,
 }
 
@@ -40,8 +39,7 @@ impl RenderingControlConfig {
         self.frame_buffers.len() as u64
     }
 
-    /// Returns the number of a frame's first drawing. A drawing is the picture of one eye. The first eye is drawn
-    /// first.
+    /// Returns the first drawing of a frame. A drawing is the picture of one eye.
     pub(crate) fn first_of(&self, frame: PictureNumber) -> EyeDrawing {
         EyeDrawing::first_of(frame, self.eyes())
     }
@@ -50,7 +48,6 @@ impl RenderingControlConfig {
         drawing.frame(self.eyes())
     }
 
-    /// Returns the surface that shows a drawing (the picture of one eye).
     pub(crate) fn eye_of(&self, drawing: EyeDrawing) -> SurfaceId {
         SurfaceId(drawing.eye(self.eyes()) as u16)
     }
@@ -63,8 +60,8 @@ impl RenderingControlConfig {
         self.picture.viewport
     }
 
-    /// Returns the index of the half of the frame buffer that receives this frame. This half is hidden while the frame
-    /// is drawn. Half 0 is visible at the start.
+    /// Returns the index of the buffer into which a frame is drawn. This buffer is hidden meanwhile. Buffer 0 is shown
+    /// at the start.
     pub(crate) fn buffer_of(frame: PictureNumber) -> u8 {
         (frame.next().0 % 2) as u8
     }
@@ -81,20 +78,19 @@ impl RenderingControlConfig {
         }
     }
 
-    /// Returns the frame-buffer port that receives a region of an eye's picture.
     fn port(&self, eye: SurfaceId, region: RegionId) -> NodeId {
         let eyes = self.frame_buffers.len();
         let of_an_eye = (self.frame_buffer_ports.len() / eyes).max(1);
         self.frame_buffer_ports[usize::from(region.0) % of_an_eye * eyes + eye.index()]
     }
 
-    /// Returns the eye to whose frame buffer a port belongs. Returns `None` if the node is not a frame-buffer port.
+    /// Returns the index of the eye whose frame buffer has the port `port`, or `None` if no frame buffer has this port.
     pub(crate) fn eye_at(&self, port: NodeId) -> Option<usize> {
         let place = self.frame_buffer_ports.iter().position(|node| *node == port)?;
         Some(place % self.frame_buffers.len())
     }
 
-    /// Returns the share of the primitives that the slave with index `index` holds.
+    /// Returns the primitives of the slave with index `index`.
     #[must_use]
     pub fn share(&self, list: &std::sync::Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(std::sync::Arc::clone(list), index, self.slaves.len())

@@ -1,4 +1,4 @@
-//! Program of the host, which performs SEND.
+//! Program of the host, which sends a view and edits for each frame.
 
 use crate::config::RenderingControlConfig;
 use crate::protocol::StageOrder;
@@ -7,14 +7,13 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
-/// Sends one frame after the other. For each frame, the program reads the tracker and sends the view and the edits over
-/// the host's link to all graphics processors. The program then waits for the end of EDIT.
+/// Sends one frame after the other. For each frame, the program samples the head's pose, and sends the view and the
+/// edits over the host's link to all graphics processors. The program then waits for the end of EDIT.
 ///
 /// SEND of a frame must not begin before EDIT of the previous frame has finished (TR94).
 ///
-/// The argument of `start_of` is the time at which the host is ready for a frame. `start_of` returns the time at which
-/// the frame begins, or `None` if no more frames begin. `view_of` returns a view whose pose is sampled at the given
-/// time.
+/// `start_of` returns the time at which a frame begins, or `None` if no more frames begin. The argument is the time at
+/// which the host is ready. `view_of` returns the view for a number and for the time at which the pose is sampled.
 ///
 /// # Errors
 ///

@@ -27,18 +27,18 @@ struct AllowedCopy {
     way: CopyPath,
 }
 
-/// Progress of the RENDER stage for one eye.
+/// Progress of RENDER for one eye.
 #[derive(Debug)]
 struct RenderStage {
     drawing: EyeDrawing,
-    /// Regions without an assigned renderer, in descending order of their bin entries.
+    /// Regions without a renderer, the regions with the most bin entries first.
     unassigned: VecDeque<RegionId>,
     /// Number of tokens that have not returned from the slaves.
     tokens_out: u16,
 }
 
-/// Reports of the slaves about one drawing (picture of one eye) or one frame that not all slaves have finished.
-/// `slaves` is the number of reports, and `entries` the sum of the reported bin entries of each region.
+/// Reports of the slaves that have finished a stage: the number of reports, and the bin entries of each region, summed
+/// over the reports.
 #[derive(Debug, Default)]
 struct SlaveReports {
     slaves: usize,
@@ -56,14 +56,14 @@ struct RegionMaster {
     /// The next frame for which a swap will be requested.
     next_swap: PictureNumber,
     edited: SlaveReports,
-    /// Reports about the drawings (pictures of one eye) that not all slaves have transformed. The first element belongs
-    /// to the drawing with number `completed.transformed`.
+    /// Reports about each drawing (picture of one eye) that not all slaves have transformed. The first entry belongs to
+    /// the drawing with the number `completed.transformed`.
     transformed: VecDeque<SlaveReports>,
-    /// Weights of the regions (their numbers of bin entries), for drawings that are transformed but not rendered.
+    /// Number of bin entries of each region, for drawings that are transformed but not rendered.
     weights: VecDeque<Vec<u64>>,
     rendering: Option<RenderStage>,
     renderers: Vec<RendererUse>,
-    /// Finished regions in the backing store of each renderer, which wait for their frame buffer, oldest first.
+    /// Finished regions in the backing store of each renderer, oldest first. The regions wait for their frame buffer.
     stored: Vec<VecDeque<(EyeDrawing, RegionId)>>,
     /// Number of regions that have arrived in each frame buffer since the start.
     copied_regions: Vec<u64>,
@@ -169,8 +169,7 @@ impl RegionMaster {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Begins RENDER of the next drawing if the rules permit it. Sorts the drawing's regions in descending order of
-    /// their bin entries.
+    /// Begins RENDER of the next drawing if the rules permit it. The regions with the most bin entries come first.
     fn begin_render(&mut self) {
         let drawing = EyeDrawing(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(drawing) {
@@ -240,7 +239,7 @@ impl RegionMaster {
         })
     }
 
-    /// Sends the copy command of a region. The region's token was sent before the rules permitted COPY.
+    /// Sends the copy command of a region. When the token of this region was sent, the rules did not permit COPY.
     async fn copy(&mut self, AllowedCopy { renderer, drawing, region, way }: AllowedCopy) {
         match way {
             CopyPath::FromBacking => drop(self.stored[renderer].pop_front()),

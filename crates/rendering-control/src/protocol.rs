@@ -1,4 +1,4 @@
-//! Messages between host, master, slaves and renderers, encoded as words.
+//! Messages between host, master, slaves and renderers, as words on the ring.
 
 use crate::rules::EyeDrawing;
 use pphigs::FrameView;
@@ -53,7 +53,6 @@ impl RegionEnd {
     }
 }
 
-/// A message between host, master, slaves and renderers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StageOrder {
     /// From host to all graphics processors: view and edits of a frame.
@@ -77,7 +76,6 @@ pub(crate) enum StageOrder {
 }
 
 impl StageOrder {
-    /// Returns the length in words and the body of the message.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words))
@@ -97,7 +95,6 @@ impl StageOrder {
         }
     }
 
-    /// Decodes a received message.
     pub(crate) fn read(received: &Received, at: NodeId) -> Result<Self, Fault> {
         let Body::Words(words) = &received.body else {
             return Err(Fault::Protocol { node: at, found: "of commands or pixels at a processor".to_owned() });
@@ -106,7 +103,6 @@ impl StageOrder {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// Decodes words. Returns `None` if the words are not a message of this protocol.
     fn from_words(words: &[Word]) -> Option<Self> {
         match words.first() {
             Some(&SEND) => FrameView::from_words(&words[1..]).ok().map(Self::Send),
@@ -123,12 +119,10 @@ impl StageOrder {
     }
 }
 
-/// Encodes a message that consists of a tag and the number of a frame or drawing.
 fn numbered(tag: Word, number: u64) -> [Word; 3] {
     [tag, number as Word, (number >> 32) as Word]
 }
 
-/// Decodes the frame or drawing number of a message that [`numbered`] has encoded.
 fn number_of(words: &[Word]) -> Option<u64> {
     let low = *words.get(1)?;
     let high = *words.get(2)?;

@@ -15,26 +15,26 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// State that the two programs of a slave share.
+/// The data that the two programs of a slave share.
 #[derive(Debug, Default)]
 struct SlaveState {
     views: VecDeque<FrameView>,
     /// The first frame for which the master has not permitted EDIT.
     next_edit: PictureNumber,
     next_transform: EyeDrawing,
-    /// The bins of both contexts. A context is one of two sets of bins. An empty context has the value `None`.
+    /// The two sets of bins. `None` stands for an empty set.
     bins: [Option<Arc<Pass>>; 2],
     regions_left: [u32; 2],
 }
 
 impl SlaveState {
-    /// Fills a context with the bins of a pass. The bins stay until the slave has received a token for each region.
+    /// Fills the set of bins `context`. The bins stay until the slave has received a token for each region.
     fn fill(&mut self, context: usize, pass: Arc<Pass>, regions: u32) {
         self.bins[context] = Some(pass);
         self.regions_left[context] = regions;
     }
 
-    /// Counts a token for the bins of a context. After the last token, the function empties the context and returns
+    /// Counts a token for the set of bins `context`. After the last token, the function empties the set and returns
     /// true.
     fn count_token(&mut self, context: usize) -> bool {
         self.regions_left[context] -= 1;
@@ -48,7 +48,7 @@ impl SlaveState {
 
 type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
-/// Returns the programs of the slave with index `index`, for both priorities of its board.
+/// Returns the programs of a slave, for both priorities of its board. `index` is the index of the slave.
 ///
 /// Each program fails with [`Fault::Memory`] if the display list, commands or bins do not fit into memory. A program
 /// fails with [`Fault::Protocol`] for an unknown message.
@@ -96,7 +96,7 @@ async fn transform_program(
     Ok(())
 }
 
-/// Performs EDIT: applies the edits of a frame and reports this to the master.
+/// Applies the edits of a frame, and reports the end of EDIT to the master.
 async fn edit(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -112,7 +112,7 @@ async fn edit(
     Ok(view)
 }
 
-/// Performs TRANSFORM. The slave makes the commands of all its primitives, and puts the commands into bins.
+/// Transforms all primitives of the slave, and puts their commands into bins.
 ///
 /// If the bins of two drawings do not fit into memory together, TRANSFORM waits until RENDER of the previous drawing
 /// has freed its bins. The simulated program has the number of entries in advance. A real program would estimate this
@@ -144,8 +144,8 @@ async fn transform(
     Ok(())
 }
 
-/// Waits until the bins of a pass fit in memory, or until the slave's second bin context is empty. `context` is the bin
-/// context (set of bins) of the pass.
+/// Waits until the bins of a pass fit into memory, or until the other set of bins is empty. `context` is the set of
+/// bins of the pass.
 async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: u8) {
     let regions = (0..pass.picture().viewport.grid().regions() as u16).map(RegionId);
     let bytes = regions.map(|region| u64::from(pass.counts(region).total()) * BIN_ENTRY_BYTES).sum();
@@ -154,8 +154,7 @@ async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: 
     gp.until("room in the bins", || fits().then_some(())).await;
 }
 
-/// Reserves memory for commands and bins. If the bins do not fit, the error contains the region whose bin was too
-/// large.
+/// Reserves memory for commands and bins. An error names the region whose bin does not fit.
 fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     gp.reserve(Account::Commands(context), pass.command_bytes(), None)?;
     let mut bytes = 0;
@@ -166,7 +165,7 @@ fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Runs the interrupt program. The program stores views and permissions, and handles tokens.
+/// Runs the interrupt program, which receives views, permissions and tokens.
 async fn token_program(
     gp: Gp,
     config: RenderingControlConfig,
@@ -195,7 +194,7 @@ async fn token_program(
     }
 }
 
-/// Sends this slave's bin for the token's region, then passes the token on.
+/// Sends this slave's bin for the token's region, then sends the token to the next slave.
 async fn walk(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -220,8 +219,8 @@ async fn walk(
     free_bins(gp, state, token.drawing)
 }
 
-/// Returns the message that passes a token to the next slave. The last slave's message reports to the master that the
-/// region is finished.
+/// Returns the message with the token for the next slave. The last slave's message reports to the master that all
+/// commands were accepted.
 fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
@@ -234,7 +233,7 @@ fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (No
     (receiver, words, body)
 }
 
-/// Frees a drawing's commands and bins after the slave has received the tokens of all regions.
+/// Frees a drawing's commands and bins after the last token of the drawing.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(), Fault> {
     let context = (drawing.0 % 2) as u8;
     if state.borrow_mut().count_token(usize::from(context)) {
@@ -244,7 +243,8 @@ fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(
     Ok(())
 }
 
-/// Returns the commands that this slave adds to its bin. The first slave begins the region, and the last slave ends it.
+/// Returns the commands that this slave adds to its bin. The first slave adds the commands at the start of the region,
+/// and the last slave the commands at its end.
 fn envelope(config: &RenderingControlConfig, token: Token) -> RegionEnvelope {
     let last = token.slaves_left == 1;
     RegionEnvelope {
