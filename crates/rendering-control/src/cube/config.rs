@@ -1,4 +1,4 @@
-//! Configuration of Cube control: the boards, and the faces that they draw.
+//! Settings of Cube control: the boards, and the format of the faces.
 
 use crate::cube::update::FaceUpdate;
 use crate::cube::warped_lists::WarpedLists;
@@ -7,7 +7,7 @@ use pphigs::{Picture, Share};
 use pxpl5_wire::{CopyContent, CopyTarget, Lines, NodeId, RegionGrid, RegionId};
 use std::sync::Arc;
 
-/// The boards that run Cube control, and the kind of faces they draw.
+/// The boards of Cube control, and the format of the faces that they draw.
 #[derive(Clone, Debug)]
 pub struct CubeControlConfig {
     /// Ring port of the host, which sends updates.
@@ -20,7 +20,7 @@ pub struct CubeControlConfig {
     pub renderers: Vec<NodeId>,
     /// Format and destination of the faces.
     pub faces: Faces,
-    /// Cache of warped display lists, which all slaves share. The cache is empty at first.
+    /// Cache of display lists with displaced vertices, which all slaves share. The cache is empty at first.
     pub warped: WarpedLists,
 }
 
@@ -31,7 +31,7 @@ pub struct Faces {
     pub memories: Vec<NodeId>,
     /// Viewport and shading of each face.
     pub picture: Picture,
-    /// Contents of a texel that are copied to a memory, such as colour and depth.
+    /// Values of a texel that are copied to a display memory, such as colour and depth.
     pub content: CopyContent,
 }
 
@@ -42,7 +42,7 @@ impl Faces {
         self.picture.viewport.grid().width
     }
 
-    /// Returns the region grid of all six faces, one face below the other.
+    /// Returns the regions of all six faces, one face below the other.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         region_grid(self.face_texels())
@@ -64,7 +64,7 @@ impl Faces {
         ((region.0 / self.face_regions()) as usize, RegionId(region.0 % self.face_regions()))
     }
 
-    /// Returns the destination of a region of an update in a display memory.
+    /// Returns the place in a display memory to which a region of an update is copied.
     #[must_use]
     pub fn target(&self, update: &FaceUpdate, region: RegionId) -> CopyTarget {
         CopyTarget {
@@ -79,7 +79,7 @@ impl Faces {
 }
 
 impl CubeControlConfig {
-    /// Returns the share of the primitives that the slave with index `index` holds.
+    /// Returns the primitives of the slave with index `index`.
     #[must_use]
     pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(Arc::clone(list), index, self.slaves.len())

@@ -1,4 +1,4 @@
-//! TRANSFORM of an update for the six faces of a cube.
+//! TRANSFORM for the six faces of a cube.
 
 use crate::cube::config::CubeControlConfig;
 use crate::cube::update::FaceUpdate;
@@ -11,10 +11,10 @@ use pxpl5_wire::{PictureNumber, RegionId};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Returns the view from an eye through a face of the cube. `ahead` is the view of the eye in its initial orientation.
-/// The function rotates this view to the axes of the face.
+/// Returns the view from an eye through one face of the cube around the head. `ahead` is the view of the eye while the
+/// head has its initial orientation.
 ///
-/// Structures that are fixed to the head are drawn as for a head in its initial orientation.
+/// Structures that are fixed to the head are drawn as for this orientation.
 #[must_use]
 pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
     let turn = to_face(face);
@@ -32,24 +32,24 @@ fn to_face(face: CubeFace) -> Mat4 {
     Mat4::from_cols(column(0), column(1), column(2), Vec4::W)
 }
 
-/// Bins of an update (new content of one display memory) for one slave. The bin of each region on the six faces has the
-/// slave's primitives that touch the region.
+/// Result of TRANSFORM on one slave for an update of a display memory: the slave's primitives in each region of the six
+/// faces.
 #[derive(Clone, Debug)]
 pub struct CubePass {
     update: Arc<FaceUpdate>,
-    /// Bin context of the update, 0 or 1.
+    /// Set of bins of the update, 0 or 1. A slave has two sets.
     context: u8,
     faces: Vec<Arc<Pass>>,
-    /// Work at the beginning of the pass. The structures of the update are placed once for each face.
+    /// Work before the first primitive, in which each structure is placed once for each face.
     begin: TransformCost,
     transformed: PrimitiveCounts,
 }
 
 impl CubePass {
-    /// Transforms primitives of a share for all six faces. Primitives that the update's display memory does not hold
-    /// are left out.
+    /// Transforms the primitives of a slave for all six faces. Structures that the display memory does not hold are
+    /// left out.
     ///
-    /// Vertices have the positions of the list that [`CubePass::placed`] returns.
+    /// The vertices have the positions in the result of [`CubePass::placed`].
     #[must_use]
     pub fn new(config: &CubeControlConfig, share: &Share, update: &Arc<FaceUpdate>) -> Self {
         let ahead = update.view.eyes.first();
@@ -70,7 +70,7 @@ impl CubePass {
         Self { update: Arc::clone(update), context: context_of(update.number) as u8, faces, begin, transformed }
     }
 
-    /// Returns the share with displaced vertices if the update has a warp. Otherwise returns the share unchanged.
+    /// Returns the share with displaced vertices if the update has a warp, otherwise the unchanged share.
     #[must_use]
     pub fn placed(config: &CubeControlConfig, share: &Share, update: &FaceUpdate) -> Share {
         if update.warp.is_none() { share.clone() } else { share.with_list(config.warped.placed(share.list(), update)) }
@@ -86,7 +86,7 @@ impl CubePass {
         self.faces.get(face)
     }
 
-    /// Returns the number of entries in each region's bin. Regions are counted through all six faces.
+    /// Returns the number of entries in each region's bin, for the regions of all six faces.
     #[must_use]
     pub fn entries(&self, config: &CubeControlConfig) -> Vec<u32> {
         let entries = |region: RegionId| {
@@ -96,9 +96,9 @@ impl CubePass {
         (0..config.faces.regions()).map(|region| entries(RegionId(region))).collect()
     }
 
-    /// Returns the numbers of transformations of triangles and of spheres.
+    /// Returns how many triangles and how many spheres were transformed.
     ///
-    /// A primitive is counted once for each face that it touches. A primitive that touches no face is counted once.
+    /// A primitive counts once for each face that it touches. A primitive that touches no face counts once.
     #[must_use]
     pub const fn transformed(&self) -> PrimitiveCounts {
         self.transformed
@@ -117,13 +117,13 @@ impl CubePass {
     }
 }
 
-/// Returns the bin context of an update.
+/// Returns the set of bins for an update, 0 or 1.
 pub(crate) const fn context_of(update: PictureNumber) -> usize {
     (update.0 % 2) as usize
 }
 
-/// Returns the number of transformations of the slave's triangles (`kind` 0) or spheres (`kind` 1), summed over the
-/// faces. `held` is the number of triangles or spheres in the update.
+/// Returns how many triangles (`kind` 0) or spheres (`kind` 1) were transformed, summed over the faces. `held` is the
+/// number of triangles or spheres of the update.
 fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
     let touching = || faces.iter().filter_map(|pass| Some(&pass.touching()?[kind]));
     let anywhere: BTreeSet<u32> = touching().flatten().copied().collect();
@@ -132,10 +132,7 @@ fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
 }
 
 impl Work for CubePass {
-    /// Returns the TRANSFORM time by the timing table.
-    ///
-    /// The time covers the structures of each face, each primitive (once for each face that it touches), and each bin
-    /// entry.
+    /// Returns the time of TRANSFORM from the timing table: structures and primitives for each face, and bin entries.
     fn by_table(&self, timing: &GpTiming) -> Span {
         let PrimitiveCounts { triangles, spheres } = self.transformed;
         let primitives = TransformCost { triangles: triangles.into(), spheres: spheres.into(), ..self.begin };

@@ -1,4 +1,4 @@
-//! Program of the host, which chooses the next update and performs SEND.
+//! Program of the host, which sends the next update.
 
 use crate::cube::config::CubeControlConfig;
 use crate::cube::protocol::UpdateOrder;
@@ -7,12 +7,12 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 
-/// An action of the host. The host chooses an action whenever it is ready for an update.
+/// An action of the host, when the host is ready for an update.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HostAction {
     /// Send this update now.
     Send(FaceUpdate),
-    /// Call the function `plan` again at this time.
+    /// Wait until this time, and call `plan` again.
     Wait(Time),
     /// Send no more updates.
     Nothing,
@@ -21,7 +21,7 @@ pub enum HostAction {
 /// Runs the host program, which sends updates over the host's link and the ring to all graphics processors.
 ///
 /// SEND of an update begins after EDIT of the previous update has finished (TR94). Whenever the host is ready for an
-/// update, it calls `plan` with the number of the next update and the current time.
+/// update, the program calls `plan` with the number of the next update and the current time.
 ///
 /// # Errors
 ///

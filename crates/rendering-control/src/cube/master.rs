@@ -19,28 +19,28 @@ enum RendererUse {
     Holding(CopyTarget),
 }
 
-/// Progress of an update of a display memory that is not complete.
+/// Progress of an update that is not complete.
 #[derive(Debug)]
 struct UpdateProgress {
     update: FaceUpdate,
-    /// Number of earlier updates of the same display memory. When the number of swaps of the memory reaches this value,
-    /// its hidden buffer is free.
+    /// Number of earlier updates of the same display memory. After as many swaps, the hidden buffer of the memory is
+    /// free.
     before: u64,
     /// Number of slaves that have applied the edits.
     edited: usize,
     /// Number of slaves that have transformed the update.
     transformed: usize,
-    /// Number of entries in each region's bin. The number is a sum over the slaves that have transformed the update.
+    /// Number of entries in each region's bin, summed over the slaves that have transformed the update.
     entries: Vec<u64>,
-    /// True if the master has sent the display memory the list of the regions that will arrive.
+    /// True if the master has sent the list of the regions that will arrive to the display memory.
     announced: bool,
     /// Number of regions of this update that have not arrived in the display memory. `None` before RENDER begins.
     missing: Option<u64>,
 }
 
 impl UpdateProgress {
-    /// Returns the regions that contain primitives, in descending order of their bin entries. For an update without
-    /// primitives, the function returns one region.
+    /// Returns the regions with primitives, the regions with the most bin entries first. An update without primitives
+    /// has one region, so that its end is detected.
     fn regions(&self) -> VecDeque<RegionId> {
         let mut regions: Vec<usize> = (0..self.entries.len()).filter(|region| self.entries[*region] > 0).collect();
         if regions.is_empty() {
@@ -51,13 +51,12 @@ impl UpdateProgress {
     }
 }
 
-/// Progress of the RENDER stage for one update.
+/// Progress of RENDER for one update.
 #[derive(Debug)]
 struct Rendering {
     number: PictureNumber,
-    /// Regions without an assigned renderer, in descending order of their bin entries.
+    /// Regions without a renderer, the regions with the most bin entries first.
     unassigned: VecDeque<RegionId>,
-    /// Number of regions of the update.
     regions: u16,
     /// Number of tokens that have not returned from the slaves.
     tokens_out: u16,
@@ -69,14 +68,14 @@ struct CubeMaster {
     completed: Completed,
     /// The first update for which the master has not ordered EDIT.
     next_edit: PictureNumber,
-    /// Updates that are not complete. The first update in the list has the number `completed.copied`.
+    /// Updates that are not complete, oldest first. The oldest has the number `completed.copied`.
     under_way: VecDeque<UpdateProgress>,
     /// For each memory, the number of updates that the host has sent so far.
     of_memories: Vec<u64>,
     rendering: Option<Rendering>,
     renderers: Vec<RendererUse>,
     next_slave: usize,
-    /// Number of buffer swaps of all display memories together at the master's last check.
+    /// Number of swaps of all display memories at the master's last check.
     swaps_known: u64,
 }
 
@@ -170,7 +169,7 @@ impl CubeMaster {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Returns the first update that the master can announce to its memory, as an index of `under_way`. All slaves must
+    /// Returns the index in `under_way` of the first update that the master can announce to its memory. All slaves must
     /// have transformed the update, and the memory must show its previous update.
     fn next_announcement(&self) -> Option<usize> {
         self.under_way.iter().position(|one| {
@@ -180,7 +179,7 @@ impl CubeMaster {
         })
     }
 
-    /// Sends a display memory the list of regions that will arrive, and requests the swap.
+    /// Sends the list of the regions that will arrive to a display memory, and requests the swap.
     async fn announce(&mut self, place: usize) {
         let texels = self.config.faces.face_texels();
         let one = &mut self.under_way[place];
@@ -191,8 +190,7 @@ impl CubeMaster {
         self.gp.send_groups(vec![(port, messages.into())]).await;
     }
 
-    /// Begins RENDER of the next update if the rules permit it. Sorts the update's regions in descending order of their
-    /// bin entries.
+    /// Begins RENDER of the next update if the rules permit it. The regions with the most bin entries come first.
     fn begin_render(&mut self) {
         let number = PictureNumber(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(number) {
@@ -235,7 +233,8 @@ impl CubeMaster {
         self.under_way(update).is_none_or(|one| one.announced)
     }
 
-    /// Returns a renderer that holds a finished region whose memory has become available, and the region's destination.
+    /// Returns a renderer with a finished region whose display memory has become available, and the destination of the
+    /// region.
     fn next_allowed_copy(&self) -> Option<(usize, CopyTarget)> {
         self.renderers.iter().enumerate().find_map(|(renderer, state)| match state {
             RendererUse::Holding(target) => self.is_announced(target.picture).then_some((renderer, *target)),
@@ -243,7 +242,8 @@ impl CubeMaster {
         })
     }
 
-    /// Sends the copy command of a region whose display memory was not available when the region's token was sent.
+    /// Sends the copy command of a region. When the token of this region was sent, the display memory was not
+    /// available.
     async fn copy(&mut self, renderer: usize, target: CopyTarget) {
         self.renderers[renderer] = RendererUse::Idle;
         let order = copy_order(&self.config, target);
@@ -320,7 +320,7 @@ impl CubeMaster {
         self.remove_finished();
     }
 
-    /// Removes updates that are complete: all their commands have been accepted, and all their regions have arrived.
+    /// Removes complete updates: their commands have been accepted, and their regions have arrived.
     fn remove_finished(&mut self) {
         while self.completed.rendered > self.completed.copied
             && self.under_way.front().is_some_and(|one| one.missing == Some(0))

@@ -1,4 +1,4 @@
-//! Messages between host, master, slaves and renderers, encoded as words.
+//! Messages between host, master, slaves and renderers, as words on the ring.
 
 use crate::cube::update::FaceUpdate;
 use pxpl5_gp::{Fault, Received};
@@ -16,7 +16,7 @@ const EDITS_DONE: Word = 0x108;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) update: PictureNumber,
-    /// Index of the region, counted through all six faces.
+    /// Index of the region among the regions of all six faces.
     pub(crate) region: RegionId,
     /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
@@ -29,7 +29,6 @@ pub(crate) struct Token {
     pub(crate) copies: bool,
 }
 
-/// The messages between host, master, slaves and renderers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum UpdateOrder {
     /// Host to all graphics processors: an update.
@@ -51,7 +50,6 @@ pub(crate) enum UpdateOrder {
 }
 
 impl UpdateOrder {
-    /// Returns the length in words and the body of the message.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words.into()))
@@ -70,7 +68,6 @@ impl UpdateOrder {
         }
     }
 
-    /// Decodes a received message.
     pub(crate) fn read(received: &Received, at: NodeId) -> Result<Self, Fault> {
         let Body::Words(words) = &received.body else {
             return Err(Fault::Protocol { node: at, found: "of commands or pixels at a processor".to_owned() });
@@ -79,7 +76,6 @@ impl UpdateOrder {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// Decodes words. Returns `None` if the words are not a message of this protocol.
     fn from_words(words: &[Word]) -> Option<Self> {
         match *words.first()? {
             SEND => FaceUpdate::from_words(&words[1..]).map(Self::Send),
@@ -96,13 +92,11 @@ impl UpdateOrder {
     }
 }
 
-/// Encodes a message that consists of a tag and the number of an update.
 fn numbered(tag: Word, update: PictureNumber) -> Vec<Word> {
     let [low, high] = update.to_words();
     vec![tag, low, high]
 }
 
-/// Decodes the update number of a message that [`numbered`] has encoded.
 fn number_of(words: &[Word]) -> Option<PictureNumber> {
     let [_, low, high] = *words.first_chunk()?;
     Some(PictureNumber::from_words(low, high))

@@ -1,10 +1,8 @@
-//! Rules that decide when a stage of an update may begin.
-//!
-//! These rules are the rules of Rendering Control for mono frames (TR94), applied to updates instead of frames.
+//! Rules that decide when a stage of an update may begin: the rules of TR94 for mono frames, applied to updates.
 
 use pxpl5_wire::PictureNumber;
 
-/// For each stage, the number of updates that have passed the stage. Every stage processes updates in order.
+/// Number of updates that have passed each stage. Every stage processes updates in order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Completed {
     pub(crate) sent: u64,
@@ -20,7 +18,7 @@ impl Completed {
     /// Returns true if EDIT of update number n may begin.
     ///
     /// Four stages must be complete: SEND of update n, TRANSFORM of update n - 1, RENDER of update n - 2, and COPY of
-    /// update n - 3. RENDER matters because each slave has only two bin contexts (sets of bins).
+    /// update n - 3. The condition for RENDER follows from the two sets of bins of each slave.
     pub(crate) const fn may_edit(&self, update: PictureNumber) -> bool {
         let n = update.0;
         self.sent > n && self.transformed >= n && self.rendered + 1 >= n && self.copied + 2 >= n

@@ -13,21 +13,21 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// State that the two programs of a slave share.
+/// The data that the two programs of a slave share.
 #[derive(Debug, Default)]
 struct SlaveState {
     updates: VecDeque<FaceUpdate>,
     /// The first update for which the master has not permitted EDIT.
     next_edit: PictureNumber,
-    /// The bins of both contexts. A context is one of two sets of bins. An empty context has the value `None`.
+    /// The two sets of bins. `None` stands for an empty set.
     bins: [Option<CubePass>; 2],
-    /// For each context, the number of tokens that this slave has received for its bins.
+    /// For each set of bins, the number of tokens that this slave has received.
     tokens: [u16; 2],
 }
 
 impl SlaveState {
-    /// Counts a token for the bins of a context. After the last of the update's `of` tokens, the function empties the
-    /// context and returns true.
+    /// Counts a token for the set of bins `context`. After the last of the update's `of` tokens, the function empties
+    /// the set and returns true.
     fn count_token(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;
@@ -41,7 +41,7 @@ impl SlaveState {
 
 type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
-/// Returns the two programs of the slave with index `index`, with their priorities.
+/// Returns the two programs of a slave, with their priorities. `index` is the index of the slave.
 ///
 /// A program fails with [`Fault::Memory`] if display list, commands or bins do not fit into memory. A program fails
 /// with [`Fault::Protocol`] for an invalid message.
@@ -86,7 +86,7 @@ async fn transform_program(
     }
 }
 
-/// Stores the displaced vertices of a warped update in the board's memory. Their displacement takes no simulated time.
+/// Stores the displaced vertices of an update in the board's memory. The displacement takes no simulated time.
 fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> Result<(), Fault> {
     if !Arc::ptr_eq(installed, share.list()) {
         gp.install(|processor| share.install(processor))?;
@@ -95,7 +95,7 @@ fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> R
     Ok(())
 }
 
-/// Performs EDIT: applies the edits of the next update, and reports this to the master.
+/// Applies the edits of the next update, and reports the end of EDIT to the master.
 async fn edit(gp: &Gp, config: &CubeControlConfig, state: &SharedSlaveState) -> Result<FaceUpdate, Fault> {
     let update = gp.until("SEND of an update and leave to EDIT", || next_edit(&mut state.borrow_mut())).await;
     let number = update.number;
@@ -111,8 +111,7 @@ fn next_edit(state: &mut SlaveState) -> Option<FaceUpdate> {
     if may_begin { state.updates.pop_front() } else { None }
 }
 
-/// Performs TRANSFORM. The slave makes commands of an update's primitives, and puts the commands into the bins of the
-/// faces.
+/// Transforms the primitives of an update, and puts their commands into the bins of the faces.
 ///
 /// If the bins of two updates do not fit into memory, TRANSFORM waits until RENDER of the previous update has freed its
 /// bins.
@@ -144,7 +143,7 @@ async fn transform(
     Ok(())
 }
 
-/// Runs the interrupt program. The program stores updates and permissions for EDIT, and handles tokens.
+/// Runs the interrupt program, which receives updates, permissions for EDIT, and tokens.
 async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: SharedSlaveState) -> Result<(), Fault> {
     loop {
         let received = gp.next_message().await;
@@ -163,7 +162,7 @@ async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: S
     }
 }
 
-/// Sends this slave's bin for the token's region, then passes the token on.
+/// Sends this slave's bin for the token's region, then sends the token to the next slave.
 async fn walk(
     gp: &Gp,
     config: &CubeControlConfig,
@@ -182,7 +181,7 @@ async fn walk(
     free_bins(gp, state, token)
 }
 
-/// A slave's bin for a token's region, with the commands that begin and end the region.
+/// A slave's bin for one region, with the commands before and after its primitives.
 struct TokenBin {
     pass: Arc<Pass>,
     context: usize,
@@ -213,7 +212,8 @@ impl TokenBin {
     }
 }
 
-/// Returns the commands that this slave adds to its bin. The first slave begins the region, and the last slave ends it.
+/// Returns the commands that this slave adds to its bin. The first slave adds the commands at the start of the region,
+/// and the last slave the commands at its end.
 fn envelope(config: &CubeControlConfig, update: &FaceUpdate, token: Token) -> RegionEnvelope {
     let last = token.slaves_left == 1;
     let target = config.faces.target(update, token.region);
@@ -224,8 +224,8 @@ fn envelope(config: &CubeControlConfig, update: &FaceUpdate, token: Token) -> Re
     }
 }
 
-/// Returns the message that passes a token to the next slave. The last slave's message reports to the master that the
-/// region is finished.
+/// Returns the message with the token for the next slave. The last slave's message reports to the master that all
+/// commands were accepted.
 fn passed_on(config: &CubeControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
@@ -238,7 +238,7 @@ fn passed_on(config: &CubeControlConfig, index: usize, token: Token) -> (NodeId,
     (receiver, words, body)
 }
 
-/// Frees an update's commands and bins when this slave has received the tokens of all its regions.
+/// Frees an update's commands and bins after the last token of the update.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, token: Token) -> Result<(), Fault> {
     let context = context_of(token.update);
     if state.borrow_mut().count_token(context, token.of) {
