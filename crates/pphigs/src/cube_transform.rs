@@ -134,11 +134,11 @@ fn marks(pass: &Pass) -> [u32; 3] {
     [triangles, spheres, spheres + 4 * share.all_spheres().len() as u32]
 }
 
-/// The primitives of one structure, and addresses for the search for their views.
+/// The primitives of one structure, and addresses in memory for the search that finds the views of each primitive.
 ///
-/// `held` is the range of these primitives among those of the graphics processor. `first` is the address of the
-/// processor's first primitive, and `bytes` the size of a primitive. `marks` is the address of the first word of marks,
-/// with a bit for each view.
+/// `held` has the indices of the structure's primitives in the list of the graphics processor's primitives. `first` is
+/// the address of the processor's first primitive, and `bytes` the size of a primitive. `marks` is the address of the
+/// first word of marks, with a bit for each view.
 struct ViewSort {
     held: Range<usize>,
     first: u32,

@@ -18,7 +18,7 @@ pub struct PlacedStructure {
     pub light: Light,
     /// The structure's primitives and settings.
     pub structure: DisplayStructure,
-    /// Matrices from the frame of reference (room or head) to the eye, from the structure to this frame, and from the
+    /// Three matrices: from the room or the head to the eye, from the structure to the room or the head, and from the
     /// eye to the picture.
     pub(crate) matrices: [Mat4; 3],
     /// Range of the display list's vertices that contains all vertices of the structure.

@@ -378,8 +378,8 @@ impl Transform {
         Some(whole)
     }
 
-    /// Returns the regions that a triangle inside the guard band touches. `whole` is `None` for a triangle without
-    /// area.
+    /// Returns the regions that a triangle touches. The triangle must be inside the guard band. `whole` is `None` if
+    /// the triangle has no area.
     #[inline(always)]
     fn touch(&self, whole: Option<&Assembled>) -> Touch {
         let Some(whole) = whole else { return Touch::Degenerate };

@@ -154,7 +154,7 @@ async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: 
     gp.until("room in the bins", || fits().then_some(())).await;
 }
 
-/// Reserves memory for commands and bins. An error names the region whose bin does not fit.
+/// Reserves memory for commands and bins. If the bins do not fit, the error names the region whose bin has no room.
 fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     gp.reserve(Account::Commands(context), pass.command_bytes(), None)?;
     let mut bytes = 0;

@@ -32,7 +32,7 @@ struct UpdateProgress {
     transformed: usize,
     /// Number of entries in each region's bin, summed over the slaves that have transformed the update.
     entries: Vec<u64>,
-    /// True if the master has sent the list of the regions that will arrive to the display memory.
+    /// True if the master has announced the update to its display memory, by a list of the regions that will arrive.
     announced: bool,
     /// Number of regions of this update that have not arrived in the display memory. `None` before RENDER begins.
     missing: Option<u64>,
@@ -179,7 +179,8 @@ impl CubeMaster {
         })
     }
 
-    /// Sends the list of the regions that will arrive to a display memory, and requests the swap.
+    /// Announces an update to its display memory. The master sends the list of the regions that will arrive, and
+    /// requests the swap.
     async fn announce(&mut self, place: usize) {
         let texels = self.config.faces.face_texels();
         let one = &mut self.under_way[place];
