@@ -270,8 +270,9 @@ impl JitpConfig {
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
     }
 
-    /// Returns the instant for which a strip is drawn, on a scale of the field: 0 when the beam reaches the first
-    /// pixel, 1 when it reaches the last pixel. The result is negative if [`JitpConfig::aim`] is the retrace.
+    /// Returns the instant for which a strip is drawn, as a part of the field. The part is 0 when the beam reaches the
+    /// first pixel, and 1 when the beam reaches the last pixel. The result is negative if [`JitpConfig::aim`] is the
+    /// retrace.
     #[must_use]
     pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);

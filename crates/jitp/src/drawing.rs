@@ -143,8 +143,8 @@ impl DrawnList {
         }
     }
 
-    /// Returns the data to interpolate triangle `k` of a structure: its corners in both views, the instant from 0 to 1,
-    /// and the kind of interpolation. Returns `None` if the triangle is not interpolated.
+    /// Returns the data to interpolate triangle `k` of a structure: corners in both views, instant from 0 to 1, and
+    /// kind of interpolation. Returns `None` if the triangle is not interpolated.
     fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Interpolation)> {
         let Between { ends, part, interpolation, .. } = self.between.as_ref()?;
         Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *part, *interpolation))

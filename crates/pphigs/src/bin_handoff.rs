@@ -76,9 +76,9 @@ impl Work for BinHandoffWork<'_> {
 impl BinHandoffWork<'_> {
     /// Returns the parameters for the commands before and after a region's primitives.
     ///
-    /// Six parameters are address and length of three sequences of commands: at the start of the region, at the start
-    /// of each further message, and at the end of the region. The seventh parameter is the number of words of a message
-    /// without primitives and without the end of the region.
+    /// Six parameters are address and length of three sequences of commands. The sequences belong to the start of the
+    /// region, to the start of each further message, and to the end of the region. The seventh parameter is the number
+    /// of words of a message without primitives and without the end of the region.
     fn enclosing(&self) -> [Word; 7] {
         let words = |kind: CommandKind, is_there: bool| kind.words() * u32::from(is_there);
         let contexts = self.pass.picture().layout.plan().contexts > 1;

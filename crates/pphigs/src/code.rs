@@ -199,8 +199,8 @@ impl Next {
     }
 }
 
-/// Place of a kernel's output for one view: the set of bins, the index of the view in this set, and the address of the
-/// first command.
+/// Place of a kernel's output for one view: set of bins, index of the view in this set, and address of the first
+/// command.
 #[derive(Clone, Copy)]
 pub(crate) struct Destination {
     pub(crate) context: u8,

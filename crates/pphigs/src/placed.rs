@@ -18,8 +18,8 @@ pub struct PlacedStructure {
     pub light: Light,
     /// The structure's primitives and settings.
     pub structure: DisplayStructure,
-    /// Three matrices: from the room or the head to the eye, from the structure to the room or the head, and from the
-    /// eye to the picture.
+    /// Three matrices: from the room (or the head) to the eye, from the structure to the room, and from the eye to the
+    /// picture.
     pub(crate) matrices: [Mat4; 3],
     /// Range of the display list's vertices that contains all vertices of the structure.
     pub(crate) named: Range<usize>,

@@ -94,8 +94,8 @@ struct Renderers {
     /// For each renderer, the times until which its backing store holds finished regions.
     stored_until_ns: Vec<Vec<f64>>,
     words: Vec<f64>,
-    /// For the latest regions of each renderer: the number of words before the region, the start of the first command,
-    /// and the cost of all commands.
+    /// For the latest regions of each renderer: number of words before the region, start of the first command, and cost
+    /// of all commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }
@@ -270,8 +270,8 @@ impl StereoModel {
 
     /// Computes RENDER and COPY of one eye.
     ///
-    /// Returns the time at which the master receives the report that all commands were accepted, and the times of the
-    /// first and the last copied word.
+    /// Returns the time at which the master receives the report of the last accepted command. Also returns the times of
+    /// the first and the last copied word.
     fn render(
         &self,
         all: &mut Renderers,

@@ -36,8 +36,8 @@ impl SlatsModel {
 
     /// Returns the times of a field for each of many machines, identical to the results of [`field`](Self::field).
     ///
-    /// Sixteen successive machines are computed together, which is faster, if all of them have one graphics processor,
-    /// equal numbers of renderers and channels, and the same program.
+    /// For speed, sixteen successive machines are computed together if they have one graphics processor, equal numbers
+    /// of renderers and channels, and the same program.
     #[must_use]
     pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
         let mut all = Vec::with_capacity(models.len());

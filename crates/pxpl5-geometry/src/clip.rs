@@ -1,8 +1,8 @@
 //! Clipping in homogeneous coordinates, before the division by w.
 //!
-//! Triangles are clipped only as far as the number formats require: by the near plane (z = 0), the far plane (z = w),
-//! and the four planes of a guard band. The guard band extends about 4,000 px beyond the picture. A triangle outside
-//! the picture but inside the guard band needs no clipping.
+//! Triangles are clipped only as far as the number formats require. The clip planes are the near plane (z = 0), the far
+//! plane (z = w), and the four planes of a guard band. The guard band extends about 4,000 px beyond the picture. A
+//! triangle outside the picture but inside the guard band needs no clipping.
 //!
 //! If two triangles share an edge, both are cut at exactly the same point, bit for bit, and no gap opens. For this, the
 //! cut is always computed from the same end of the edge, independent of the winding of the triangle.

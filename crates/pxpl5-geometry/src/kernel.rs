@@ -349,8 +349,8 @@ pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
 /// Returns a distance from pixel (0, 0), in subpixels. A point within this distance along x and y is inside the guard
 /// band.
 ///
-/// The guard band is symmetric around the middle of the picture, so it ends nearer to pixel (0, 0) on the left and at
-/// the top. One pixel is reserved for rounding.
+/// The guard band is symmetric around the middle of the picture. On the left and at the top, its ends are nearer to
+/// pixel (0, 0). One pixel is reserved for rounding.
 fn safe_distance(viewport: &Viewport) -> Word {
     let size = viewport.grid().width.max(viewport.frame_lines());
     16 * (screen::GUARD_PIXELS as u32 - 2 - size)

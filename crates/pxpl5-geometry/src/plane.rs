@@ -4,8 +4,8 @@
 //! Slopes are rounded to integers, so the error grows with the distance (dx, dy) from a reference pixel. The error is
 //! at most `(|dx| + |dy|) (1/2 + 2^-15) + 1` in the last bit. Rounding the slopes adds 1/2 per pixel of distance.
 //! Rounding the constant adds 1/2. The floating-point steps add 1/2, and 2^-15 per pixel (see [`MAX_SLOPE`]). The
-//! reference pixel is in the middle of the visible part of the triangle's bounding box, so |dx| + |dy| is at most half
-//! of width plus height. On the largest picture, the error is below 1,026.
+//! reference pixel is in the middle of the visible part of the triangle's bounding box. The sum |dx| + |dy| is
+//! therefore at most half of width plus height. On the largest picture, the error is below 1,026.
 //!
 //! A depth slope can need more than 32 bits: the depth of a wall seen edge-on can change by the whole range within a
 //! pixel. Expressions are therefore evaluated modulo 2^32. The result is right at every pixel whose true value fits 32

@@ -232,7 +232,7 @@ fn values<T: Copy>([a, b, c]: &[T; 3], value: impl Fn(T) -> f32) -> [f32; 3] {
 /// Converts a component of a colour to the fixed-point units of its plane.
 ///
 /// The function adds half a unit, because the renderer truncates. The values of 0 and 255 are then half a unit away
-/// from an overflow, which is much more than the rounding error of a plane.
+/// from an overflow. The rounding error of a plane is much smaller.
 #[inline(always)]
 pub(crate) fn colour_value(colour: u16) -> f32 {
     const SCALE: u32 = 1 << (format::COLOUR_FRACTION_BITS - 8);

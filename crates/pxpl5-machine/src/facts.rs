@@ -25,8 +25,8 @@ pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
     [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
 }
 
-/// Returns the number for a surface: 0 and 1 for the first two, 2 for no surface, and from the third on the index plus
-/// 1.
+/// Returns the number for a surface: 0 or 1 for the first two surfaces, 2 for no surface. From the third surface on,
+/// the number is the index plus 1.
 ///
 /// The numbers come from versions with at most two surfaces, and published hashes depend on them.
 fn surface_fact(surface: Option<SurfaceId>) -> u64 {

@@ -24,11 +24,11 @@ pub struct RenderingControl {
     pub mono: bool,
     /// Method of shading.
     pub shading: Shading,
-    /// What a renderer does with a finished region while the frame buffer is not available.
+    /// The choice of a renderer's action with a finished region while the frame buffer is not available.
     pub finished: FinishedRegions,
 }
 
-/// What a renderer does with a finished region while the frame buffer is not available.
+/// The choice of a renderer's action with a finished region while the frame buffer is not available.
 ///
 /// TR94 says that the last slave returns the token, and that the master then gives the renderer its next region. TR94
 /// does not say if this also happens before the finished region is copied.

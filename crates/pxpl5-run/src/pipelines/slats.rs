@@ -88,8 +88,8 @@ pub struct Slats {
 }
 
 impl Slats {
-    /// Creates the prototype with the papers' optimization of COPY: the lower half of a picture is copied while the
-    /// display already scans the upper half (TR94).
+    /// Creates the prototype with the papers' optimization of COPY (TR94). The lower half of a picture is copied while
+    /// the display already scans the upper half.
     #[must_use]
     pub const fn split() -> Self {
         Self {
