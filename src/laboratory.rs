@@ -113,7 +113,7 @@ pub use pxpl5_lab::{
     tracking_parameters,
 };
 
-/// Names of the laboratory that few programs need: trackers, predictors, and estimates of the cost of a run.
+/// Less common names of the laboratory: trackers, predictors, and estimates of the cost of a run.
 pub mod lab {
     /// ```
     /// use pxpl5::lab::{FileKey, PathChoice};

@@ -8,8 +8,7 @@
 //!   Head (tracker) -+                           +--> pxpl5-measure: latencies, errors in pixels, pictures
 //! ```
 //!
-//! A [`Registry`] lists all pipelines. To list, parse or compare pipelines, code iterates over the registry and names
-//! no pipeline.
+//! A [`Registry`] lists all pipelines. Commands and experiment files find pipelines in the registry by name.
 //!
 //! **Not here:** access to the host computer. A [`Host`] supplies the clock and the threads. Scenes are passed as
 //! values.

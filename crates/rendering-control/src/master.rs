@@ -58,11 +58,11 @@ impl<S> DrawingProgress<S> {
     }
 }
 
-/// Progress of the RENDER stage for one drawing.
+/// Progress of RENDER for one drawing.
 #[derive(Debug)]
 struct RenderStage {
     drawing: Drawing,
-    /// Regions without an assigned renderer, in descending order of their bin entries.
+    /// Regions without a renderer, the regions with the most bin entries first.
     unassigned: VecDeque<RegionId>,
     /// Number of regions that are drawn.
     regions: u16,
@@ -88,7 +88,7 @@ struct RegionMaster<D: Drawn> {
     of_buffers: BTreeMap<NodeId, u64>,
     rendering: Option<RenderStage>,
     renderers: Vec<RendererUse>,
-    /// Finished regions in the backing store of each renderer, which wait for their frame buffer, oldest first.
+    /// Finished regions in the backing store of each renderer, oldest first. The regions wait for their frame buffer.
     stored: Vec<VecDeque<(Drawing, RegionId)>>,
     next_slave: usize,
 }
@@ -316,7 +316,7 @@ impl<D: Drawn> RegionMaster<D> {
         })
     }
 
-    /// Sends the copy command of a region. The region's token was sent before the rules permitted COPY.
+    /// Sends the copy command of a region. When the token of this region was sent, the rules did not permit COPY.
     async fn copy(&mut self, AllowedCopy { renderer, drawing, region, way }: AllowedCopy) {
         match way {
             CopyPath::FromBacking => drop(self.stored[renderer].pop_front()),

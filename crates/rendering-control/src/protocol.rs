@@ -1,4 +1,4 @@
-//! Messages between host, master, slaves and renderers, encoded as words.
+//! Messages between host, master, slaves and renderers, as words on the ring.
 
 use crate::drawn::Sent;
 use crate::rules::Drawing;
@@ -55,7 +55,6 @@ impl RegionEnd {
     }
 }
 
-/// A message between host, master, slaves and renderers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StageOrder<S> {
     /// From host to all graphics processors: view and edits of a picture.
@@ -80,7 +79,6 @@ pub(crate) enum StageOrder<S> {
 }
 
 impl<S: Sent> StageOrder<S> {
-    /// Returns the length in words and the body of the message.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words.into()))
@@ -102,7 +100,6 @@ impl<S: Sent> StageOrder<S> {
         }
     }
 
-    /// Decodes a received message.
     pub(crate) fn read(received: &Received, at: NodeId) -> Result<Self, Fault> {
         let Body::Words(words) = &received.body else {
             return Err(Fault::Protocol { node: at, found: "of commands or pixels at a processor".to_owned() });
@@ -111,7 +108,6 @@ impl<S: Sent> StageOrder<S> {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// Decodes words. Returns `None` if the words are not a message of this protocol.
     fn from_words(words: &[Word]) -> Option<Self> {
         match *words.first()? {
             SEND => S::from_words(&words[1..]).map(Self::Send),

@@ -92,8 +92,8 @@ impl Completed {
         self.edited > drawing.picture(self.eyes).0 && self.buffers_free(drawing)
     }
 
-    /// Returns true if a drawing can use a bin context of the slaves and a region context of the renderers. Each
-    /// processor and each renderer has two contexts.
+    /// Returns true if the slaves have a free set of bins for a drawing, and the renderers have a free part of pixel
+    /// memory. Each slave has two sets of bins, and each renderer has two parts.
     const fn buffers_free(&self, drawing: Drawing) -> bool {
         self.rendered + 1 >= drawing.0 && self.copied + 2 >= drawing.0
     }
@@ -105,15 +105,15 @@ impl Completed {
         self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
-    /// Returns true if the hidden half of the drawing's frame buffer is free. The half is free when the previous frame
-    /// has become visible.
+    /// Returns true if the hidden buffer for a drawing is free. The buffer is free when the previous frame has become
+    /// visible.
     #[must_use]
     pub const fn frame_buffer_available(&self, drawing: Drawing) -> bool {
         self.swapped >= drawing.picture(self.eyes).0
     }
 
-    /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden half of the frame buffer must
-    /// be free, and COPY of the previous drawing must be complete.
+    /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden buffer must be free, and COPY
+    /// of the previous drawing must be complete.
     ///
     /// Each frame buffer has its own ring port. Nevertheless, the rule of TR94 permits copies to only one frame buffer
     /// at a time, one eye after the other.

@@ -13,14 +13,14 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// State that the two programs of a slave share.
+/// The data that the two programs of a slave share.
 #[derive(Debug)]
 struct SlaveState<S> {
     sent: VecDeque<S>,
     /// The first picture for which the master has not permitted EDIT.
     next_edit: PictureNumber,
     next_transform: Drawing,
-    /// The bins of both contexts. A context is one of two sets of bins. An empty context has the value `None`.
+    /// The two sets of bins. `None` stands for an empty set.
     bins: [Option<Bins<S>>; 2],
     /// For each context, the number of tokens that this slave has received for its bins.
     tokens: [u16; 2],
@@ -39,8 +39,8 @@ impl<S> SlaveState<S> {
         Self { sent: VecDeque::new(), next_edit, next_transform, bins: [None, None], tokens: [0; 2] }
     }
 
-    /// Counts a token for the bins of a context. After the last of the drawing's `of` tokens, the function empties the
-    /// context and returns true.
+    /// Counts a token for the set of bins `context`. After the last of the drawing's `of` tokens, the function empties the
+    /// set and returns true.
     fn count_token(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;
@@ -69,7 +69,7 @@ struct Slave<D: Drawn> {
     state: Rc<RefCell<SlaveState<D::Sent>>>,
 }
 
-/// Returns the programs of the slave with index `index`, for both priorities of its board.
+/// Returns the programs of a slave, for both priorities of its board. `index` is the index of the slave.
 ///
 /// Each program fails with [`Fault::Memory`] if the display list, commands or bins do not fit into memory. A program
 /// fails with [`Fault::Protocol`] for an unknown message.
@@ -191,7 +191,7 @@ impl<D: Drawn> Slave<D> {
         }
     }
 
-    /// Sends this slave's bin for the token's region, then passes the token on.
+    /// Sends this slave's bin for the token's region, then sends the token to the next slave.
     async fn walk(&self, received: &Received, token: Token) -> Result<(), Fault> {
         let renderer = self.config.renderers[usize::from(token.renderer)];
         let bin = self.bin_of(token);
@@ -236,7 +236,7 @@ impl<D: Drawn> Slave<D> {
         (receiver, words, body)
     }
 
-    /// Frees a drawing's commands and bins after the slave has received the tokens of all regions.
+    /// Frees a drawing's commands and bins after the last token of the drawing.
     fn free_bins(&self, token: Token) -> Result<(), Fault> {
         let context = token.drawing.context();
         if self.state.borrow_mut().count_token(context, token.of) {

@@ -17,7 +17,7 @@ pub struct Faces {
     pub memories: Vec<NodeId>,
     /// Viewport and shading of each face.
     pub picture: Picture,
-    /// Contents of a texel that are copied to a memory, such as colour and depth.
+    /// Values of a texel that are copied to a display memory, such as colour and depth.
     pub content: CopyContent,
     /// Cache of warped display lists, which all slaves share. The cache is empty at first.
     pub warped: WarpedLists,
@@ -30,7 +30,7 @@ impl Faces {
         self.picture.viewport.grid().width
     }
 
-    /// Returns the region grid of all six faces, one face below the other.
+    /// Returns the regions of all six faces, one face below the other.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         region_grid(self.face_texels())

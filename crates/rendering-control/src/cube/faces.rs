@@ -1,4 +1,4 @@
-//! TRANSFORM of an update for the six faces of a cube.
+//! TRANSFORM for the six faces of a cube.
 
 use crate::cube::update::FaceUpdate;
 use address_recalculation::CubeFace;
@@ -9,10 +9,10 @@ use pxpl5_sim::Span;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Returns the view from an eye through a face of the cube. `ahead` is the view of the eye in its initial orientation.
-/// The function rotates this view to the axes of the face.
+/// Returns the view from an eye through one face of the cube around the head. `ahead` is the view of the eye while the
+/// head has its initial orientation.
 ///
-/// Structures that are fixed to the head are drawn as for a head in its initial orientation.
+/// Structures that are fixed to the head are drawn as for this orientation.
 #[must_use]
 pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
     let turn = to_face(face);
@@ -35,7 +35,7 @@ pub(crate) struct CubeWork<'a> {
     faces: &'a [Arc<Pass>],
     /// Bin context of the update, 0 or 1.
     context: u8,
-    /// Work at the beginning of the pass. The structures of the update are placed once for each face.
+    /// Work before the first primitive, in which each structure is placed once for each face.
     begin: TransformCost,
     /// Numbers of transformations of triangles and of spheres. A primitive is counted once for each face that it
     /// touches. A primitive that touches no face is counted once.
@@ -57,8 +57,8 @@ impl<'a> CubeWork<'a> {
     }
 }
 
-/// Returns the number of transformations of the slave's triangles (`kind` 0) or spheres (`kind` 1), summed over the
-/// faces. `held` is the number of triangles or spheres in the update.
+/// Returns how many triangles (`kind` 0) or spheres (`kind` 1) were transformed, summed over the faces. `held` is the
+/// number of triangles or spheres of the update.
 fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
     let touching = || faces.iter().filter_map(|pass| Some(&pass.touching()?[kind]));
     let anywhere: BTreeSet<u32> = touching().flatten().copied().collect();
@@ -67,10 +67,7 @@ fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
 }
 
 impl Work for CubeWork<'_> {
-    /// Returns the TRANSFORM time by the timing table.
-    ///
-    /// The time covers the structures of each face, each primitive (once for each face that it touches), and each bin
-    /// entry.
+    /// Returns the time of TRANSFORM from the timing table: structures and primitives for each face, and bin entries.
     fn by_table(&self, timing: &GpTiming) -> Span {
         let PrimitiveCounts { triangles, spheres } = self.transformed;
         let primitives = TransformCost { triangles: triangles.into(), spheres: spheres.into(), ..self.begin };

@@ -1,4 +1,4 @@
-//! An update, which replaces the content of one display memory.
+//! An update, which is a new drawing of one display memory.
 
 use crate::cube::warp::{FaceWarp, WARP_WORDS};
 use crate::drawn::Sent;
@@ -18,10 +18,10 @@ pub struct FaceUpdate {
     pub buffer: u8,
     /// Bit mask of the memories that must swap together with this memory. The mask is 0 if this memory swaps alone.
     pub together: u8,
-    /// The view of an eye in its initial orientation, with the projection of a face. The view also contains the edits
-    /// of structures.
+    /// The view of an eye while the head has its initial orientation, with the projection of a face. The view also
+    /// contains the edits of structures.
     pub view: FrameView,
-    /// For each structure of the display list: true if the memory holds the structure.
+    /// True for each structure that the memory holds, by index in the display list.
     pub structures: Vec<bool>,
     /// Displacement of vertices near the border to a display memory that is updated less often. `None` if no vertex is
     /// displaced.
