@@ -150,7 +150,7 @@ pub fn alternatives_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> R
 }
 
 /// Runs `part`, calls `step`, and returns the part's result.
-fn stepped<T>(step: impl Fn(), part: impl FnOnce() -> T) -> T {
+fn stepped<T>(step: &impl Fn(), part: impl FnOnce() -> T) -> T {
     let result = part();
     step();
     result
