@@ -317,6 +317,12 @@ impl MachineConfig {
         Self { n_renderers, ..self }
     }
 
+    /// Returns the machine with `display` in place of all displays.
+    #[must_use]
+    pub fn with_display(self, display: impl DisplayConfig + 'static) -> Self {
+        Self { displays: vec![Box::new(display)], ..self }
+    }
+
     /// Returns an error for a ring in which commands for full renderer FIFOs can occupy all channels.
     ///
     /// A renderer empties its FIFO only when it can send pixels. Without a free channel, the renderers would therefore
