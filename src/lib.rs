@@ -223,8 +223,8 @@ pub mod prelude {
     pub use crate::tracking::tracker::TrackerConfig;
     pub use crate::{
         Board, Experiment, ExperimentError, Eye, Frameless, Head, Jitp, Level, MachineConfig, Measure, Measured,
-        ObservedKind, Outcome, Pause, PictureRules, Pipeline, PipelineSettings, Pixels, Registry, RenderingControl,
-        Report, Results, Slats, Stepper, SurfaceId,
+        ObservedKind, Outcome, PanelConfig, Pause, PictureRules, Pipeline, PipelineSettings, Pixels, Registry,
+        RenderingControl, Report, Results, Slats, Stepper, SurfaceId,
     };
     pub use glam::{DQuat, DVec3, Vec3};
 }

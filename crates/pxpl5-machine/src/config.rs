@@ -259,7 +259,13 @@ impl MachineConfig {
         Self { n_renderers, ..self }
     }
 
-    /// Returns an error for a ring in which commands to full renderer FIFOs can occupy all channels.
+    /// Returns the machine with `display` in place of all displays.
+    #[must_use]
+    pub fn with_display(self, display: impl DisplayConfig + 'static) -> Self {
+        Self { displays: vec![Box::new(display)], ..self }
+    }
+
+    /// Returns an error for a ring in which commands for full renderer FIFOs can occupy all channels.
     ///
     /// A renderer empties its FIFO only after it has sent pixels, so the machine could then deadlock. Three limits
     /// apply to the number of these channels: `fifo_channels`, the number of renderers, and `source_channels` for each

@@ -1,7 +1,8 @@
 //! Figures that need a tracked head: the pendulum rig, and the latency from head to display.
 
-use super::measure::Bench;
 use super::measured::{FigureValue, Result, detail, scene_named};
+use super::reading::Reading;
+use crate::StopFlag;
 use crate::error::StudyError;
 use crate::rig::Rig;
 use pxpl5_machine::MachineConfig;
@@ -28,9 +29,9 @@ pub(super) struct RigLines {
 impl RigLines {
     /// Measures the latency with a pendulum and a photodiode. Also returns true if a full backing store has changed the
     /// run.
-    pub(super) fn measure(machine: &MachineConfig, bench: &Bench) -> Result<(Self, bool)> {
+    pub(super) fn measure(machine: &MachineConfig, reading: &Reading, stop: &StopFlag) -> Result<(Self, bool)> {
         let lines = photodiode_lines();
-        let (measured, met_full_store) = under_lines(machine, bench, lines)?;
+        let (measured, met_full_store) = under_lines(machine, (reading, stop), lines)?;
         let mut lines = lines.into_iter();
         let measured = measured.map(|measured| (lines.next().unwrap_or_default(), Arc::new(measured)));
         Ok((Self { measured }, met_full_store))
@@ -68,8 +69,8 @@ fn photodiode_lines() -> [u32; 3] {
 }
 
 /// Measures the latency with the photodiode on the line `line` of the screen.
-pub(super) fn under_line(machine: &MachineConfig, bench: &Bench, line: u64) -> Result<RigMeasurement> {
-    let ([measured], _) = under_lines(machine, bench, [u32::try_from(line).unwrap_or(u32::MAX)])?;
+pub(super) fn under_line(machine: &MachineConfig, of: (&Reading, &StopFlag), line: u64) -> Result<RigMeasurement> {
+    let ([measured], _) = under_lines(machine, of, [u32::try_from(line).unwrap_or(u32::MAX)])?;
     Ok(measured)
 }
 
@@ -77,11 +78,11 @@ pub(super) fn under_line(machine: &MachineConfig, bench: &Bench, line: u64) -> R
 /// store has changed the run.
 fn under_lines<const N: usize>(
     machine: &MachineConfig,
-    bench: &Bench,
+    (reading, stop): (&Reading, &StopFlag),
     lines: [u32; N],
 ) -> Result<([RigMeasurement; N], bool)> {
-    let rig = Rig { stop: bench.stop.clone(), ..Rig::assumed(TrackerConfig::optical_ceiling()) };
-    let measured = rig.measure_lines(machine, Arc::new(bench.reading.pipeline()), lines);
+    let rig = Rig { stop: stop.clone(), ..Rig::assumed(TrackerConfig::optical_ceiling()) };
+    let measured = rig.measure_lines(machine, Arc::new(reading.pipeline()), lines);
     let (measured, outcome) = measured.map_err(|error| match error {
         StudyError::Experiment(error) => error,
         error => ExperimentError::Scene(error.to_string()),
@@ -127,20 +128,20 @@ const FIELDS: u64 = 600;
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,
-    bench: &Bench,
+    (reading, stop): (&Reading, &StopFlag),
 ) -> Result<FigureValue> {
     let motion = Arc::new(Synthetic::recorded_use(1));
     let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
     let experiment = Experiment::new(machine, pipeline, scene_named("full-screen:12")?);
     // One run gives all stages from head to light.
-    let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).host(bench.stop.clone()).run()?;
+    let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).host(stop.clone()).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, .. } =
         Budget::of(&outcome);
     // The paper adds its own mean latencies, so rendering is measured like figure 4. Eyes of Slats have no TRANSFORM
     // of their own.
     let of_eyes = outcome.summary();
-    let samples = bench.reading.latencies_ms(&of_eyes);
+    let samples = reading.latencies_ms(&of_eyes);
     let rendering_ms =
         if samples.is_empty() { drawing_ms + showing_ms } else { Statistics::of(samples.iter().copied()).mean };
     let details = vec![

@@ -147,9 +147,9 @@ impl Bench {
             "18" => Ok(heads::ratio_of_errors()),
             "19" => {
                 let machine = self.reading.on(self.machine("small-hmd")?)?;
-                heads::tracker_and_rendering(machine, self.reading.pipeline(), self)
+                heads::tracker_and_rendering(machine, self.reading.pipeline(), (&self.reading, &self.stop))
             }
-            "19b" => heads::tracker_and_rendering(self.machine("slats")?, Slats::split(), self),
+            "19b" => heads::tracker_and_rendering(self.machine("slats")?, Slats::split(), (&self.reading, &self.stop)),
             _ => Err(ExperimentError::Scene(format!("there is no figure {id}"))),
         }
     }
@@ -267,7 +267,7 @@ impl Bench {
             return Ok(measured);
         }
         let machine = self.reading.on(self.machine("small-hmd")?)?;
-        heads::under_line(&machine, self, line).map(Arc::new)
+        heads::under_line(&machine, (&self.reading, &self.stop), line).map(Arc::new)
     }
 
     fn photodiode_line(&self) -> Option<u64> {
@@ -281,7 +281,7 @@ impl Bench {
         // The line does not change the run, so it is no part of the key.
         let changes = self.changes.iter().filter(|(path, _)| path != PHOTODIODE_LINE).cloned().collect();
         let key = (self.reading.finished, changes);
-        self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, self))
+        self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, &self.reading, &self.stop))
     }
 
     /// Returns a machine and a scene for which TRANSFORM and RENDER of one eye each take `ms` milliseconds.
