@@ -19,6 +19,9 @@
 //! the renderer keeps the region until the master sends the copy command. RENDER ends when the last commands are
 //! *accepted*.
 //!
+//! The programs draw any kind of picture that implements [`Drawn`]: [`Frames`] of one or two eyes, or the cube faces of
+//! [`cube`].
+//!
 //! An observer measures the latency from events in the trace. The latency starts with TRANSFORM of an eye's picture.
 //! Three ends are possible: the end of COPY of this picture, the retrace at which the picture becomes visible, or the
 //! display of its first line.
