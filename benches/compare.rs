@@ -3,7 +3,7 @@
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use pxpl5::compare::CompareQuery;
+use pxpl5::compare::{CompareQuery, RowChoice};
 use pxpl5::scene::builtin;
 use pxpl5::tracking::motion::Synthetic;
 use pxpl5::tracking::predict::PredictorKind;
@@ -24,17 +24,7 @@ fn query() -> CompareQuery {
         shared.set(key, value, "bench").expect("known");
     }
     shared.set("fields", 600, "bench").expect("known");
-    CompareQuery {
-        shared,
-        only: Vec::new(),
-        seeds: vec![1],
-        limits: false,
-        causes: false,
-        predictors: false,
-        pictures: false,
-        confidence: 0.95,
-        until: None,
-    }
+    CompareQuery { only: RowChoice::All, seeds: vec![1], ..CompareQuery::new(shared) }
 }
 
 /// Measures all pipelines with every predictor and with each cause of error removed in turn. The runs have 10 s of head

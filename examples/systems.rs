@@ -4,6 +4,7 @@
 //! tracker and a Kalman filter. The evaluation is that of `compare`. The files systems.svg and systems.md are written
 //! into docs/ by default.
 
+use pxpl5::display::Coverage;
 use pxpl5::{ExperimentFile, Measured, Outcome, Pixels};
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -96,7 +97,7 @@ fn measure(system: &str, setting: Option<(&str, &str)>, motion: &str) -> Result<
 
 fn of_run(outcome: &Outcome) -> Found {
     let seconds = outcome.fields() as f64 * outcome.field_ms() * 1e-3;
-    let has_faces = outcome.pipeline().draws_faces();
+    let has_faces = outcome.pipeline().coverage() == Coverage::Surroundings;
     let errors = outcome.pixel_errors().filter(|errors| errors.evaluated > 0);
     let arrivals = outcome.observation().arrivals.iter();
     let texels = arrivals.map(|arrival| {
@@ -114,10 +115,10 @@ fn of_run(outcome: &Outcome) -> Found {
 
 /// Returns the number of triangles that went through TRANSFORM.
 fn triangles(outcome: &Outcome) -> u64 {
-    let notes = outcome.face_notes().all();
+    let notes = outcome.requested_updates();
     let Some(head) = outcome.head() else { return 0 };
     let scene = head.scene();
-    if !outcome.pipeline().draws_faces() {
+    if outcome.pipeline().coverage() == Coverage::View {
         let views: BTreeSet<_> = head.sampled().into_iter().map(|sampled| sampled.number).collect();
         return (views.len() * outcome.pipeline().eyes() * scene.triangles().len()) as u64;
     }

@@ -69,6 +69,19 @@ pub use pxpl5_lab::StudyError;
 pub use pxpl5_lab::Workstation;
 
 /// ```
+/// use pxpl5::limit::LimitQuery;
+/// use pxpl5::{ExperimentError, MachineConfig, Slats, StopFlag};
+///
+/// // A flag that ends a search. Another thread usually holds a clone of the flag, and stops the search later.
+/// let stop = StopFlag::default();
+/// let query = LimitQuery { stop: stop.clone(), ..LimitQuery::of_papers(MachineConfig::slats(), Slats::split())? };
+/// stop.stop();
+/// assert!(matches!(query.search(), Err(ExperimentError::Stopped(_))));
+/// # Ok::<(), ExperimentError>(())
+/// ```
+pub use pxpl5_lab::StopFlag;
+
+/// ```
 /// use pxpl5::{MachineConfig, Suitability, registry, suitability};
 ///
 /// // Pipelines that can run on a machine, or the reason why not.
@@ -100,7 +113,7 @@ pub use pxpl5_lab::{
     tracking_parameters,
 };
 
-/// Names of the laboratory that few programs need: trackers, predictors, and estimates of the cost of a run.
+/// Less common names of the laboratory: trackers, predictors, and estimates of the cost of a run.
 pub mod lab {
     /// ```
     /// use pxpl5::lab::{FileKey, PathChoice};

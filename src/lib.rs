@@ -55,8 +55,8 @@
 //!
 //! # Look
 //!
-//! [`Outcome::events`] lists what happened on each board. A [`Stepper`] runs an experiment in steps, and shows the state
-//! of the boards between two steps ([`snapshots`]).
+//! [`Outcome::events`] lists the events on all boards. A [`Stepper`] runs an experiment in steps, and shows the state of
+//! the boards between two steps ([`snapshots`]).
 //!
 //! ```
 //! # use pxpl5::prelude::*;
@@ -74,7 +74,7 @@
 //!
 //! # Extend
 //!
-//! A parameter study is a closure over experiments, on all cores:
+//! A parameter study calls a closure for each value of a parameter, on all cores:
 //!
 #![cfg_attr(feature = "lab", doc = "```")]
 #![cfg_attr(not(feature = "lab"), doc = "```ignore")]
@@ -91,8 +91,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A pipeline of your own implements [`Pipeline`] and [`PictureRules`] with the types of [`firmware`]. A display of your own implements
-//! [`device::Display`]. The guide has complete examples of both.
+//! A pipeline of your own implements [`Pipeline`] and [`PictureRules`] with the types of [`firmware`]. A display of
+//! your own implements [`device::Display`]. The guide has complete examples of both.
 //!
 //! # Modules and features
 //!
@@ -159,18 +159,18 @@ pub use pxpl5_volume as volume;
 pub use pxpl5_wire::display;
 pub use tracking;
 
-/// Names that few readers of an outcome need: cube faces around the viewer's head, updates of display memories, and
+/// Less common names for reading an outcome: cube faces around the viewer's head, updates of display memories, and
 /// conversions.
 pub mod run {
     pub use pxpl5_run::{
         ClosedForm, Estimates, FaceHistory, FaceLens, FacePipeline, FacePolicy, FaceSource, FrameStarts, KEPT_SAMPLES,
         LATE_REGIONS_LISTED, OrientationTiming, PixelField, Poses, ReportTimes, RequestedUpdate, RequestedUpdates,
         RotationLatency, SegmentedScene, ShownUpdate, SoFar, SurfaceLatency, Tally, Views, ViewsWanted, bit_of,
-        check_faces, display_list, in_ms, in_us, region_at, retraces, views, warning_without_code,
+        check_coverage, display_list, in_ms, in_us, region_at, retraces, views, warning_without_code,
     };
 }
 
-/// Names that few evaluations of an outcome need, such as the parts of a [`Report`] and the use of each kind of board.
+/// Less common names for evaluating an outcome, such as the parts of a [`Report`] and the use of each kind of board.
 pub mod measure {
     pub use pxpl5_measure::{
         FacesReport, GpUtilisation, MemoryReport, PICTURES_FOLLOWED, PortShare, PortUtilisation, RendererUtilisation,
@@ -223,8 +223,8 @@ pub mod prelude {
     pub use crate::tracking::tracker::TrackerConfig;
     pub use crate::{
         Board, Experiment, ExperimentError, Eye, Frameless, Head, Jitp, Level, MachineConfig, Measure, Measured,
-        ObservedKind, Outcome, Pause, PictureRules, Pipeline, PipelineSettings, Pixels, Registry, RenderingControl,
-        Report, Results, Slats, Stepper, SurfaceId,
+        ObservedKind, Outcome, PanelConfig, Pause, PictureRules, Pipeline, PipelineSettings, Pixels, Registry,
+        RenderingControl, Report, Results, Slats, Stepper, SurfaceId,
     };
     pub use glam::{DQuat, DVec3, Vec3};
 }

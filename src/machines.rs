@@ -157,8 +157,7 @@ pub use pxpl5_gp::CodeVersion;
 /// use pxpl5::{FrameBufferConfig, HiResConfig, LcdConfig, MachineConfig, NtscDisplay, OledConfig, Panel, PanelConfig};
 ///
 /// // The same machine with one of five displays.
-/// let mut machine = MachineConfig::small_hmd();
-/// machine.displays = vec![Box::new(OledConfig::PAPERS)];
+/// let machine = MachineConfig::small_hmd().with_display(OledConfig::PAPERS);
 /// assert!(machine.check().is_ok());
 /// let names = [
 ///     machine.displays[0].name(),

@@ -4,7 +4,7 @@
 mod support;
 
 use glam::{DQuat, DVec3};
-use pxpl5::compare::{CompareQuery, edge_scene};
+use pxpl5::compare::{CompareQuery, RowChoice, edge_scene};
 use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still};
 use pxpl5::tracking::predict::PredictorKind;
@@ -49,18 +49,8 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
         ("jitp-dual-view-racing", "jitp-dual-view-racing", "plain"),
         ("vdrt", "slats", "vdrt"),
     ];
-    let only = rows.iter().map(|(name, ..)| (*name).to_owned()).collect();
-    let query = CompareQuery {
-        shared: file(&shared),
-        only,
-        seeds: vec![1],
-        limits: false,
-        causes: false,
-        predictors: false,
-        pictures: false,
-        confidence: 0.95,
-        until: None,
-    };
+    let names = rows.iter().map(|(name, ..)| (*name).to_owned()).collect();
+    let query = CompareQuery { only: RowChoice::Named(names), seeds: vec![1], ..CompareQuery::new(file(&shared)) };
     let comparison = query.run(|_, _| ()).expect("in range");
     for (name, pipeline, raster) in rows {
         let mut own = vec![("pipeline", pipeline), ("head.raster", raster)];

@@ -4,7 +4,7 @@
 use glam::DVec3;
 mod support;
 
-use pxpl5::compare::{CompareQuery, as_seen, edge_pictures, edge_scene, motion};
+use pxpl5::compare::{CompareQuery, RowChoice, as_seen, edge_pictures, edge_scene, motion};
 use pxpl5::limit::LimitQuery;
 use pxpl5::scene::{Scene, builtin};
 use pxpl5::tracking::Pose;
@@ -419,17 +419,7 @@ fn comparison(fields: u64) -> CompareQuery {
         shared.set(key, value, "test").expect("known");
     }
     shared.set("fields", i64::try_from(fields).expect("few"), "test").expect("known");
-    CompareQuery {
-        shared,
-        only: Vec::new(),
-        seeds: vec![1],
-        limits: false,
-        causes: false,
-        predictors: false,
-        pictures: false,
-        confidence: 0.95,
-        until: None,
-    }
+    CompareQuery { only: RowChoice::All, seeds: vec![1], ..CompareQuery::new(shared) }
 }
 
 #[test]

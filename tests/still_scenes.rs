@@ -7,6 +7,7 @@
 //! `PXPL5_MODELS=FOLDER cargo test --test still_scenes` also draws every model of a folder. With
 //! `PXPL5_PICTURES=FOLDER`, all pictures and ideal pictures are written into a folder for inspection.
 
+use pxpl5::display::Coverage;
 use pxpl5::oracle::IdealPicture;
 use pxpl5::scene::config::FIT_DISTANCE_RADII;
 use pxpl5::scene::{self, HeadMotion, HeadPath, Scene, Sway};
@@ -231,7 +232,7 @@ fn every_pipeline_shows_the_same_pictures_at_the_cycle_level() {
 /// Returns true if a pipeline draws pictures for the eye. Faces of a cube are compared with ideal faces in
 /// crates/pxpl5-run/tests/faces, and their display is compared with a reference model.
 fn draws_pictures(entry: &PipelineEntry) -> bool {
-    !(entry.build)(&PipelineSettings::default()).draws_faces()
+    (entry.build)(&PipelineSettings::default()).coverage() == Coverage::View
 }
 
 /// Every pipeline must be covered by these tests.

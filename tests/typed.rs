@@ -45,6 +45,28 @@ fn a_table_over_renderers_takes_fifteen_lines() {
     assert!(rows.iter().all(|(_, mean, _)| (0.11..0.16).contains(mean)), "{rows:?}");
 }
 
+/// A panel of 1,080 x 1,200 pixels and 90 Hz for each eye.
+#[test]
+fn a_display_of_ones_own_takes_ten_lines() {
+    let panel = PanelConfig { width: 1_080, height: 1_200, refresh_hz: 90, ports: 8, ..PanelConfig::PAPERS };
+    let machine = MachineConfig::small_hmd().with_renderers(20).with_display(panel);
+    let scene = scene::builtin("full-screen:12").expect("built in");
+    let experiment = Experiment::new(machine, RenderingControl::stereo(), scene).fields(90);
+    let outcome = experiment.run().expect("it fits");
+    assert_eq!(outcome.picture(Eye::Right).map(|picture| picture.dimensions()), Some((1_080, 1_200)));
+    assert!((outcome.field_ms() - 1e3 / 90.0).abs() < 1e-6);
+}
+
+#[test]
+fn the_programs_are_as_short_as_their_names_say() {
+    let source = include_str!("typed.rs");
+    for (name, most) in [("takes_forty_lines", 40), ("takes_fifteen_lines", 15), ("takes_ten_lines", 10)] {
+        let (_, program) = source.split_once(&format!("{name}() {{\n")).expect("a program");
+        let (body, _) = program.split_once("\n}\n").expect("a program has an end");
+        assert!(body.lines().count() <= most, "{name}: {} lines", body.lines().count());
+    }
+}
+
 /// The events of a run are in the order of time, name their boards, and agree with the run's counters.
 #[test]
 fn events_name_their_boards_in_the_order_of_time() {

@@ -42,7 +42,11 @@ class Made:
 
     def put(self, path: str, value: object) -> None:
         """Sets the value of a key."""
-        self.settings.set(f"{path}={toml_of(value)}", f"keyword {path}")
+        try:
+            text = toml_of(value)
+        except TypeError as error:
+            raise SettingError(f"{path}: {error}") from None
+        self.settings.set(f"{path}={text}", "")
 
     def put_all(
         self,
@@ -106,7 +110,7 @@ class Made:
         given = [key for key in ("triangles", "cull", "fit") if keys.get(key) is not None]
         if self.scene is not None and given:
             methods = "Scene.decimated, Scene.culled or the scene's own fit"
-            raise SettingError(f"keyword {given[0]}: expected the name of a scene beside it, found a Scene; use {methods}")
+            raise SettingError(f"{given[0]}: expected the name of a scene beside it, found a Scene; use {methods}")
 
 
 class PolicyPipeline(Strict):

@@ -106,8 +106,8 @@ def figures(
 class Limit:
     """The largest number of triangles that a pipeline draws in time, with the tested numbers."""
 
-    #: One less than ``first_miss``; 0 if one triangle misses the goal.
-    triangles: int
+    #: One less than ``first_miss``; 0 if one triangle misses the goal, and None if the pipeline has no limit.
+    triangles: int | None
     #: The smallest tried number of triangles that misses the goal; None if all tried numbers reach the goal.
     first_miss: int | None
     #: The largest tried number of triangles above ``first_miss`` that reaches the goal; None without such a number.
@@ -232,6 +232,7 @@ def limit(
     fields: int | None = None,
     level: LevelName | str | None = None,
     settings: Mapping[str, object] | None = None,
+    progress: Progress = None,
     **keys: object,
 ) -> Limit:
     """Finds the largest number of triangles that a pipeline draws in time, by simulation.
@@ -248,14 +249,16 @@ def limit(
     test_scene = scene if scene in ("full-screen", "typical") else None
     model = None if test_scene is not None else scene
     made.put_all(pipeline, model or "full-screen:1", machine, None, {"level": level, **keys, **(settings or {})})
-    found = _native.limit(
-        made.settings,
-        test_scene=None if test_scene is None else str(test_scene),
-        thinned=model is not None,
-        rate_hz=rate_hz,
-        latency_fields=latency_fields,
-        fields=optional("fields", fields, LEAST_FIELDS),
-    )
+    with reporting(progress, "sizes") as reporter:
+        found = _native.limit(
+            made.settings,
+            test_scene=None if test_scene is None else str(test_scene),
+            thinned=model is not None,
+            rate_hz=rate_hz,
+            latency_fields=latency_fields,
+            fields=optional("fields", fields, LEAST_FIELDS),
+            progress=reporter,
+        )
     return Limit(**found)
 
 
@@ -316,7 +319,7 @@ class Comparison(Strict):
                 row["not_shown"],
                 row["error"]["mean_px"]["mean"],
                 row["error"]["n"],
-                row["triangles_possible"],
+                "no limit" if row["has_no_limit"] else row["triangles_possible"],
             ]
             for row in self.data["pipelines"]
         ]
@@ -330,6 +333,7 @@ def compare(
     head: str | Head = "synthetic",
     fields: int | None = None,
     only: str | Sequence[str] = (),
+    all_rows: bool = False,
     seeds: int | Sequence[int] = 5,
     limits: bool = False,
     causes: bool = False,
@@ -343,14 +347,15 @@ def compare(
     progress: Progress = None,
     **keys: object,
 ) -> Comparison:
-    """Runs every pipeline with the same settings, once for each seed. Returns errors in pixels and latencies.
+    """Runs several pipelines with the same settings, once for each seed. Returns errors in pixels and latencies.
 
     ``limits`` adds the largest number of triangles of each row, ``causes`` the error by cause, ``predictors`` the error with every
     predictor. Each of the three takes longer.
 
     - ``head``: a head whose motion has a name or is the path of a recording. The motion ``synthetic`` differs with the seed.
     - ``fields``: number of fields of each run; default: the length of the recording, or 300 without a recording.
-    - ``only``: names of the rows to run; default: all rows.
+    - ``only``: names of the rows to run; default: one or two rows of each family of pipelines.
+    - ``all_rows``: True to run all rows.
     - ``limits``: True to add the largest number of triangles of each pipeline.
     - ``confidence``: that of all intervals, between 0 and 1.
     - ``until_precision``: greatest width of the interval of each mean error, from end to end, as a share of the mean (``"10%"``) or in
@@ -360,7 +365,7 @@ def compare(
       ``pxpl5 compare --out`` does, but without pictures. After an interruption, ``resume=True`` keeps the finished rows of the same
       comparison and runs only the others.
 
-    Ctrl-C ends the runs in progress, but not a search for limits. Raises :class:`SettingError` for a setting that is wrong, or a run
+    Ctrl-C ends the runs in progress. Raises :class:`SettingError` for a setting that is wrong, or a run
     too short to judge anything, and :class:`SweepError` for a folder that cannot be used, is in use, or holds another comparison.
     """
     if not 0 < confidence < 1:
@@ -369,6 +374,8 @@ def compare(
         raise SettingError("max_seeds: expected until_precision beside it, found none")
     if resume and out is None:
         raise SettingError("resume: expected the folder out beside it, found none")
+    if all_rows and only:
+        raise SettingError(f"all_rows: expected no names in only, found {only!r}")
     made = Made()
     made.put_all(None, scene, machine, head, {**({} if fields is None else {"fields": fields}), **keys, **(settings or {})})
     if made.motion is not None:
@@ -385,6 +392,7 @@ def compare(
             made.settings,
             names("only", only),
             numbers,
+            all_rows=all_rows,
             limits=limits,
             causes=causes,
             predictors=predictors,

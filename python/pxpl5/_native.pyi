@@ -106,6 +106,7 @@ def compare(
     only: Sequence[str],
     seeds: Sequence[int],
     *,
+    all_rows: bool = False,
     limits: bool = False,
     causes: bool = False,
     predictors: bool = False,
@@ -131,6 +132,7 @@ def limit(
     rate_hz: float | None = None,
     latency_fields: float | None = None,
     fields: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> LimitData: ...
 def limit_over(
     settings: Settings,
@@ -364,6 +366,7 @@ class Table(Generic[Row]):
     @overload
     def __getitem__(self, name: str, /) -> Column: ...
     def row(self, number: int) -> Row: ...
+    def head(self, rows: int = 5) -> Table[Row]: ...
     def rows(self) -> list[Row]: ...
     def _repr_html_(self) -> str: ...
 

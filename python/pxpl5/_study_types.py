@@ -97,7 +97,7 @@ class FigureData(VolumeFigureData):
 class LimitData(TypedDict):
     """The most triangles that a pipeline draws in time, as :class:`Limit`."""
 
-    triangles: int
+    triangles: int | None
     first_miss: int | None
     island: int | None
     unbroken_from: int
@@ -192,6 +192,7 @@ class ComparedData(TypedDict):
     causes: list[CauseData]
     predictors: list[PredictorMeanData]
     triangles_possible: int | None
+    has_no_limit: bool
     triangles_definition: str
     failure: str | None
     host_seconds: float

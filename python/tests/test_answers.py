@@ -94,7 +94,7 @@ def test_the_least_number_of_renderers_is_found() -> None:
     assert found.tried[0] == (1.0, False) and found.goal == {"latency_fields": 1.01}
     with pytest.raises(pxpl5.SettingError, match="rate_hz: expected a number above 0, found -1"):
         pxpl5.limit_over("machine.n_gps", "slats", "mig", rate_hz=-1)
-    with pytest.raises(pxpl5.SettingError, match="low and high: expected a range, found 5 to 5"):
+    with pytest.raises(pxpl5.SettingError, match="low and high: range: expected a least value below the greatest, found 5 to 5"):
         pxpl5.limit_over("machine.n_gps", "slats", "mig", low=5, high=5)
     with pytest.raises(pxpl5.SettingError, match="fields: expected a whole number of 10 or more, found -3"):
         pxpl5.limit_over("machine.n_gps", "slats", "mig", fields=-3)

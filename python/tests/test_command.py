@@ -31,6 +31,22 @@ def test_the_command_has_version_help_and_exit_codes() -> None:
     assert wrong.returncode == 2 and "slats" in wrong.stderr
 
 
+def test_a_comparison_has_the_rows_of_the_command() -> None:
+    compared = ["compare", "--scene", "full-screen:2", "--fields", "24", "--seeds", "1", "--json"]
+
+    def rows_of_command(*more: str) -> list[str]:
+        return [row["pipeline"] for row in json.loads(run(*compared, *more).stdout)["pipelines"]]
+
+    def rows(all_rows: bool) -> list[str]:
+        found = pxpl5.compare("full-screen:2", fields=24, seeds=1, all_rows=all_rows, progress=False)
+        return [row["pipeline"] for row in found.data["pipelines"]]
+
+    assert rows(False) == rows_of_command() and rows(True) == rows_of_command("--all")
+    assert set(rows(False)) < set(rows(True))
+    with pytest.raises(pxpl5.SettingError, match="all_rows: expected no names in only, found 'slats'"):
+        pxpl5.compare("mig", only="slats", all_rows=True)
+
+
 def test_results_are_plotted_as_the_command_plots_them(tmp_path: Path) -> None:
     base = {"pipeline": "slats", "scene": "typical:100", "fields": 30, "measure": "latency_fields.mean"}
     results = pxpl5.sweep(pxpl5.SweepSpace(base, {"triangles": [20, 40, 60]}, seeds=2), out=tmp_path / "rows", progress=False)

@@ -16,7 +16,7 @@ def test_one_latency_figure_is_met() -> None:
     assert row["simulated"] == pytest.approx(1.0) and row["misses"] is False
     assert table.row(1)["published"] == 11 and table.row(1)["misses"] is False
     assert len(pxpl5.figure_ids()) == 26
-    with pytest.raises(pxpl5.SettingError, match="there is no figure 99; expected one of 1, 2"):
+    with pytest.raises(pxpl5.SettingError, match="there is no figure `99`; did you mean `9`"):
         pxpl5.figures(["99"])
 
 
@@ -82,7 +82,7 @@ def test_an_interrupted_comparison_goes_on_to_the_same_rows(tmp_path: Path) -> N
     assert rows.read_text().splitlines(keepends=True)[1] == lines[1]
     with pytest.raises(pxpl5.SweepError, match="rows are of another comparison: fields was 24, expected 30"):
         short(out=out, resume=True, fields=30)
-    with pytest.raises(pxpl5.SweepError, match="--confidence was 0.95, expected 0.9"):
+    with pytest.raises(pxpl5.SweepError, match="confidence was 0.95, expected 0.9"):
         short(out=out, resume=True, confidence=0.9)
     rows.write_text(lines[0] + "{}\n")
     with pytest.raises(pxpl5.SweepError, match="line 2: expected a row of a comparison"):

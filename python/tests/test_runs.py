@@ -209,9 +209,49 @@ def test_ctrl_c_ends_a_comparison_and_leaves_its_folder_free(tmp_path: Path) -> 
     sent_s = time.monotonic()
     out, _ = process.communicate(timeout=60)
     first, second = out.splitlines()
-    assert float(first.split()[1]) - sent_s < 2 and "--seeds was [1, 2, 3, 4, 5], expected [1, 2]" in second
+    assert float(first.split()[1]) - sent_s < 2 and "seeds was [1, 2, 3, 4, 5], expected [1, 2]" in second
     # Rows of stopped runs are not stored.
     assert len((tmp_path / "out" / "rows" / "rows.jsonl").read_text().splitlines()) == 1
+
+
+STUDY = """
+import pxpl5, time
+print("begun", flush=True)
+try:
+    {call}
+except KeyboardInterrupt:
+    print("interrupted", time.monotonic(), flush=True)
+for _ in range(20):
+    before = time.process_time()
+    time.sleep(0.25)
+    if time.process_time() - before < 0.05:
+        print("idle", flush=True)
+        break
+"""
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "pxpl5.limit('rendering-control', 'head', rate_hz=15)",
+        "pxpl5.limit_over('machine.n_gps', 'rendering-control', 'head', rate_hz=15, fields=2_000)",
+        "pxpl5.figures(progress=False)",
+        "pxpl5.levels(experiments=200, progress=False)",
+        "pxpl5.readings(progress=False)",
+        "pxpl5.compare('head', fields=100, seeds=1, only='rendering-control', limits=True, progress=False)",
+        "pxpl5.rig('rendering-control', passes=2_000)",
+    ],
+)
+def test_ctrl_c_ends_studies_and_their_threads(call: str) -> None:
+    process = subprocess.Popen([sys.executable, "-c", STUDY.format(call=call)], stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None and process.stdout.readline() == "begun\n"
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    sent_s = time.monotonic()
+    out, _ = process.communicate(timeout=60)
+    first, second = out.splitlines()
+    assert float(first.split()[1]) - sent_s < 0.5
+    assert second == "idle"
 
 
 def test_a_run_that_is_too_short_says_how_long_it_must_be() -> None:
@@ -236,6 +276,21 @@ def test_a_run_that_is_too_short_says_how_long_it_must_be() -> None:
 def test_wrong_settings_are_refused_with_the_words_of_the_library(keywords: dict[str, object], words: str) -> None:
     with pytest.raises(pxpl5.SettingError, match=words):
         pxpl5.Experiment(**keywords)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("keywords", "words"),
+    [
+        ({"level": "cycles"}, "level: there is no level `cycles`; did you mean `cycle`"),
+        ({"fields": "abc"}, 'fields: expected a whole number from 1 to 10000000, found "abc"$'),
+        ({"settings": {"machine.gp.triangle_ns": -1}}, "machine.gp.triangle_ns: expected a whole number from 0"),
+        ({"seed": {1}}, "seed: expected text, a number, a truth value or a list of these, found set"),
+        ({"head": "pann"}, "head.motion: there is no motion `pann`; did you mean `pan`"),
+    ],
+)
+def test_an_error_begins_with_the_setting_and_names_the_setting_once(keywords: dict[str, object], words: str) -> None:
+    with pytest.raises(pxpl5.SettingError, match=f"^{words}"):
+        pxpl5.Experiment("slats", "mig", **keywords)  # type: ignore[arg-type]
 
 
 def test_the_analytic_level_measures_and_does_not_run() -> None:

@@ -39,6 +39,16 @@ def test_pandas_polars_and_duckdb_take_a_table_as_it_is(mig: pxpl5.Outcome) -> N
     assert rows == (len(pictures), int(pictures["complete"].sum()))
 
 
+def test_the_first_rows_are_a_table(mig: pxpl5.Outcome) -> None:
+    pictures = mig.pictures
+    head = pictures.head(3)
+    assert head.rows() == list(pictures)[:3] == [row for row in head]
+    assert len(pictures.head()) == 5 and pictures.head(10**6).rows() == pictures.rows()
+    assert head.definitions == pictures.definitions
+    with pytest.raises(pxpl5.SettingError, match="expected a whole number of 0 or more, found -1"):
+        pictures.head(-1)
+
+
 def test_what_is_missing_is_null_and_nan(mig: pxpl5.Outcome) -> None:
     """During the warm-up a picture has no parts of its latency."""
     pictures = mig.pictures

@@ -11,7 +11,9 @@ use crate::protocol::{ArpMessage, read};
 use image::RgbImage;
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::display::{Counter, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, Surface};
+use pxpl5_wire::display::{
+    Counter, Coverage, Display, DisplayConfig, DisplayContext, DisplayEvent, DisplayOutput, Surface,
+};
 use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
 use std::collections::VecDeque;
 use std::sync::OnceLock;
@@ -333,8 +335,8 @@ impl DisplayConfig for ArpConfig {
         self.background = background & 0x00FF_FFFF;
     }
 
-    fn shows_cube_faces(&self) -> bool {
-        true
+    fn coverage(&self) -> Coverage {
+        Coverage::Surroundings
     }
 
     fn equals(&self, other: &dyn DisplayConfig) -> bool {

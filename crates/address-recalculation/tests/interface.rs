@@ -8,7 +8,7 @@ use address_recalculation::{
 };
 use glam::DQuat;
 use pxpl5_sim::{Span, SplitMix64, Time};
-use pxpl5_wire::display::DisplayConfig;
+use pxpl5_wire::display::{Coverage, DisplayConfig};
 use pxpl5_wire::{Eye, PeriodNumber, PixelSource, Word, swap_request};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -271,7 +271,7 @@ fn its_configuration_is_known_by_name_and_by_all_that_it_holds() {
     let mut other = CONFIG;
     let tables: Vec<&str> = other.tables_mut().into_iter().map(|(name, _)| name).collect();
     assert_eq!(tables, ["arp", "arp_scan"]);
-    assert!(config.shows_cube_faces() && config.equals(&CONFIG));
+    assert!(config.coverage() == Coverage::Surroundings && config.equals(&CONFIG));
     other.remember(7);
     assert_eq!(other.fields_kept, 7);
     assert!(!config.equals(&other));

@@ -1,4 +1,4 @@
-//! Configuration of just-in-time pixels: the boards, and the variant of the pipeline.
+//! Settings of just-in-time pixels: the boards, and the variant of the pipeline.
 
 use crate::timing::JitpTiming;
 use pxpl5_geometry::Viewport;
@@ -12,70 +12,66 @@ use pxpl5_wire::{
 use std::fmt;
 use std::sync::Arc;
 
-/// Mode of interpolation between the two views of a field. The mode determines the paths of vertices from the start to
-/// the end of the field.
+/// The coordinates in which vertices are interpolated between the views at the start and at the end of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interpolation {
-    /// Interpolates the screen positions of vertices, after the division by depth.
+    /// Positions on the screen, after the division by depth.
     Screen,
-    /// Interpolates the eye-space positions of vertices, before the division by depth.
+    /// Positions in eye space, before the division by depth.
     View,
 }
 
-/// The instants for which the parts of a field's picture are drawn. Each part shows the scene as seen by the viewer at
-/// one instant.
+/// The instants for which the parts of a field are drawn. Each part shows the scene as the viewer sees it at one
+/// instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
-    /// One time for the whole field.
+    /// The whole field shows one instant.
     Field,
-    /// One time for each strip of lines.
+    /// Each strip of lines shows its own instant and is transformed separately.
     Strip,
-    /// One time for each strip, between the field's first and last pixel. The strips are interpolated from a dual
-    /// display list.
+    /// Each strip shows its own instant. The vertices of a strip are interpolated between the start and the end of the
+    /// field.
     Dual(Interpolation),
 }
 
-/// Drawing schedule: strips or blocks, and the order in which they are drawn.
+/// The parts in which a picture is drawn, and their order.
 #[derive(Clone, Debug)]
 pub enum DrawingSchedule {
-    /// Draws strips of a field from top to bottom.
+    /// Strips of lines, from the top to the bottom of each field.
     Beam {
-        /// Times for which the picture is computed.
+        /// Choice of the instants for which the strips are drawn.
         viewpoint: Viewpoint,
-        /// True if strips reach the frame buffer just before the beam scans them. False if the strips reach the frame
-        /// buffer one field earlier.
+        /// True if strips reach the frame buffer just before the beam. False if strips arrive one field earlier.
         racing: bool,
-        /// Number of rows of a strip: 1 to 128.
+        /// Number of lines of a strip: 1 to 128.
         strip_rows: u32,
     },
-    /// Draws square blocks of the whole frame in an endless random order.
+    /// Square blocks of the whole frame, in an endless random order.
     Roam {
         /// Width and height of a block, 4 to 128 pixels.
         block: u32,
-        /// Number of blocks that the master gives a slave in one order.
+        /// Number of blocks in one order to a slave.
         batch: u32,
-        /// Function from the index of a step to the block that is drawn in this step.
+        /// The random order of the blocks.
         order: BlockOrder,
     },
 }
 
-/// Timing of the display's beam: the time at which the beam reaches each pixel.
+/// The times at which the beam of the display reaches each pixel.
 #[derive(Clone)]
 pub struct Beam {
-    /// Function from a field, a row of this field and a pixel of this row to the time at which the beam reaches the
-    /// pixel.
+    /// The time for a field, a row of this field and a pixel of this row.
     at: Arc<dyn Fn(PeriodNumber, u32, u32) -> Time + Send + Sync>,
-    /// Function from a field to the time of its retrace.
     retrace: Arc<dyn Fn(PeriodNumber) -> Time + Send + Sync>,
 }
 
-/// The random order of blocks: a function from the index of a step to the block that is drawn in this step.
+/// The random order of blocks. Each step draws one block.
 #[derive(Clone)]
 pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 
 impl Beam {
-    /// Creates a beam. The arguments of `when` are a field, a row of the field and a pixel of the row. `when` returns
-    /// the time at which the beam reaches the pixel. `retrace` returns the time at which a field begins.
+    /// Creates a beam from two functions. `when` returns the time at which the beam reaches a pixel, for a field, a row
+    /// of this field and a pixel of this row. `retrace` returns the time at which a field begins.
     pub fn new(
         when: impl Fn(PeriodNumber, u32, u32) -> Time + Send + Sync + 'static,
         retrace: impl Fn(PeriodNumber) -> Time + Send + Sync + 'static,
@@ -97,7 +93,7 @@ impl Beam {
 }
 
 impl BlockOrder {
-    /// Creates an order from a function that returns the block of each step. Steps are counted from 0.
+    /// Creates an order from a function that returns the block for each step, counted from 0.
     pub fn new(block: impl Fn(u64) -> RegionId + Send + Sync + 'static) -> Self {
         Self(Arc::new(block))
     }
@@ -119,19 +115,19 @@ impl fmt::Debug for BlockOrder {
     }
 }
 
-/// The master's request for a view. The view is computed from the tracker's reports.
+/// The master's request for a view that is predicted from the tracker's reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// Number that the view gets: see [`JitpConfig::view_number`].
+    /// Number of the view: see [`JitpConfig::view_number`].
     pub number: ViewNumber,
-    /// Instant that limits the reports: the view must use only reports that the host received before this instant.
-    /// Later reports have not reached the master.
+    /// The view must depend only on reports that the host received before this instant, because later reports have not
+    /// reached the master.
     pub known: Time,
     /// Instant for which the view is drawn.
     pub shown_at: Time,
 }
 
-/// The boards of the pipeline, and its variant.
+/// The boards and the variant of just-in-time pixels.
 #[derive(Clone, Debug)]
 pub struct JitpConfig {
     /// Ring port of the host, which forwards the tracker's reports.
@@ -144,22 +140,21 @@ pub struct JitpConfig {
     pub renderers: Vec<NodeId>,
     /// Ring port of the frame buffer. The display is mono.
     pub frame_buffer: NodeId,
-    /// Order of the regions, and times for which they are drawn.
+    /// The parts in which a picture is drawn, and their order.
     pub schedule: DrawingSchedule,
-    /// Timing of the beam.
+    /// The times at which the beam reaches each pixel.
     pub beam: Beam,
-    /// Rule that chooses the instant for which a view is drawn, for example the middle of the time during which the
-    /// display shows the view.
+    /// Choice of the instant for which a part is drawn, such as the middle of the time in which the part lights.
     pub aim: Aim,
-    /// Division of pixel memory among contexts.
+    /// Use of the bits of a pixel's memory.
     pub layout: Layout,
     /// True if the run can compute pixels. If false, no command words are made, but all times stay the same.
     pub pixels: bool,
-    /// Times of this firmware that the processor's timing table lacks.
+    /// Times of this pipeline that the processor's timing table lacks.
     pub timing: JitpTiming,
 }
 
-/// Number of view numbers for each field. A field has at most 240 strips.
+/// Distance between the view numbers of two fields. A field has at most 240 strips.
 const VIEWS_PER_FIELD: u64 = 256;
 
 impl JitpConfig {
@@ -184,16 +179,16 @@ impl JitpConfig {
         Err(SettingError::combination(format_args!("strips or blocks must have {low} to {high} lines, found {found}")))
     }
 
-    /// Returns the number of the view for one strip of a field.
+    /// Returns the number of the view for strip `strip` of a field.
     ///
-    /// The single view of a whole field has the view number of strip 0. The two views for the start and the end of a
-    /// field have the view numbers of strips 0 and 1.
+    /// If all strips share one view, its number is that of strip 0. The views for the start and the end of a field have
+    /// the numbers of strips 0 and 1.
     #[must_use]
     pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
         ViewNumber(field.0 * VIEWS_PER_FIELD + strip)
     }
 
-    /// Returns the division of a field (strips) or a frame (blocks) into regions.
+    /// Returns the regions into which a field (strips) or a frame (blocks) is divided.
     #[must_use]
     pub fn grid(&self) -> RegionGrid {
         match self.schedule {
@@ -204,13 +199,12 @@ impl JitpConfig {
         }
     }
 
-    /// Returns the regions of the strip with index `strip` in the grid of a field.
     pub(crate) fn strip_regions(&self, strip: u32) -> Vec<RegionId> {
         let columns = self.grid().columns();
         (strip * columns..(strip + 1) * columns).map(|region| RegionId(region as u16)).collect()
     }
 
-    /// Returns the viewport and the lines of a picture: a field for strips, the whole frame for blocks.
+    /// Returns the screen area and the lines of a picture: a field for strips, the whole frame for blocks.
     pub(crate) fn extent(&self, picture: PictureNumber) -> (Viewport, Lines) {
         match self.schedule {
             DrawingSchedule::Beam { .. } => {
@@ -230,38 +224,36 @@ impl JitpConfig {
         self.renderers[usize::from(region.0) % self.renderers.len()]
     }
 
-    /// Returns the first and last row of a strip.
     pub(crate) fn rows(&self, strip: u32) -> (u32, u32) {
         let RegionGrid { height, region_height, .. } = self.grid();
         let first = strip * region_height;
         (first, (first + region_height - 1).min(height - 1))
     }
 
-    /// Returns the deadline of a strip. The deadline is the time at which the beam scans the first pixel of the strip.
+    /// Returns the deadline of a strip: the time at which the beam reaches its first pixel.
     pub(crate) fn deadline(&self, field: PeriodNumber, strip: u32) -> Time {
         self.beam.at(field, self.rows(strip).0, 0)
     }
 
-    /// Returns true for the middle strip of a field. In the trace, the events of this strip represent the whole field.
+    /// Returns true for the middle strip of a field. In the trace, the drawing of this strip stands for the whole
+    /// field.
     pub fn is_middle(&self, strip: u32) -> bool {
         strip == self.grid().rows() / 2
     }
 
-    /// Returns the instant for which a strip is drawn. [`JitpConfig::aim`] chooses the instant from the times of the
-    /// strip's scan.
+    /// Returns the instant for which a strip is drawn, such as the middle of its scan ([`JitpConfig::aim`]).
     #[must_use]
     pub fn aimed_at_strip(&self, field: PeriodNumber, strip: u32) -> Time {
         let (first, last) = self.rows(strip);
         self.aimed_at(field, first, last)
     }
 
-    /// Returns the instant for which a field is drawn if all of its strips share one view.
+    /// Returns the instant for which a field is drawn if all strips share one view.
     #[must_use]
     pub fn aimed_at_field(&self, field: PeriodNumber) -> Time {
         self.aimed_at(field, 0, self.grid().height - 1)
     }
 
-    /// Returns the instant for which the rows `first` to `last` of a field are drawn.
     fn aimed_at(&self, field: PeriodNumber, first: u32, last: u32) -> Time {
         let shown = LightTimes {
             tick: self.beam.retrace(field),
@@ -271,16 +263,16 @@ impl JitpConfig {
         self.aim.instant(&shown)
     }
 
-    /// Returns the times at which the first and the last pixel of a field are scanned, T0 and T1.
+    /// Returns the times at which the beam reaches the first and the last pixel of a field.
     #[must_use]
     pub fn ends(&self, field: PeriodNumber) -> (Time, Time) {
         let RegionGrid { width, height, .. } = self.grid();
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
     }
 
-    /// Returns the instant for which a strip is drawn, on a scale from T0 (result 0) to T1 (result 1). The beam scans
-    /// the field's first pixel at T0 and the field's last pixel at T1. If [`JitpConfig::aim`] is the retrace, the
-    /// result is negative, because the retrace precedes T0.
+    /// Returns the instant for which a strip is drawn, as a part of the field. The part is 0 when the beam reaches the
+    /// first pixel, and 1 when the beam reaches the last pixel. The result is negative if [`JitpConfig::aim`] is the
+    /// retrace.
     #[must_use]
     pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);
@@ -288,14 +280,13 @@ impl JitpConfig {
         from_begin / end.since(begin).0 as f64
     }
 
-    /// Returns the duration from the order of a strip to the strip's deadline.
+    /// Returns the time from the order of a strip to the strip's deadline.
     ///
-    /// If there are n slaves, each slave draws every n-th strip. Each slave thus has the time that the beam needs for n
-    /// strips. If strips do not race the beam, the master orders the strips one field earlier.
+    /// Each of n slaves draws every n-th strip, so a slave has the time that the beam needs for n strips. Without
+    /// racing, the master orders strips one field earlier.
     ///
-    /// Field n and field n - 2 use the same lines of the frame buffer. A strip of field n is ordered only after the
-    /// beam has scanned the same lines in field n - 2. Otherwise the strip could overwrite lines that the beam has not
-    /// reached.
+    /// Fields n - 2 and n use the same lines of the frame buffer. The master therefore orders a strip of field n only
+    /// after the beam has scanned its lines in field n - 2.
     pub(crate) fn lead(&self, racing: bool) -> Span {
         let first = PeriodNumber::FIRST;
         let begin = self.deadline(first, 0);
@@ -306,13 +297,11 @@ impl JitpConfig {
         wanted.min(next_of_its_lines.since(self.scanned(first, 0)))
     }
 
-    /// Returns the duration of a field, from its start to the start of the next field.
     pub(crate) fn field_time(&self) -> Span {
         let first = PeriodNumber::FIRST;
         self.deadline(first.after(2), 0).since(self.deadline(first, 0)) / 2
     }
 
-    /// Returns the time at which the last pixel of a strip has been scanned.
     fn scanned(&self, field: PeriodNumber, strip: u32) -> Time {
         let RegionGrid { width, height, region_height, .. } = self.grid();
         let last = ((strip + 1) * region_height).min(height) - 1;

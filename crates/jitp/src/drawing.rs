@@ -1,4 +1,4 @@
-//! The primitives of a display list as seen in one view, or interpolated between two views.
+//! The primitives of a display list for one view, or interpolated between two views.
 
 use crate::config::Interpolation;
 use glam::Mat4;
@@ -11,45 +11,44 @@ use pxpl5_renderer::{Command, TriangleCommand};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Number of subpixels along the side of a pixel. Coordinates of outlines are in subpixels.
 const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 
-/// Largest deviation, in subpixels, between a straight line and the path of a triangle's corner on the screen. The path
-/// is curved if positions are interpolated in eye space.
+/// Largest deviation, in subpixels, of a triangle's corner from a straight path on the screen. The path is curved if
+/// positions are interpolated in eye space.
 ///
 /// The limit is 8 pixels. A head that turns by 10 degrees during a field causes a deviation of 5 pixels, and real heads
 /// do not turn so fast.
 const CURVED: i32 = 8 * SUBPIXELS;
 
-/// A rectangle of pixels. `across` has its first and last column, and `lines` has its first and last line of the frame.
+/// A rectangle of pixels: first and last column, first and last line of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {
     pub(crate) across: [i32; 2],
     pub(crate) lines: [i32; 2],
 }
 
-/// The display list as it is drawn for a strip of lines or for a batch of blocks.
+/// A display list that is ready to be drawn for a strip of lines or a batch of blocks.
 pub(crate) struct DrawnList {
     list: Arc<DisplayList>,
     viewport: Viewport,
     placed: Vec<PlacedStructure>,
-    /// Instant between two views for which the list is drawn. `None` if the list has only one view.
+    /// Data for the interpolation between two views. `None` for one view.
     between: Option<Between>,
-    /// Triangles on the screen, computed at the first use. All strips of a conventional picture share these triangles.
+    /// Triangles on the screen. If a field has one view, all strips share these triangles.
     outlines: OnceLock<Vec<Outline>>,
 }
 
-/// An instant between two views of a display list, with the data to interpolate the list for this instant.
+/// Two views, and the instant between them for which a display list is drawn.
 struct Between {
     ends: Ends,
-    /// Position of this instant on a scale from the first view (0) to the second view (1).
+    /// The instant, from 0 (first view) to 1 (second view).
     part: f64,
     interpolation: Interpolation,
-    /// View at this instant, with interpolated matrices.
+    /// The view at this instant.
     view: FrameView,
 }
 
-/// The transformed display list, either for the start and the end of a field, or for one instant only.
+/// A transformed display list: for one view, or for the views at the start and at the end of a field.
 #[derive(Clone)]
 pub(crate) struct Ends {
     pub(crate) views: Arc<[FrameView]>,
@@ -63,7 +62,7 @@ impl fmt::Debug for DrawnList {
 }
 
 impl Ends {
-    /// Transforms the list for `views`. `views` has one view, or two views for the start and the end of a field.
+    /// Transforms the list for one view, or for the two views at the start and at the end of a field.
     pub(crate) fn new(list: &DisplayList, views: Vec<FrameView>, viewport: Viewport) -> Self {
         let triangles = match &views[..] {
             [from, to] => triangle_ends(list, from, to, viewport),
@@ -73,7 +72,6 @@ impl Ends {
     }
 }
 
-/// Returns the screen positions of the corners of each structure's triangles, in both views.
 fn triangle_ends(
     list: &DisplayList,
     from: &FrameView,
@@ -84,21 +82,21 @@ fn triangle_ends(
     placed.map(|(from, to)| structure_ends(list, &from, &to)).collect()
 }
 
-/// Returns the screen positions of the corners of one structure's triangles, in both views. The result is `None` for a
-/// triangle without a position in one of the views.
+/// Returns the corners of a structure's triangles on the screen, in both views. The entry is `None` if a view has no
+/// position for the triangle.
 fn structure_ends(list: &DisplayList, from: &PlacedStructure, to: &PlacedStructure) -> Vec<Option<TriangleEnds>> {
     let numbers = from.structure.triangles.clone();
     numbers.map(|number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number))).collect()
 }
 
 impl DrawnList {
-    /// Prepares the display list for drawing from one view.
     pub(crate) fn from_view(list: &Arc<DisplayList>, view: &FrameView, viewport: Viewport) -> Self {
         let placed = place_all(list, view, 0, viewport);
         Self { list: Arc::clone(list), viewport, placed, between: None, outlines: OnceLock::new() }
     }
 
-    /// Prepares the display list for drawing at position `s` between two views.
+    /// Prepares the display list for an instant between the two views of `ends`: 0 at the first view, 1 at the second
+    /// view.
     pub(crate) fn between(
         list: &Arc<DisplayList>,
         ends: &Ends,
@@ -111,8 +109,7 @@ impl DrawnList {
         Self { between: Some(Between { ends: ends.clone(), part: s, interpolation, view }), ..drawn }
     }
 
-    /// Returns the number of primitives that touch each window, and the number of primitives that touch at least one
-    /// window.
+    /// Returns the number of primitives in each window, and the number of primitives in at least one window.
     pub(crate) fn count(&self, windows: &[Window]) -> (Vec<PrimitiveCounts>, PrimitiveCounts) {
         let mut tallies = WindowCounts::new(windows);
         if self.between.is_some() {
@@ -131,8 +128,7 @@ impl DrawnList {
         all
     }
 
-    /// Calls `sink` for each triangle on the screen. The function leaves out triangles that cannot touch the range of
-    /// lines `near` (see the function [`near`]).
+    /// Calls `sink` for each triangle on the screen that may touch the lines of the range `near`.
     fn each_outline(&self, near: [i32; 2], mut sink: impl FnMut(&Outline)) {
         let mut stats = SetupStats::default();
         for (i, place) in self.placed.iter().enumerate() {
@@ -147,10 +143,8 @@ impl DrawnList {
         }
     }
 
-    /// Returns data to interpolate the triangle with index `k` of a structure. The data are the triangle's positions in
-    /// both views, the position of the drawn instant between the views (0 to 1), and the mode of interpolation.
-    ///
-    /// Returns `None` if the triangle is not interpolated.
+    /// Returns the data to interpolate triangle `k` of a structure: corners in both views, instant from 0 to 1, and
+    /// kind of interpolation. Returns `None` if the triangle is not interpolated.
     fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Interpolation)> {
         let Between { ends, part, interpolation, .. } = self.between.as_ref()?;
         Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *part, *interpolation))
@@ -166,8 +160,8 @@ impl DrawnList {
         }
     }
 
-    /// Calls `sink` with the command of each triangle that touches the window, in the order of the display list. The
-    /// window must be a window of an earlier call of [`Self::count`], so that the number of commands equals the count.
+    /// Calls `sink` with the command of each triangle in the window, in the order of the display list. The number of
+    /// commands equals the result of [`Self::count`] for this window.
     pub(crate) fn triangle_commands(&self, window: &Window, mut sink: impl FnMut(Command)) {
         let near = near(std::slice::from_ref(window));
         let mut stats = SetupStats::default();
@@ -192,7 +186,6 @@ impl DrawnList {
         }
     }
 
-    /// Calls `sink` with the command of each sphere that touches the window, in the order of the display list.
     pub(crate) fn sphere_commands(&self, window: &Window, mut sink: impl FnMut(Command)) {
         self.spheres(|sphere, place| {
             if sphere.meets(window.across, window.lines) {
@@ -201,11 +194,10 @@ impl DrawnList {
         });
     }
 
-    /// Returns the work of interpolating the primitives near `windows` (rectangles of the screen). Returns `None` if
-    /// there is only one view.
+    /// Returns the work of interpolating the primitives near `windows`, or `None` if there is only one view.
     ///
-    /// The last parameter has two parts of the board's memory, `ends` and `commands`. The part `ends` holds the
-    /// triangles of both views. The part `commands` receives the commands of the interpolated primitives.
+    /// The code reads the triangles of both views from the part `ends` of the board's memory. The code writes commands
+    /// to the part `commands`.
     pub(crate) fn interpolating<'a>(
         &'a self,
         share: &'a Share,
@@ -233,29 +225,26 @@ impl DrawnList {
     }
 }
 
-/// Returns the range of lines near the windows, as two distances from the frame's top in subpixels. A triangle outside
-/// this range cannot touch the windows at any time of the field.
+/// Returns a range of lines, in subpixels from the top of the frame. Triangles outside this range cannot touch the
+/// windows at any time of the field.
 fn near(windows: &[Window]) -> [i32; 2] {
     let [top, bottom] = span(windows);
     [top - CURVED, bottom + CURVED]
 }
 
-/// Returns the distance of the highest window's top from the frame's top, and the distance of the lowest window's
-/// bottom, in subpixels.
+/// Returns the top of the highest window and the bottom of the lowest window, in subpixels from the top of the frame.
 fn span(windows: &[Window]) -> [i32; 2] {
     let top = windows.iter().map(|w| w.lines[0] * SUBPIXELS).min().unwrap_or_default();
     let bottom = windows.iter().map(|w| w.lines[1] * SUBPIXELS).max().unwrap_or_default() + SUBPIXELS;
     [top, bottom]
 }
 
-/// Returns true if a triangle stays outside a range of lines during the whole field. `top` and `bottom` are the limits
-/// of the range, as distances from the frame's top.
+/// Returns true if a triangle stays outside the lines `top` to `bottom` during the whole field.
 fn is_outside_lines(ends: &TriangleEnds, [top, bottom]: [i32; 2]) -> bool {
     let [least, greatest] = ends.y_range();
     least > bottom || greatest < top
 }
 
-/// Calls `sink` with the command of a triangle, if the triangle touches the window.
 fn sink_if_met(
     triangle: ScreenTriangle<VertexColours>,
     window: &Window,
@@ -268,11 +257,11 @@ fn sink_if_met(
     }
 }
 
-/// Numbers of the primitives that touch windows: a count for each window, and a count over all windows.
+/// For each window, the number of primitives in this window. For all windows together, the number of primitives in at
+/// least one window.
 struct WindowCounts<'a> {
     windows: &'a [Window],
-    /// Distance of the highest window's top from the frame's top, and distance of the lowest window's bottom, in
-    /// subpixels.
+    /// Top of the highest window and bottom of the lowest window, in subpixels from the top of the frame.
     span: [i32; 2],
     each: Vec<PrimitiveCounts>,
     any: PrimitiveCounts,
@@ -315,7 +304,7 @@ impl<'a> WindowCounts<'a> {
     }
 }
 
-/// Returns the view at position `s` between two views. The function interpolates all elements of the matrices linearly.
+/// Returns the view between two views, by linear interpolation of the matrices: `s` is 0 at `from` and 1 at `to`.
 ///
 /// Positions in eye space then move on straight lines: (M0 p) (1 - s) + (M1 p) s = (M0 (1 - s) + M1 s) p.
 pub(crate) fn interpolated(from: &FrameView, to: &FrameView, s: f64) -> FrameView {
@@ -332,7 +321,6 @@ pub(crate) fn interpolated(from: &FrameView, to: &FrameView, s: f64) -> FrameVie
     FrameView { number: from.number, eyes: eyes.collect(), edits: edits.collect() }
 }
 
-/// Interpolates the elements of two matrices: `s` is 0 at `from` and 1 at `to`.
 fn matrix_between(from: &Mat4, to: &Mat4, s: f64) -> Mat4 {
     ((from.as_dmat4() * (1.0 - s)) + (to.as_dmat4() * s)).as_mat4()
 }

@@ -1,21 +1,20 @@
-//! CPU work of the search for the primitives in the regions of a strip or of a batch of blocks.
+//! CPU work of a slave between TRANSFORM and the drawing of a strip or a batch of blocks.
 //!
-//! The work has three parts: to interpolate primitives, to find the primitives in each region, and to list the messages
-//! that draw these primitives.
+//! The slave interpolates primitives, finds the primitives in each region, and lists the messages that draw these
+//! primitives.
 
 use pphigs::{PrimitiveCounts, StripInterpolation, WindowSearchWork};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
-/// The work of interpolating the primitives near some regions, finding the primitives in each region, and listing the
-/// messages that draw these primitives.
+/// The work of interpolating primitives, finding the primitives in some regions, and listing the messages that draw
+/// these primitives.
 pub(crate) struct StripSearchWork<'a> {
     pub(crate) searching: WindowSearchWork<'a>,
-    /// Interpolation before the search. `None` if the display list was transformed for only one view.
+    /// The interpolation, or `None` if the display list was transformed for only one view.
     pub(crate) interpolating: Option<StripInterpolation<'a>>,
-    /// Numbers of primitives that touch at least one of the regions.
     pub(crate) met: PrimitiveCounts,
-    /// Time to interpolate one primitive, from the timing table, in nanoseconds.
+    /// Time to interpolate one primitive, in nanoseconds, from the timing table.
     pub(crate) interpolate_ns: u64,
 }
 

@@ -6,11 +6,10 @@ use pphigs::send_as_tracked;
 use pxpl5_gp::{Fault, Gp, HostTiming};
 use pxpl5_sim::Time;
 
-/// Sends every report of the tracker to the master as soon as the report arrives. If several reports wait, only the
-/// newest report is sent ([`send_as_tracked`]).
+/// Sends every report of the tracker to the master. If several reports wait, only the newest report is sent
+/// ([`send_as_tracked`]).
 ///
-/// `next_report` returns the time at which the first report after a given time arrives. The function returns `None` if
-/// there are no more reports.
+/// `next_report` returns the arrival time of the first report after a time, or `None` if no more reports follow.
 ///
 /// # Errors
 ///

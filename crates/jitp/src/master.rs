@@ -1,4 +1,4 @@
-//! The master, which follows the beam, stores the newest tracking data and orders strips or blocks.
+//! The master, which stores the newest tracker report and orders the slaves to draw strips or blocks.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
 use crate::ordering::OrderAssemblyWork;
@@ -20,8 +20,8 @@ struct MasterState {
 
 /// Returns the programs of the master, for both priorities of its board.
 ///
-/// `pass` is the work of a slave's pass over the whole display list. `view_of` returns the predicted view for a
-/// request. The programs fail with [`Fault::Protocol`] for an unknown message.
+/// `pass` is the cost of TRANSFORM for a slave. `view_of` returns the predicted view for a request. The programs fail
+/// with [`Fault::Protocol`] for an unknown message.
 pub fn master(
     gp: &Gp,
     config: &JitpConfig,
@@ -91,11 +91,11 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Returns the time at which slaves must begin to transform the display list for a field. This time precedes the
-    /// order of the field's first strip by a lead time.
+    /// Returns the time at which slaves must begin to transform the display list for a field, so that the first strip
+    /// is ready in time.
     ///
-    /// With the timing table, the lead time is 1.5 times the TRANSFORM time, because the slaves also draw strips during
-    /// TRANSFORM. With i860 code, the lead time is a whole field, because the time of the code is not known in advance
+    /// With the timing table, the slaves have 1.5 times the TRANSFORM time, because they also draw strips during
+    /// TRANSFORM. With i860 code, the slaves have a whole field, because the time of the code is unknown in advance
     /// (pphigs's kernels/order_rules.md).
     fn preparation_at(&self, field: PeriodNumber, viewpoint: Viewpoint, ahead: Span) -> Time {
         let first_strip = self.config.deadline(field, 0);
@@ -144,7 +144,6 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         self.order(slave, &DrawingOrder::Strip { field, strip, deadline, view }).await
     }
 
-    /// Assembles an order and sends it.
     async fn order(&self, slave: NodeId, order: &DrawingOrder) -> Result<(), Fault> {
         self.gp.work(&OrderAssemblyWork(order)).await?;
         let (words, body) = order.message();
@@ -152,7 +151,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Sends the next blocks and the newest view to every slave that has finished its blocks.
+    /// Sends the next blocks and the newest view to each slave that has finished its blocks.
     async fn roam(&mut self, batch: u64) -> Result<(), Fault> {
         let slaves = self.config.slaves.len();
         self.state.done.borrow_mut().extend(0..slaves as u32);
@@ -171,7 +170,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Returns the instant for which a batch of blocks is drawn if the master orders the batch now.
+    /// Returns the instant for which the blocks of an order are drawn, if the master sends the order now.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;
@@ -182,17 +181,17 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 }
 
-/// Two expected durations for an order of blocks. `drawing` lasts from the order until its blocks are visible. `standing`
-/// lasts until newly drawn blocks replace these blocks.
+/// Expected times of a batch of blocks: from the order until the blocks are visible (`drawing`), and from then until
+/// newer blocks replace them (`standing`).
 struct Expected {
     drawing: Span,
     standing: Span,
 }
 
-/// Times of recent orders, from which the master estimates the duration of the next order.
+/// Times of recent orders, from which the master estimates the times of the next order.
 struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
-    /// Times of the orders of the last round, oldest first. In a round, every block of the frame is drawn once.
+    /// Times of the newest orders, oldest first. Together, these orders draw every block of the frame once.
     pass: VecDeque<Time>,
     orders_of_pass: usize,
 }
@@ -202,10 +201,10 @@ impl OrderTimes {
         Self { last_order_of: vec![None; slaves], pass: VecDeque::new(), orders_of_pass: orders_of_pass as usize }
     }
 
-    /// Records an order and returns the expected durations of this order.
+    /// Records an order and returns its expected times.
     ///
-    /// The expected drawing time is the time that the slave needed for its last order. The blocks are expected to stay
-    /// on the screen for one pass, in which all blocks of the frame are drawn again.
+    /// The slave is expected to need as long as for its last order. The blocks are expected to stay visible until all
+    /// blocks of the frame have been drawn again.
     fn ordered(&mut self, slave: usize, now: Time) -> Expected {
         self.pass.push_back(now);
         let oldest = if self.pass.len() > self.orders_of_pass { self.pass.pop_front() } else { None };

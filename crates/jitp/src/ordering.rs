@@ -5,10 +5,10 @@ use pphigs::{TransformCost, assemble_order};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
 
-/// Work of assembling an order of the master.
+/// The work of assembling a message with an order.
 ///
-/// In the timing table, the order for a field takes the time of an empty pass. Other orders take only the time of their
-/// message.
+/// In the timing table, the order for a field takes the time of an empty TRANSFORM. Other orders take no additional
+/// time.
 pub(crate) struct OrderAssemblyWork<'a>(pub(crate) &'a DrawingOrder);
 
 impl Work for OrderAssemblyWork<'_> {

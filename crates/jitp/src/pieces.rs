@@ -1,4 +1,4 @@
-//! Regions of a strip or of a batch of blocks: their rectangles on the screen, and their messages.
+//! The regions of a strip or of a batch of blocks, and the messages that draw these regions.
 
 use crate::config::JitpConfig;
 use crate::drawing::{DrawnList, Window};
@@ -12,7 +12,6 @@ use pxpl5_wire::{
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// Returns the rectangle of a region, in columns and in lines of the frame.
 pub(crate) fn window(config: &JitpConfig, viewport: &Viewport, region: RegionId) -> Window {
     let [left, top, width, height] = config.grid().rectangle(region).map(|v| v as i32);
     Window {
@@ -21,12 +20,12 @@ pub(crate) fn window(config: &JitpConfig, viewport: &Viewport, region: RegionId)
     }
 }
 
-/// Returns the line of the frame that contains a row of the picture.
+/// Returns the line of the frame for a row of the picture. The rows of a field are every second line.
 fn line_of_row(viewport: &Viewport, row: i32) -> i32 {
     viewport.first_line() as i32 + row * viewport.line_step() as i32
 }
 
-/// Content of one message of a region.
+/// The content of one of the messages that draw a region.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Part {
     first: bool,
@@ -38,8 +37,8 @@ struct Part {
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// Divides a region's triangles and spheres into messages, triangles first. Each message gets as many primitives as its
-/// maximum length permits. All messages keep room for the copy command.
+/// Divides a region's primitives into messages, triangles first. Each message has room for the copy command, because it
+/// may be the last message.
 fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut triangle = 0;
@@ -60,8 +59,8 @@ fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     }
 }
 
-/// Returns the first primitives of `remaining`: as many primitives of `words_each` words as fit into `room_words`.
-/// Subtracts the words of these primitives from `room_words`.
+/// Takes the first primitives of `remaining`: as many commands of `words_each` words as fit into `room_words`.
+/// Subtracts their words from `room_words`.
 fn take_run(remaining: Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let n = (remaining.end - remaining.start).min(*room_words / words_each);
     *room_words -= n * words_each;
@@ -126,8 +125,7 @@ pub(crate) fn messages(
     lists.collect()
 }
 
-/// Source of the words of a region's messages, which are computed on demand. The words of all primitives are computed
-/// only once.
+/// The words of a region's messages, which are computed only when a message is read.
 #[derive(Debug)]
 struct RegionWords {
     drawing: Arc<DrawnList>,
@@ -135,9 +133,8 @@ struct RegionWords {
     window: Window,
     origin: SelectRegion,
     target: CopyTarget,
-    /// Content of each message.
     parts: Vec<Part>,
-    /// Words of the commands of all triangles, and words of the commands of all spheres.
+    /// Words of the commands of all triangles and of all spheres, computed at the first use.
     primitives: OnceLock<[Vec<Word>; 2]>,
 }
 
@@ -151,8 +148,8 @@ impl RegionWords {
         })
     }
 
-    /// Appends the words of a command. The function cannot fail, because the machine's configuration rejects a layout
-    /// without all fields that the commands use.
+    /// Appends the words of a command. Encoding cannot fail, because the machine's configuration refuses a layout of
+    /// pixel memory that lacks a field of the commands.
     fn append(&self, command: Command, out: &mut Vec<Word>) {
         let encoded = command.encode(&self.layout, out);
         debug_assert!(encoded.is_ok(), "{encoded:?}");

@@ -1,4 +1,4 @@
-//! Messages between the boards, encoded as words of the ring.
+//! Messages between host, master and slaves, as words on the ring.
 
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Received};
@@ -11,34 +11,29 @@ const BLOCKS: Word = 0x1F1E_1D02;
 const REPORT: Word = 0x1F1E_1D03;
 const DONE: Word = 0x1F1E_1D04;
 
-/// Number of words of a report from the host. A report has a header, two time stamps, a position and a quaternion. Each
-/// number has 64 bits.
+/// Number of words of a tracker report: a header, two times, a position and a quaternion, with 64 bits for each number.
 pub(crate) const REPORT_WORDS: u32 = 20;
 
-/// A message between the host, the master and the slaves.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum DrawingOrder {
-    /// Order to transform the whole display list for the view or the two views of a field.
+    /// Order to transform the display list for one view, or for the views at the start and at the end of a field.
     Field { field: PeriodNumber, views: Vec<FrameView> },
-    /// Order to draw a strip, from its own view or from the views of its field.
+    /// Order to draw a strip. If `view` is `None`, the strip uses the views of its field.
     Strip { field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView> },
-    /// Order to draw blocks of the random order, beginning at the step with index `step`.
+    /// Order to draw a batch of blocks. The first block is drawn in the step `step` of the random sequence.
     Blocks { update: PictureNumber, step: u64, view: FrameView },
-    /// Notice about reports of the tracker. The master may use all reports that the host received before the time
-    /// `known`.
+    /// A tracker report from the host. The master may use all reports that the host received before `known`.
     Report { known: Time },
-    /// Notice that a slave can take another order.
+    /// A slave can take another order.
     Done { slave: u32 },
 }
 
 impl DrawingOrder {
-    /// Returns the number of words and the body of the message.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
         (words.len() as u32, Body::Words(words.into()))
     }
 
-    /// Encodes the message as words.
     pub(crate) fn words(&self) -> Vec<Word> {
         let mut words = Vec::new();
         // The first word states the kind of order. A 64-bit number takes two words, the low word first.
@@ -69,7 +64,6 @@ impl DrawingOrder {
         words
     }
 
-    /// Returns the number of words in front of the first view.
     pub(crate) fn head_words(&self) -> usize {
         match self {
             Self::Field { .. } => 4,
@@ -79,11 +73,6 @@ impl DrawingOrder {
         }
     }
 
-    /// Decodes a received message.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`Fault::Protocol`] if the words are not a message of this protocol.
     pub(crate) fn read(received: &Received, node: NodeId) -> Result<Self, Fault> {
         let order = match &received.body {
             Body::Words(words) => Self::from_words(words),

@@ -1,4 +1,4 @@
-//! A slave, which draws the strips of lines or the blocks that the master orders.
+//! A slave, which draws the strips or blocks that the master orders.
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends};
@@ -16,27 +16,25 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Number of transformed fields in a slave's memory, including the current and the next field.
+/// Number of transformed fields in memory, including the current and the next field.
 const FIELDS_KEPT: usize = 3;
 
-/// Number of parts of a slave's memory for fields: one part for each stored field, and one part for the field in
-/// progress. Another part of memory is for a strip between two views.
+/// Number of parts of the slave's memory for fields: the stored fields, and the field that is being transformed. A
+/// further part is for a strip between two views.
 const PARTS_OF_FIELDS: u8 = FIELDS_KEPT as u8 + 1;
 const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_FIELDS + 1);
 
 #[derive(Default)]
 struct SlaveFields {
-    /// Fields that the master has ordered but that are not transformed yet, oldest first. Each entry has the number and
-    /// the views of a field.
+    /// Fields that the master has ordered but that are not transformed yet, oldest first, with their views.
     ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
-    /// Transformed fields, oldest first, each with its part of memory.
+    /// Transformed fields, oldest first, with their parts of memory.
     transformed: VecDeque<(PeriodNumber, Field, MemoryPart)>,
-    /// Number of fields transformed since the start of the run.
+    /// Number of fields that were transformed in the run.
     n_transformed: usize,
 }
 
-/// The transformed triangles of a field, and the display list as prepared for the field's first view. All strips of a
-/// field with a single view share this prepared list.
+/// A transformed field. The list `whole`, for the first view, serves all strips if the field has only one view.
 #[derive(Clone)]
 struct Field {
     ends: Ends,
@@ -45,9 +43,9 @@ struct Field {
 
 type SharedFields = Rc<RefCell<SlaveFields>>;
 
-/// Cache of transformed fields, which all slaves share.
+/// A cache of transformed fields, which the simulator shares among all slaves.
 ///
-/// All slaves hold the same display list and get the same views, so the simulator computes each field once. Every slave
+/// All slaves hold the same display list and get the same views, so each field is computed only once. Every slave
 /// nevertheless spends the simulated time of its own TRANSFORM.
 #[derive(Clone, Default)]
 pub struct Transforms(Rc<RefCell<VecDeque<(PeriodNumber, Field)>>>);
@@ -59,7 +57,6 @@ impl std::fmt::Debug for Transforms {
 }
 
 impl Transforms {
-    /// Returns the field from the cache. If the field is not in the cache, `make` computes it.
     fn cached_or_made(&self, field: PeriodNumber, make: impl FnOnce() -> Field) -> Field {
         let known = &mut *self.0.borrow_mut();
         if let Some((_, ready)) = known.iter().find(|ready| ready.0 == field) {
@@ -74,7 +71,7 @@ impl Transforms {
     }
 }
 
-/// Returns the programs of the slave with index `index`, for both priorities of its board.
+/// Returns the programs of a slave, for both priorities of its board. `index` is the index of the slave.
 ///
 /// The program that draws strips interrupts the program that transforms the next field. Every slave holds the whole
 /// display list. The programs fail with [`Fault::Memory`] if the list does not fit into memory, and with
@@ -104,7 +101,6 @@ pub fn slave(
 struct Slave {
     gp: Gp,
     config: JitpConfig,
-    /// The whole display list.
     share: Share,
     pass: TransformCost,
     state: SharedFields,
@@ -113,7 +109,6 @@ struct Slave {
 }
 
 impl Slave {
-    /// Receives the master's orders and draws strips or blocks.
     async fn draw(self) -> Result<(), Fault> {
         self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
         self.gp.reserve(Account::DisplayList, self.share.bytes(), None)?;
@@ -131,7 +126,6 @@ impl Slave {
         }
     }
 
-    /// Transforms the whole display list for each newly ordered field.
     async fn prepare(self) -> Result<(), Fault> {
         loop {
             let (field, views) = self.gp.until("the order of a field", || self.take_newest_order()).await;
@@ -148,20 +142,18 @@ impl Slave {
         }
     }
 
-    /// Returns the part of memory for the next field to transform.
     fn next_part(&self) -> MemoryPart {
         let number = self.state.borrow().n_transformed % usize::from(PARTS_OF_FIELDS);
         MemoryPart::of(number, PARTS_OF_FIELDS + u8::from(self.dual().is_some()))
     }
 
-    /// Spends the time of TRANSFORM of the whole display list, once for each view of the picture.
     async fn transform_all(&self, views: &[FrameView], picture: PictureNumber, part: MemoryPart) -> Result<(), Fault> {
         let Self { share, pass, config, .. } = self;
         let viewport = config.extent(picture).0;
         self.gp.work(&WholeList { share, pass: *pass, views, viewport, layout: config.layout, part }).await
     }
 
-    /// Returns the newest field that the master has ordered, and removes all fields from the list of orders.
+    /// Returns the newest field that the master has ordered. Older orders are dropped.
     fn take_newest_order(&self) -> Option<(PeriodNumber, Vec<FrameView>)> {
         self.state.borrow_mut().ordered.drain(..).next_back()
     }
@@ -172,7 +164,6 @@ impl Slave {
         Field { ends: Ends::new(self.share.list(), views, viewport), whole }
     }
 
-    /// Draws a strip, unless its deadline has passed.
     async fn strip(
         &self,
         field: PeriodNumber,
@@ -210,13 +201,12 @@ impl Slave {
         Ok(())
     }
 
-    /// Returns true if this field or a later field is transformed.
     fn has_transformed(&self, field: PeriodNumber) -> bool {
         self.state.borrow().transformed.back().is_some_and(|newest| newest.0 >= field)
     }
 
-    /// Returns the display list as prepared for a strip, and the part of memory that holds the transformed triangles of
-    /// the strip's field. Returns `None` if TRANSFORM of the field was skipped.
+    /// Returns the display list that is prepared for a strip, and the part of memory with the triangles of the strip's
+    /// field. Returns `None` if the field was not transformed.
     async fn drawing_of_field(
         &self,
         field: PeriodNumber,
@@ -244,7 +234,7 @@ impl Slave {
         }
     }
 
-    /// Draws the next blocks of the random order, and reports to the master that the slave can take another order.
+    /// Draws the next blocks and asks the master for another order.
     async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) -> Result<(), Fault> {
         let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return Ok(()) };
         let viewport = self.config.extent(update).0;
@@ -260,11 +250,10 @@ impl Slave {
         Ok(())
     }
 
-    /// Finds the primitives of some regions, and sends the messages of all these regions as one chain.
+    /// Finds the primitives in some regions and sends the messages that draw these regions, as one chain.
     ///
-    /// All slaves draw in the same region context of a renderer. A region's messages therefore reserve the renderer's
-    /// port until the last message, which copies the region. Without this reservation, another slave could draw into
-    /// the region or clear the region.
+    /// Several slaves use the same region memory of a renderer. The messages of a region therefore reserve the
+    /// renderer's port until the last message, so that no other slave can draw into the region.
     async fn send(
         &self,
         picture: PictureNumber,

@@ -1,4 +1,4 @@
-//! CPU work of a TRANSFORM of the whole display list.
+//! CPU work of TRANSFORM for the whole display list.
 
 use pphigs::{FrameView, MemoryPart, Picture, RegionBinning, Shading, Share, TransformCost, TriangleEndsRecorder};
 use pxpl5_geometry::Viewport;
@@ -6,22 +6,17 @@ use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Span;
 
-/// Work of a pass over all primitives, for one view or for each of two views.
+/// The work of TRANSFORM for the whole display list, for one view or for each of two views.
 ///
-/// The pass makes the commands of all primitives and fills no bins. A later search finds the primitives in a strip or
-/// block.
+/// The result has no bins. A later search finds the primitives in a strip or block.
 pub(crate) struct WholeList<'a> {
-    /// The whole display list.
     pub(crate) share: &'a Share,
-    /// Work of one pass, for the timing table.
     pub(crate) pass: TransformCost,
-    /// One view, or two views for the start and the end of a field.
+    /// One view, or the two views at the start and at the end of a field.
     pub(crate) views: &'a [FrameView],
-    /// Lines of the field or frame that the views show.
     pub(crate) viewport: Viewport,
-    /// Layout of pixel memory, for which the commands are encoded.
     pub(crate) layout: Layout,
-    /// Part of memory for the result: commands for one view, or positions of triangles for two views.
+    /// Part of memory for the result: commands for one view, or corners of triangles for two views.
     pub(crate) part: MemoryPart,
 }
 
@@ -30,8 +25,7 @@ impl Work for WholeList<'_> {
         self.pass.span(timing) * self.views.len() as u64
     }
 
-    /// Runs the i860 code of the pass. For one view, the code stores commands with their bounding boxes. For two views,
-    /// the code stores the positions of triangles in both views.
+    /// Executes i860 code that stores commands with bounding boxes (one view) or the corners of triangles (two views).
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let Self { share, part, .. } = *self;
         let picture = picture(self.viewport, self.layout);
@@ -51,8 +45,7 @@ impl Work for WholeList<'_> {
     }
 }
 
-/// Returns the picture parameters that select the kernels. The kernels fill no bins, because a later search finds the
-/// primitives in the regions.
+/// Returns the settings that select i860 code without bins, because a later search finds the primitives in each region.
 pub(crate) const fn picture(viewport: Viewport, layout: Layout) -> Picture {
     Picture { viewport, shading: Shading::Gouraud, binning: RegionBinning::All, layout, pixels: false }
 }

@@ -1,11 +1,9 @@
-//! Work of a board before the first triangle of a pass. The board applies edits to the display list and places the
-//! list's structures for an eye.
+//! Work of a graphics processor before the first triangle of a pass: edits of the scene, and placement of structures.
 //!
-//! To *place* a structure is to compute its matrices and its light source in the coordinates of an eye. Both steps run
-//! i860 code in the style of compiled code (`pxpl5_geometry::kernel::place_source`). All versions of the kernels (the
-//! programs that transform primitives) use the same code for these steps. The code computes the view-dependent part of
-//! each structure's parameter block before the pass. The kernels, however, read a parameter block that the simulator
-//! computes without i860 code. Both blocks are equal in every word (tests/begin.rs).
+//! To *place* a structure is to compute its matrices and its light source in the coordinates of an eye. Both steps are
+//! i860 code in the style of compiled code (`pxpl5_geometry::kernel::place_source`). The code computes the parameters
+//! that a kernel needs for each structure. The kernels nevertheless read parameters that the simulator computes. The
+//! parameters of the code and of the simulator are equal in every word (tests/begin.rs).
 
 use crate::cost::TransformCost;
 use crate::layout::{BEGIN_CODE, BIN_TABLE, MESSAGE, MODELS, MODELS_END, PARAMETERS, SPHERE_PARAMETERS, STACK};
@@ -24,19 +22,18 @@ use pxpl5_sim::Span;
 use pxpl5_wire::Word;
 use std::sync::{Arc, LazyLock};
 
-/// Largest number of structures whose matrices fit in memory.
 const MOST_STRUCTURES: u32 = (MODELS_END - MODELS) / MATRIX_BYTES;
 const MATRIX_BYTES: u32 = 64;
-/// Number of words of an edit: the structure's index and its matrix.
 const EDIT_WORDS: u32 = 17;
 
 const _: () =
     assert!(MESSAGE + MAX_EDITS as u32 * 4 * EDIT_WORDS <= MODELS, "what a message holds lies before the matrices");
 
-/// Instruction limit, much higher than the need of the code. Code that exceeds the limit counts as an endless loop.
+/// Largest number of instructions, much more than the code needs. Code that exceeds the limit counts as an endless
+/// loop.
 const BUDGET: u64 = 20_000;
 
-/// Work of the EDIT step, which stores the new model matrices of a view's edited structures.
+/// Work of EDIT: the board stores the new matrices of the moved structures.
 #[derive(Clone, Copy, Debug)]
 pub struct EditWork<'a>(pub &'a FrameView);
 
@@ -64,21 +61,20 @@ impl Work for EditWork<'_> {
     }
 }
 
-/// Work at the beginning of a pass over the display list. The work empties the bins and places structures (computes
-/// their matrices and light in eye coordinates), for one eye or both eyes.
+/// Work before the first triangle of a pass, for one eye or both eyes. The board empties the bins, and computes the
+/// matrices and the light of each structure.
 #[derive(Clone, Debug)]
 pub struct PassStartWork {
     list: Arc<DisplayList>,
     eyes: Vec<Arc<[PlacedStructure]>>,
-    /// Number of bins to empty for each eye, 0 if there are no bins.
+    /// Number of bins for each eye, 0 if there are no bins.
     bins: u32,
-    /// For each structure, by its index in the display list: true if the work places the structure. `None` places all
-    /// structures.
+    /// True for each structure that is drawn, by index in the display list. `None` if all structures are drawn.
     chosen: Option<Arc<[bool]>>,
 }
 
 impl Share {
-    /// Returns the work at the beginning of a pass. `eyes` are the indices of the view's eyes that the pass draws.
+    /// Returns the work before the first triangle of a pass. `eyes` has the indices of the drawn eyes in the view.
     #[must_use]
     pub fn beginning(&self, view: &FrameView, eyes: &[usize], picture: Picture) -> PassStartWork {
         let eyes = eyes.iter().map(|eye| place_cached(&self.list, view, *eye, picture.viewport)).collect();
@@ -96,17 +92,16 @@ impl PassStartWork {
         Self { list: Arc::clone(list), eyes, bins, chosen: None }
     }
 
-    /// Returns the same work for a pass that fills no bins.
     pub(crate) fn without_bins(self) -> Self {
         Self { bins: 0, ..self }
     }
 
-    /// Returns the same work for only the chosen structures. `chosen` has one element for each structure.
+    /// Limits the work to some structures. `chosen` has one entry for each structure.
     pub(crate) fn for_structures(self, chosen: Option<&[bool]>) -> Self {
         Self { chosen: chosen.map(Arc::from), ..self }
     }
 
-    /// Returns the structures of an eye that this work places. The result omits structures that cannot be drawn.
+    /// Returns the structures of an eye that are drawn.
     fn begun<'a>(&'a self, placed: &'a [PlacedStructure]) -> impl Iterator<Item = &'a PlacedStructure> {
         let is_chosen = |number: usize| self.chosen.as_ref().is_none_or(|chosen| chosen.get(number) == Some(&true));
         let chosen = placed.iter().enumerate().filter(move |(number, _)| is_chosen(*number)).map(|(_, place)| place);
@@ -137,16 +132,15 @@ impl Work for PassStartWork {
     }
 }
 
-/// Returns the work at the beginning of a pass as counts for the timing table. `eyes` has the structures of each eye.
-/// The counts omit structures that cannot be drawn.
+/// Returns the work before the first triangle of a pass as counts for the timing table. `eyes` has the structures of
+/// each eye.
 pub(crate) fn beginning<'a>(eyes: impl IntoIterator<Item = &'a [PlacedStructure]>) -> TransformCost {
     let drawn = |place: &&PlacedStructure| place.transform.is_some();
     TransformCost::beginning(eyes.into_iter().flatten().filter(drawn).map(|place| &place.structure))
 }
 
 impl PlacedStructure {
-    /// Runs the i860 code on a board, which computes the view-dependent part of each structure's parameter block.
-    /// Returns the simulated time of the code.
+    /// Executes the i860 code that computes the parameters of a structure. Returns the simulated time of the code.
     ///
     /// # Errors
     ///
@@ -167,8 +161,8 @@ impl PlacedStructure {
 }
 
 impl PlacedStructure {
-    /// Writes the part of the sphere kernel's parameter block that is the same for all views. Returns the address of
-    /// the block, or 0 if the structure draws no sphere.
+    /// Writes those parameters of the sphere kernel that are the same for all views. Returns their address, or 0 if the
+    /// structure has no sphere to draw.
     fn prepare_spheres(&self, processor: &mut Processor) -> Result<Word, ProcessorFault> {
         let Some(transform) = self.transform.as_ref().filter(|_| !self.structure.spheres.is_empty()) else {
             return Ok(0);

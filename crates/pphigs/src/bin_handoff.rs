@@ -1,8 +1,8 @@
-//! CPU work of sending a region's bin. The code lists the messages with the region's commands as pieces of memory,
-//! which the ring interface then sends.
+//! Work of a graphics processor that sends a region's bin. The code lists the pieces of memory that contain the
+//! commands of each message, and the ring interface then sends these pieces.
 //!
-//! The code is kernels/token.s. This code reads the bin's entries, which the code of TRANSFORM has written. The
-//! commands themselves are not moved in memory. In the timing table, each entry takes `token_entry_ns`.
+//! The code is kernels/token.s. This code reads the bins that the code of TRANSFORM has filled, and does not move the
+//! commands. In the timing table, each bin entry takes `token_entry_ns`.
 
 use crate::commands::RegionEnvelope;
 use crate::layout::{ENVELOPES, LISTS, LISTS_END, PIECES, TOKEN_CODE, TOKEN_PARAMETERS, bins};
@@ -14,14 +14,14 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionId, Word};
 use std::sync::{Arc, LazyLock};
 
-/// Work of sending the bin of one region, with the commands of its envelope.
+/// Work of sending the bin of one region, with the commands before and after its primitives.
 #[derive(Clone, Copy, Debug)]
 pub struct BinHandoffWork<'a> {
-    /// TRANSFORM result that contains the bin.
+    /// Result of TRANSFORM with the bin.
     pub pass: &'a Pass,
-    /// Bin context, 0 or 1.
+    /// Set of bins, 0 or 1. A board has two sets.
     pub context: u8,
-    /// Index of the view among the views that share the bin context. The index is 0 if the context has only one view.
+    /// Index of the view among the views in the same set of bins, usually 0.
     pub view: u8,
     /// Region whose bin is sent.
     pub region: RegionId,
@@ -29,18 +29,18 @@ pub struct BinHandoffWork<'a> {
     pub envelope: RegionEnvelope,
 }
 
-/// The pieces of memory that make up one message: address and length in words of each piece.
+/// The pieces of memory of one message: address and length in words of each piece.
 pub type MessagePieces = Vec<[Word; 2]>;
 
-/// Bytes of one piece in the list of pieces.
 pub(crate) const PIECE_BYTES: u32 = 8;
 pub(crate) const MESSAGE_BYTES: u32 = 16;
-/// Largest number of bin entries of a region for which the list of pieces has room. A message holds at least 20
-/// commands, and needs two additional pieces for the commands at its start and its end.
+/// Largest number of bin entries of a region for which the list of pieces has room. A message has at least 20 commands,
+/// and two more pieces for its first and its last commands.
 pub(crate) const MOST_ENTRIES: u32 = (LISTS_END - PIECES) / PIECE_BYTES * 9 / 10;
 const _: () = assert!((MOST_ENTRIES / 20 + 2) * MESSAGE_BYTES <= PIECES - LISTS, "room for the messages of so many");
 
-/// Instruction limit, much higher than the need of the code. Code that exceeds the limit counts as an endless loop.
+/// Largest number of instructions, much more than the code needs. Code that exceeds the limit counts as an endless
+/// loop.
 pub(crate) const BUDGET: u64 = 10_000;
 pub(crate) const BUDGET_OF_ENTRY: u64 = 1_000;
 
@@ -76,9 +76,9 @@ impl Work for BinHandoffWork<'_> {
 impl BinHandoffWork<'_> {
     /// Returns the parameters for the commands before and after a region's primitives.
     ///
-    /// The first six parameters are address and length in words of three command sequences. The sequences are the start
-    /// of the region, the start of every message after the first message, and the end of the region. The seventh
-    /// parameter is the number of words of a message without primitives and without the end of the region.
+    /// Six parameters are address and length of three sequences of commands. The sequences belong to the start of the
+    /// region, to the start of each further message, and to the end of the region. The seventh parameter is the number
+    /// of words of a message without primitives and without the end of the region.
     fn enclosing(&self) -> [Word; 7] {
         let words = |kind: CommandKind, is_there: bool| kind.words() * u32::from(is_there);
         let contexts = self.pass.picture().layout.plan().contexts > 1;
@@ -92,7 +92,7 @@ impl BinHandoffWork<'_> {
         [at_begin, begin, at_again, again, at_end, end, nothing]
     }
 
-    /// Reads the messages that the last run of the code has listed.
+    /// Returns the messages that the last execution of the code has listed.
     ///
     /// # Errors
     ///
@@ -102,7 +102,6 @@ impl BinHandoffWork<'_> {
     }
 }
 
-/// Reads the first `count` messages from the list of messages.
 pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePieces>, ProcessorFault> {
     let message = |number: u32| {
         let bounds = processor.read(LISTS + number * MESSAGE_BYTES, 2)?;
@@ -115,8 +114,8 @@ pub(crate) fn listed(processor: &Processor, count: u32) -> Result<Vec<MessagePie
 
 /// Returns the source of the code that divides a bin into messages.
 ///
-/// `most` is the maximum number of words of a message without the commands that end a region. `whole` is the maximum
-/// for a message with these commands.
+/// `whole` is the largest number of words of a message. `most` is the largest number without the commands that end a
+/// region.
 pub(crate) fn token_source([most, whole]: [Word; 2]) -> String {
     format!("MOST = {most}\nWHOLE = {whole}\n{}", include_str!("../kernels/token.s"))
 }

@@ -1,8 +1,8 @@
-//! CPU work of TRANSFORM. The time comes from the timing table, or from i860 code that runs over the board's memory.
+//! CPU work of TRANSFORM. The time of the work comes from the timing table or from i860 code.
 //!
 //! [`pxpl5_geometry::kernel`] has the code for triangles and [`pxpl5_geometry::sphere_kernel`] the code for spheres.
-//! Such code is called a *kernel*. Each structure of the display list needs one call of each of the two kernels. All
-//! triangles come before the spheres, so that bins hold commands in the order in which they are sent.
+//! Each program is called once for each structure of the display list. All triangles come before the spheres, in the
+//! order in which their commands are sent.
 
 use crate::begin::{PassStartWork, beginning};
 use crate::cost::TransformCost;
@@ -30,41 +30,37 @@ use std::hash::Hash;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Size of a triangle in the display list, in bytes.
 pub(crate) const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
 pub(crate) const SPHERE_BYTES: u32 = 4 * SPHERE_WORDS as u32;
 
-/// Largest number of triangles that can result from the clipping of one triangle. Clipping against six planes leaves a
-/// polygon of up to nine corners.
+/// Largest number of triangles into which clipping divides a triangle: six planes leave a polygon of up to nine
+/// corners.
 const MOST_PIECES: u32 = 7;
 
-/// Largest number of instructions that a kernel may execute for one primitive. The number is much higher than the need.
-/// A kernel that exceeds its limit counts as an endless loop.
+/// Largest number of instructions for one primitive, much more than a kernel needs. A kernel that exceeds the limit
+/// counts as an endless loop.
 const BUDGET_OF_PRIMITIVE: u64 = 100_000;
 pub(crate) const BUDGET: u64 = 10_000;
 
-/// Returns the largest number of instructions that one call of a kernel may execute. `primitives` is the number of
-/// primitives that the call transforms.
 pub(crate) const fn budget(primitives: u32) -> u64 {
     BUDGET + BUDGET_OF_PRIMITIVE * primitives as u64
 }
 
-/// The TRANSFORM of one graphics processor's share of the primitives, for one eye or for both eyes.
+/// The work of TRANSFORM for one graphics processor, for one eye or for both eyes.
 ///
 /// Some kernels transform both eyes in one pass over the primitives ([`Kernel::can_serve_both_eyes`]). With other
 /// kernels, each eye needs a separate pass.
 #[derive(Clone, Copy, Debug)]
 pub struct TransformWork<'a> {
-    /// Result of the TRANSFORM for each eye.
+    /// Result of TRANSFORM for each eye.
     pub passes: &'a [Arc<Pass>],
-    /// Bin context of the first eye, 0 or 1. A bin context is one of two sets of bins. The second eye uses the other
-    /// context.
+    /// Set of bins of the first eye, 0 or 1. A board has two sets. The second eye uses the other set.
     pub context: u8,
-    /// True if the work includes the preparation of structures before the first primitive ([`PassStartWork`]).
+    /// True if the work includes the steps before the first primitive ([`PassStartWork`]).
     pub begins: bool,
 }
 
-/// Time of the kernels, and addresses of their output in the memory of a board.
+/// Time of the kernels, and the addresses of commands and bins in the board's memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KernelOutput {
     /// Simulated time of all kernels.
@@ -75,8 +71,8 @@ pub struct KernelOutput {
     pub commands: Range<u32>,
     /// Address of the first sphere's command.
     pub spheres: u32,
-    /// Address range of each bin's entries. An entry is the address of a command. If every region gets all triangles,
-    /// the bins hold only spheres.
+    /// Address range of each bin. A bin entry is the address of a command. If every region gets all triangles, only
+    /// spheres have bins.
     pub bins: Vec<Range<u32>>,
 }
 
@@ -134,7 +130,7 @@ impl TransformWork<'_> {
 }
 
 impl Share {
-    /// Stores all primitives of the graphics processor in a board's memory, even if this share is only a clump.
+    /// Stores all primitives of the graphics processor in the board's memory, even if this share is only a clump.
     ///
     /// # Errors
     ///
@@ -151,18 +147,16 @@ impl Share {
         Ok(())
     }
 
-    /// Returns the address of the first sphere of the display list in the board's memory.
     pub(crate) fn place_of_spheres(&self) -> u32 {
         DISPLAY_LIST + self.all_triangles().len() as u32 * TRIANGLE_BYTES
     }
 
-    /// Returns the first address after the display list in the board's memory.
     pub(crate) fn end_of_list(&self) -> u32 {
         self.place_of_spheres() + self.all_spheres().len() as u32 * SPHERE_BYTES
     }
 }
 
-/// Memory that a kernel needs for the output of one view: bytes of all commands, and number of entries of each bin.
+/// Memory for the output of a kernel for one view: bytes of all commands, and entries of each bin.
 pub(crate) struct OutputSize {
     commands: u32,
     entries: Vec<u32>,
@@ -184,15 +178,13 @@ impl OutputSize {
     }
 }
 
-/// Addresses at which a kernel writes the output of one view: the commands, and the entries of each bin.
 struct Places {
     commands: u32,
     bins: Vec<u32>,
 }
 
-/// Addresses at which the next call of a kernel writes its output. `command` is the address of the next command.
-/// `table` is the address of the table of bins. If the kernel stores bounding boxes instead of bins, `table` is the
-/// address of the next box.
+/// Address of the next command, and of the table of bins. If the kernel stores bounding boxes, `table` is the address
+/// of the next box.
 #[derive(Clone, Copy)]
 pub(crate) struct Next {
     pub(crate) command: u32,
@@ -200,16 +192,15 @@ pub(crate) struct Next {
 }
 
 impl Next {
-    /// Returns the addresses at which the next call of the kernel writes its output. The last call has left these
-    /// addresses in the processor's registers.
+    /// Returns the addresses for the next call, which the last call has left in the processor's registers.
     pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }
     }
 }
 
-/// Destination of a kernel's output for one view: the bin context, the index of the view among the views in this
-/// context, and the address of the view's first command.
+/// Place of a kernel's output for one view: set of bins, index of the view in this set, and address of the first
+/// command.
 #[derive(Clone, Copy)]
 pub(crate) struct Destination {
     pub(crate) context: u8,
@@ -217,26 +208,25 @@ pub(crate) struct Destination {
     pub(crate) begin: u32,
 }
 
-/// Marks that select the primitives of one view. In memory, each primitive has one mark word with a bit for each view.
-/// The struct has the addresses of the mark words, and the bit of this view.
+/// Addresses of the marks that select the primitives of a view. Each primitive has a word of marks, with a bit for each
+/// view.
 #[derive(Clone, Copy)]
 pub(crate) struct Marks {
-    /// Address of the mark word of the graphics processor's first triangle.
     pub(crate) triangles: u32,
     pub(crate) spheres: u32,
     pub(crate) bit: Word,
 }
 
 impl Pass {
-    /// Returns the work of the TRANSFORM as counts for the timing table, without the preparation of structures.
+    /// Returns the counts of primitives and bin entries for the timing table, without the placement of structures.
     #[must_use]
     pub fn cost(&self) -> TransformCost {
         let counted = TransformCost::primitives(self.transformed());
         TransformCost { clipped: self.stats().clipped, entries: self.entries(), ..counted }
     }
 
-    /// Runs the kernels for all primitives on a board that holds the display list. `context` is one of the board's two
-    /// bin contexts.
+    /// Executes the kernels for all primitives on a board that holds the display list. `context` is the set of bins, 0
+    /// or 1.
     ///
     /// Returns `None` if no kernel can draw this kind of picture.
     ///
@@ -250,10 +240,10 @@ impl Pass {
         self.run_kernels(processor, kernel, &needs, Destination { context, view: 0, begin }, None).map(Some)
     }
 
-    /// Runs the kernels for the left eye (`self`) and the right eye, with a single pass over the triangles.
+    /// Executes the kernels for the left eye (`self`) and the right eye, with a single pass over the triangles.
     ///
-    /// Returns `None` if no kernel serves both eyes. The left eye's output contains the time of the triangles of both
-    /// eyes.
+    /// Returns `None` if no kernel serves both eyes. The output of the left eye contains the time of the triangles of
+    /// both eyes.
     ///
     /// # Errors
     ///
@@ -285,10 +275,9 @@ impl Pass {
         Ok(Some([of_left, of_right]))
     }
 
-    /// Runs the triangle kernel for both eyes. Returns the time, and the addresses at which the output of each eye
-    /// continues.
+    /// Executes the triangle kernel for both eyes. Returns the time, and the addresses for the next output of each eye.
     ///
-    /// For a structure that only one eye can draw, the function runs the kernel for one eye.
+    /// A structure that only one eye can draw is transformed for this eye alone.
     fn run_triangles_for_both(
         &self,
         right: &Self,
@@ -336,8 +325,7 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// Runs the kernels for the primitives with a set mark bit, or for all primitives if `marks` is `None`. The output
-    /// goes to the destination `to`.
+    /// Executes the kernels for the primitives with a set bit in `marks`, or for all primitives if `marks` is `None`.
     pub(crate) fn run_kernels(
         &self,
         processor: &mut Processor,
@@ -353,8 +341,7 @@ impl Pass {
         self.run_rest(processor, kernel, &places, to, triangles, marks)
     }
 
-    /// Runs the sphere kernel for one view, after the triangle kernel. Then stores where each bin begins and ends. The
-    /// table of bins must be in memory.
+    /// Executes the sphere kernel for one view, and stores the bounds of each bin. The table of bins must be in memory.
     fn run_rest(
         &self,
         processor: &mut Processor,
@@ -373,7 +360,7 @@ impl Pass {
         Ok(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins })
     }
 
-    /// Runs the triangle kernel. Returns the time, and the addresses at which the next call writes its output.
+    /// Executes the triangle kernel. Returns the time, and the addresses for the next output.
     pub(crate) fn run_triangles(
         &self,
         processor: &mut Processor,
@@ -402,7 +389,7 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// Runs the sphere kernel. Returns the time, and the addresses at which the next call writes its output.
+    /// Executes the sphere kernel. Returns the time, and the addresses for the next output.
     pub(crate) fn run_spheres(
         &self,
         processor: &mut Processor,
@@ -438,14 +425,13 @@ impl Pass {
         self.picture().kernel(schedule)
     }
 
-    /// Returns the number of words of a triangle command and of a sphere command. Returns `None` if i860 code does not
-    /// put both kinds of commands into bins.
+    /// Returns the lengths of a triangle command and of a sphere command in words. Returns `None` if i860 code does not
+    /// fill the bins.
     pub(crate) fn binned_words(&self, version: CodeVersion) -> Option<[u32; 2]> {
         let kernel = self.kernel(version).filter(|_| self.is_binned())?;
         Some([kernel.command_bytes() / 4, sphere_kernel(kernel).command_words() as u32])
     }
 
-    /// Returns true if renderers compute the colours of pixels at the end of a region (Phong shading).
     pub(crate) fn shades_at_pixels(&self) -> bool {
         self.picture().shading == Shading::Phong
     }
@@ -454,8 +440,7 @@ impl Pass {
         self.picture().binning == RegionBinning::Touched
     }
 
-    /// Returns the words that all triangle commands have in common. The function encodes a command whose values are
-    /// zero, and reads the words from this command.
+    /// Returns the words that all triangle commands have in common, from the encoding of a command with zeros.
     pub(crate) fn heads(&self) -> Heads {
         let blank = match self.picture().shading {
             Shading::Gouraud | Shading::Precomputed => Command::Triangle(TriangleCommand::default()),
@@ -472,14 +457,12 @@ impl Pass {
         words
     }
 
-    /// Returns each drawn structure with the range of its triangles, as indices among the triangles that the graphics
-    /// processor holds.
+    /// Returns each drawn structure with its range of triangles, among the triangles of the graphics processor.
     pub(crate) fn calls_of_triangles(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.triangles, Share::held_places)
     }
 
-    /// Returns each drawn structure with the range of its spheres, as indices among the spheres that the graphics
-    /// processor holds.
+    /// Returns each drawn structure with its range of spheres, among the spheres of the graphics processor.
     pub(crate) fn calls_of_spheres(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.spheres, Share::held_places_of_spheres)
     }
@@ -496,9 +479,9 @@ impl Pass {
 
     /// Returns the memory that a kernel needs for its output.
     ///
-    /// The kernel needs memory for a command of every primitive counted in `given`, visible or not, and for the pieces
-    /// of clipped triangles. The kernel also needs memory for one command that it can discard. [`pxpl5_gp::Memory`]
-    /// counts fewer bytes, because it counts only visible primitives.
+    /// The memory has room for the commands of all primitives in `given`, visible or not, and of the pieces of clipped
+    /// triangles. The kernel needs room for one more command, which it can discard. [`pxpl5_gp::Memory`] counts only
+    /// the commands of visible primitives.
     pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> OutputSize {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {
@@ -511,14 +494,13 @@ impl Pass {
         OutputSize { commands, entries }
     }
 
-    /// Returns the largest number of triangle commands for which [`Pass::needs`] reserves memory.
     pub(crate) fn most_commands(&self, given: PrimitiveCounts) -> u32 {
         given.triangles + (MOST_PIECES - 1) * self.stats().clipped as u32 + 1
     }
 }
 
-/// Stores the start and end address of each bin of a context. The code that sends bins to renderers needs these
-/// addresses later, when the bins of the other context may have overwritten the table of bins.
+/// Stores the bounds of each bin for the code that sends bins. The kernel's own table may be overwritten before the
+/// bins are sent.
 fn note_bins(
     processor: &mut Processor,
     to: Destination,
@@ -530,8 +512,7 @@ fn note_bins(
     processor.write(bins(to.context, to.view), &words)
 }
 
-/// One call of a kernel: address and number of the primitives, destination of the output, and address of the
-/// parameters.
+/// The registers of a kernel call: address and number of the primitives, addresses of the output and of the parameters.
 struct Call {
     first: u32,
     count: u32,
@@ -545,10 +526,9 @@ impl Call {
         [(16, self.first), (17, self.count), (18, command), (2, STACK), (19, table), (20, self.parameters)]
     }
 
-    /// Calls the kernel once for all primitives, or once for each run of consecutive marked primitives.
+    /// Calls the kernel once for all primitives, or once for each group of successive marked primitives.
     ///
-    /// `marked` holds the address of the mark words, the bit that selects a primitive, and the size of a primitive in
-    /// bytes.
+    /// `marked` has the address of the marks, the bit to test, and the size of a primitive in bytes.
     fn run(
         &self,
         processor: &mut Processor,
@@ -565,15 +545,13 @@ impl Call {
     }
 }
 
-/// Returns the kernel for spheres that belongs to a kernel for triangles. Both draw the same kind of picture.
 pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
     SphereKernel { surface: kernel.surface, picture: kernel.picture, keeps_boxes: kernel.keeps_boxes }
 }
 
-/// A cache of assembled programs.
 pub(crate) type Programs<K> = LazyLock<Mutex<HashMap<K, Arc<Program>>>>;
 
-/// Returns the program of a kernel from the cache. The program is assembled at its first use.
+/// Returns the program of a kernel from the cache, assembled at its first use.
 pub(crate) fn kept<K: Copy + Eq + Hash>(
     programs: &Programs<K>,
     kernel: K,
@@ -583,11 +561,10 @@ pub(crate) fn kept<K: Copy + Eq + Hash>(
     Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
 }
 
-/// Name and source of the code that calls a kernel for each run of consecutive marked primitives.
+/// Name and source of the code that calls a kernel for each group of successive marked primitives.
 const RUNS: (&str, &str) = ("runs", include_str!("../kernels/runs.s"));
 
-/// Returns the program of a kernel for triangles and its clipper, assembled at its first use. `by_runs` adds the code
-/// that calls the kernel for each run of marked primitives.
+/// Returns the program of a triangle kernel with its clipper. `by_runs` adds the code for marked primitives.
 fn program(kernel: Kernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(Kernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), assembled)
@@ -606,8 +583,7 @@ fn assembled((kernel, by_runs): (Kernel, bool)) -> Program {
     }
 }
 
-/// Returns the program of a kernel for spheres, assembled at its first use. `by_runs` adds the code that calls the
-/// kernel for each run of marked primitives.
+/// Returns the program of a sphere kernel. `by_runs` adds the code for marked primitives.
 fn sphere_program(kernel: SphereKernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(SphereKernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), |(kernel, by_runs)| {

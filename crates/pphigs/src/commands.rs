@@ -1,5 +1,5 @@
-//! Messages of renderer commands. A message states the kinds of its commands immediately. The words of the commands are
-//! computed on demand.
+//! Messages with renderer commands. A message states the kinds of its commands at once, but computes their words only
+//! when the words are read.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
@@ -25,17 +25,17 @@ use std::sync::Arc;
 /// The commands before and after a region's primitives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RegionEnvelope {
-    /// True if the commands begin with the selection and clearing of the region's context in pixel memory.
+    /// True if the commands first select and clear the memory of the region.
     pub begin: bool,
-    /// True if the region ends with the shading of all its pixels. Only pictures with Phong shading have a command for
-    /// this shading.
+    /// True if the renderer computes the colours of all pixels at the end. Only pictures with Phong shading have a
+    /// command for this step.
     pub shade: bool,
-    /// Copy of the region to the frame buffer at the end. `None` if the region is not copied.
+    /// Copy of the region to the frame buffer at the end, if any.
     pub copy: Option<CopyOrder>,
 }
 
-/// Returns the messages with the commands of a region's bin and the commands of its envelope. The number of messages is
-/// as small as their maximum length permits.
+/// Returns the messages with the primitives of a region's bin and the commands of the envelope. The number of messages
+/// is as small as their maximum length permits.
 #[must_use]
 pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     if pass.counts(region).total() == 0 && !envelope.begin && pass.ending_words(envelope) == 0 {
@@ -53,8 +53,7 @@ pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope
     parts.map(list).collect()
 }
 
-/// Returns a message that copies regions to a frame buffer. Each element of `copies` names a region, and the context of
-/// pixel memory that holds the region.
+/// Returns a message that copies regions to a frame buffer, without drawing.
 #[must_use]
 pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> CommandList {
     let runs =
@@ -68,24 +67,22 @@ const fn run(kind: CommandKind, count: u32) -> CommandRun {
     CommandRun { opcode: kind.opcode(), words_each: kind.words(), count }
 }
 
-/// Content of one message of a region.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct RegionPart {
     select: bool,
     clear: bool,
     triangles: Range<u32>,
     spheres: Range<u32>,
-    /// True if the message contains the commands at the end of the region: shading and copy.
+    /// True if the message contains the commands after the primitives.
     ends: bool,
 }
 
-/// Iterator over the messages of a region: first all triangles, then all spheres.
+/// The messages of a region: first all triangles, then all spheres.
 struct Parts {
-    /// Range of triangles that no message contains yet.
     triangles: Range<u32>,
     spheres: Range<u32>,
     words_each: [u32; 2],
-    /// True if every message must begin with the selection of the region's context in pixel memory.
+    /// True if every message must select the region, because pixel memory holds several regions.
     selects: bool,
     clears_next: bool,
     ending_words: u32,
@@ -108,8 +105,8 @@ impl Parts {
 }
 
 impl Parts {
-    /// Returns the message at index `number`. Between the first and the last message with triangles, all messages have
-    /// the same length. The function therefore skips them in one step.
+    /// Returns message `number`. All messages between the first and the last message with triangles have the same
+    /// length and are skipped in one step.
     fn skip_to(mut self, number: u32) -> Option<RegionPart> {
         if number == 0 {
             return self.next();
@@ -126,8 +123,7 @@ impl Parts {
 impl Iterator for Parts {
     type Item = RegionPart;
 
-    /// Returns the next message. The iterator leaves out a message whose only command would be the selection of a
-    /// context.
+    /// Returns the next message, unless it would only select the region.
     fn next(&mut self) -> Option<RegionPart> {
         if self.has_ended {
             return None;
@@ -152,8 +148,7 @@ impl Iterator for Parts {
     }
 }
 
-/// Removes primitives from the front of `remaining`, and returns them. The number of removed primitives is the greatest
-/// number that fits into `room_words`. Each primitive has `words_each` words.
+/// Takes the first primitives of `remaining`: as many commands of `words_each` words as fit into `room_words`.
 fn take_run(remaining: &mut Range<u32>, words_each: u32, room_words: &mut u32) -> Range<u32> {
     let end = remaining.start + (remaining.end - remaining.start).min(*room_words / words_each);
     let taken = std::mem::replace(&mut remaining.start, end)..end;
@@ -190,19 +185,16 @@ impl Pass {
         }
     }
 
-    /// Returns true if a region with this envelope ends with the shading of all its pixels.
     fn shades(&self, envelope: RegionEnvelope) -> bool {
         envelope.shade && self.picture().shading == Shading::Phong
     }
 
-    /// Returns the number of words of the commands at the end of a region. Shading and copy count only if the envelope
-    /// contains them.
     fn ending_words(&self, envelope: RegionEnvelope) -> u32 {
         CommandKind::Shade.words() * u32::from(self.shades(envelope))
             + CommandKind::CopyRegion.words() * u32::from(envelope.copy.is_some())
     }
 
-    /// Returns the bytes of the renderer commands of all primitives on the screen. Each command is stored once, because
+    /// Returns the size of the commands of all primitives on the screen, in bytes. Each command is stored once, because
     /// bins hold pointers to commands (TR94).
     #[must_use]
     pub fn command_bytes(&self) -> u64 {
@@ -226,7 +218,7 @@ fn bytes(kind: CommandKind, count: u32) -> u64 {
     4 * u64::from(kind.words()) * u64::from(count)
 }
 
-/// Source of the words of a region's messages. The words are computed on demand.
+/// The words of a region's messages, which are computed only when a message is read.
 #[derive(Debug)]
 struct RegionWords {
     pass: Arc<Pass>,
@@ -258,13 +250,12 @@ impl CommandWords for RegionWords {
 }
 
 impl RegionWords {
-    /// Returns the content of the message at index `number`. The content is empty if the message does not exist.
+    /// Returns the content of message `number`, which is empty if the message does not exist.
     fn part(&self, number: u32) -> RegionPart {
         Parts::new(&self.pass, self.region, self.envelope).skip_to(number).unwrap_or_default()
     }
 
-    /// Appends all commands of a message. `triangles` are the triangles to draw, and can be fewer than the triangles of
-    /// the message.
+    /// Appends all commands of a message. `triangles` may be fewer than the triangles of the message.
     fn append_with(&self, part: &RegionPart, triangles: &[BinEntry], out: &mut dyn CommandSink) {
         let picture = self.pass.picture();
         // Start of the region: context and clear.
@@ -420,14 +411,14 @@ impl RegionWords {
     }
 }
 
-/// Appends the words of a command. The function cannot fail, because the machine's configuration rejects a layout
-/// without all fields that the commands use.
+/// Appends the words of a command. Encoding cannot fail, because the machine's configuration refuses a layout of pixel
+/// memory that lacks a field of the commands.
 fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
     let encoded = command.encode(layout, out);
     debug_assert!(encoded.is_ok(), "{encoded:?}");
 }
 
-/// Converts light and highlight to the number formats of the shading command. The eye looks along -z.
+/// Converts light and highlight to the number formats of the shading command, for an eye that looks along -z.
 ///
 /// Without a light all intensities are zero. Matte surfaces have no highlight.
 #[must_use]
@@ -444,21 +435,21 @@ pub fn shade(light: Option<&Light>, is_matte: bool) -> Shade {
     }
 }
 
-/// Iterator over the entries of a bin, in order, in batches of up to [`LANES`] triangles.
+/// Entries of a bin, in order, in batches of up to [`LANES`] triangles.
 struct SetupBatches<'a> {
     entries: &'a [BinEntry],
     list: &'a DisplayList,
-    /// The structure's vertices with their colours (Gouraud shading) or normals (Phong shading).
+    /// The structure's vertices, with colours (Gouraud shading) or normals (Phong shading).
     vertices: &'a [SurfaceVertex],
     first: usize,
     lanes: TriangleLanes<'a>,
 }
 
 enum SetupBatch<'a> {
-    /// Triangles whose edges and gradients are computed together. An invisible triangle occupies a place in the batch,
-    /// but this place has no data.
+    /// Triangles whose edges and planes are computed together. A triangle without area takes the place of an invisible
+    /// triangle.
     Unclipped(&'a [BinEntry], &'a TriangleLanes<'a>),
-    /// A piece of a clipped triangle. The piece forms a separate batch.
+    /// A piece of a clipped triangle, in a batch of its own.
     Clipped(&'a BinEntry),
 }
 
@@ -486,8 +477,8 @@ impl SetupBatches<'_> {
     }
 }
 
-/// Returns the piece of a clipped triangle to which a bin entry refers. `clip` produces all pieces of the triangle, and
-/// the entry has the index of its piece. Returns `None` if the triangle is invisible.
+/// Returns the piece of a clipped triangle to which `entry` refers, or `None` if the triangle is invisible. `clip`
+/// produces all pieces of the triangle.
 #[cold]
 fn pick<T>(entry: &BinEntry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     let mut pieces = Vec::new();
@@ -521,23 +512,21 @@ fn phong_sphere(s: &PhongSphere) -> Command {
     Command::PhongSphere(PhongSphereCommand { body: body(&s.setup), normal: s.normal, colour: rgb(s.colour) })
 }
 
-/// A command of an invisible triangle: its edges exclude every pixel.
+/// The command of an invisible triangle, whose edges exclude every pixel.
 const NOWHERE: TriangleCommand =
     TriangleCommand { edges: [Linear::constant(-1); 3], depth: Linear::constant(0), colour: [Linear::constant(0); 3] };
 const PHONG_NOWHERE: PhongTriangleCommand =
     PhongTriangleCommand { edges: NOWHERE.edges, depth: NOWHERE.depth, normal: NOWHERE.colour, colour: 0 };
 
-/// Converts a unit vector to units of 1/1024.
 fn fixed_direction(v: [f32; 3]) -> [i16; 3] {
     v.map(|c| (c * 1024.0) as i16)
 }
 
-/// Converts a fraction from 0 to 1 to units of 1/256.
 fn fixed_part(part: f32) -> u8 {
     (part * 256.0).clamp(0.0, 255.0) as u8
 }
 
-/// Intensity of a highlight, on a scale from 0 to 255 (assumed: a slightly glossy surface).
+/// Intensity of a highlight, 0 to 255 (assumed: a slightly glossy surface).
 const SPECULAR: u8 = 96;
 
 fn unit(v: [f32; 3]) -> [f32; 3] {
@@ -549,7 +538,6 @@ fn rgb([r, g, b]: [u8; 3]) -> u32 {
     u32::from(r) << 16 | u32::from(g) << 8 | u32::from(b)
 }
 
-/// Source of the words of a message that only copies regions.
 #[derive(Debug)]
 struct CopyWords {
     layout: Layout,

@@ -1,4 +1,4 @@
-//! The time of a TRANSFORM according to the timing table of graphics-processor code.
+//! The time of TRANSFORM according to the timing table.
 
 use crate::counts::PrimitiveCounts;
 use crate::list::DisplayList;
@@ -6,16 +6,16 @@ use crate::structure::DisplayStructure;
 use pxpl5_gp::GpTiming;
 use pxpl5_sim::Span;
 
-/// The work of a TRANSFORM as counts. The timing table has a time per unit for each count.
+/// The work of TRANSFORM as counts. The timing table has a time for each unit of a count.
 ///
 /// The simulation uses whole counts (`u64`). A closed form can use mean counts (`f64`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TransformCost<N = u64> {
-    /// Number of started passes over a display list, at [`GpTiming::pass_ns`] each.
+    /// Number of passes over a display list, at [`GpTiming::pass_ns`] each.
     pub passes: N,
-    /// Number of placed structures, counted for each eye, at [`GpTiming::structure_ns`] each.
+    /// Number of structures, counted for each eye, at [`GpTiming::structure_ns`] each.
     pub structures: N,
-    /// Number of placed structures with spheres, at an extra [`GpTiming::sphere_view_ns`] each.
+    /// Number of structures with spheres, at an extra [`GpTiming::sphere_view_ns`] each.
     pub sphere_views: N,
     /// Number of transformed triangles, visible or not, at [`GpTiming::triangle_ns`] each.
     pub triangles: N,
@@ -23,7 +23,7 @@ pub struct TransformCost<N = u64> {
     pub spheres: N,
     /// Number of triangles that the clipper cuts, at an extra [`GpTiming::guard_ns`] each.
     pub clipped: N,
-    /// Number of bin entries, one for each region that gets a primitive's commands, at [`GpTiming::bin_entry_ns`] each.
+    /// Number of bin entries, one for each region that a primitive touches, at [`GpTiming::bin_entry_ns`] each.
     pub entries: N,
 }
 
@@ -31,16 +31,16 @@ impl TransformCost {
     const NOTHING: Self =
         Self { passes: 0, structures: 0, sphere_views: 0, triangles: 0, spheres: 0, clipped: 0, entries: 0 };
 
-    /// Work of starting a pass over a display list, without its structures.
+    /// Start of a pass over a display list, without its structures.
     pub const PASS: Self = Self { passes: 1, ..Self::NOTHING };
 
-    /// Returns the work of transforming primitives, without the start of the pass and without bin entries.
+    /// Returns the work for primitives, without the start of the pass and without bin entries.
     #[must_use]
     pub const fn primitives(counts: PrimitiveCounts) -> Self {
         Self { triangles: counts.triangles as u64, spheres: counts.spheres as u64, ..Self::NOTHING }
     }
 
-    /// Returns the work of starting a pass over `structures` for one eye, before the first primitive of the pass.
+    /// Returns the work before the first primitive of a pass over `structures`, for one eye.
     #[must_use]
     pub fn beginning<'a>(structures: impl IntoIterator<Item = &'a DisplayStructure>) -> Self {
         structures.into_iter().fold(Self::PASS, |cost, structure| Self {
@@ -51,7 +51,7 @@ impl TransformCost {
     }
 
     /// Returns the work of a whole pass over a display list for one eye, without bin entries. `counts` are the numbers
-    /// of transformed primitives.
+    /// of primitives of the graphics processor.
     #[must_use]
     pub fn pass_over(list: &DisplayList, counts: PrimitiveCounts) -> Self {
         let begin = Self::beginning(&list.structures);

@@ -1,4 +1,4 @@
-/// Number of triangles and number of spheres, or the numbers of their commands.
+/// A number of triangles and a number of spheres, or of their commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PrimitiveCounts {
     /// Number of triangles, or of triangle commands.

@@ -1,8 +1,8 @@
-//! TRANSFORM of six views from one eye position, such as the faces of a cube, as i860 code over the board's memory.
+//! TRANSFORM of six views from one eye position, such as the faces of a cube, as i860 code.
 //!
-//! Each primitive is transformed only for the views that it can touch. The code kernels/sort.s finds these views, and
-//! kernels/runs.s passes the primitives to the kernels. This project made the rules for both programs
-//! (kernels/sort_rules.md).
+//! Each primitive is transformed only for the views that it may touch. The code kernels/sort.s finds these views, and
+//! kernels/runs.s passes the primitives to the kernels. No paper describes this code; kernels/sort_rules.md states its
+//! rules.
 
 use crate::begin::PassStartWork;
 use crate::code::{Destination, KernelOutput, Marks, OutputSize, SPHERE_BYTES, TRIANGLE_BYTES, budget, sphere_kernel};
@@ -18,37 +18,38 @@ use pxpl5_wire::Word;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
-/// Margin around a view when the code finds the views of a primitive. The sides of the view are moved outwards by this
-/// fraction of the projection's scale (rule 4 of kernels/sort_rules.md).
+/// Margin around a view in the search for its primitives, as a fraction of the projection's scale (rule 4 of
+/// kernels/sort_rules.md).
 const MARGIN: f32 = 1.0 / 32.0;
 
-/// Work of the TRANSFORM of a share of primitives for six views from one eye position.
+/// Work of TRANSFORM for six views from one eye position.
 #[derive(Clone, Copy, Debug)]
 pub struct CubeTransform<'a> {
-    /// TRANSFORM results of the views along +x, -x, +y, -y, +z and -z. The axes are the axes of the last view's eye
-    /// coordinates. All views have the same projection.
+    /// Results of TRANSFORM for the views along +x, -x, +y, -y, +z and -z, in the eye coordinates of the last view. All
+    /// views have the same projection.
     pub passes: &'a [Arc<Pass>; MOST_VIEWS as usize],
-    /// Bin context of all views, 0 or 1.
+    /// Set of bins for all views, 0 or 1. A board has two sets.
     pub context: u8,
 }
 
-/// Result of the TRANSFORM for six views, in the memory of a board.
+/// Result of TRANSFORM for six views, in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CubeTransformOutput {
     /// Simulated time of all steps.
     pub span: Span,
-    /// Simulated time of the preparation before the first primitive, which is included in `span`.
+    /// Simulated time of the steps before the first primitive, which is included in `span`.
     pub start_span: Span,
-    /// Simulated time to find the views of each primitive, which is included in `span`.
+    /// Simulated time of the search for the views of each primitive, which is included in `span`.
     pub sort_span: Span,
     /// Number of primitives that were transformed for each view, visible or not.
     pub given: Vec<PrimitiveCounts>,
-    /// Output of the kernels for each view.
+    /// Output of the kernels, for each view.
     pub views: Vec<KernelOutput>,
 }
 
 impl CubeTransform<'_> {
-    /// Runs the code on a board that holds the display list. Returns `None` if no kernel can draw this kind of picture.
+    /// Executes the code on a board that holds the display list. Returns `None` if no kernel can draw this kind of
+    /// picture.
     ///
     /// # Errors
     ///
@@ -95,8 +96,8 @@ impl CubeTransform<'_> {
         pass.run_kernels(processor, kernel, needs, to, Some(marks))
     }
 
-    /// Writes a mark word for every primitive of the drawn structures. Bit `n` of the word is set if view `n` can
-    /// contain the primitive. Returns the time, and the number of primitives of each view.
+    /// Writes a word of marks for every primitive of the drawn structures. Bit `n` is set if view `n` may contain the
+    /// primitive. Returns the time, and the number of primitives of each view.
     fn sort(&self, processor: &mut Processor, kernel: Kernel) -> Result<(Span, Vec<PrimitiveCounts>), ProcessorFault> {
         let [.., ahead] = self.passes;
         let [triangles, spheres, _] = marks(ahead);
@@ -124,9 +125,8 @@ impl CubeTransform<'_> {
     }
 }
 
-/// Returns three addresses of mark words, which state for each primitive the views that can contain the primitive. The
-/// mark words of triangles begin at the first address (after the display list), and the mark words of spheres at the
-/// second. The third address is the end of the mark words.
+/// Returns the addresses of the marks of triangles and of spheres, and the end of the marks. The marks lie after the
+/// display list.
 fn marks(pass: &Pass) -> [u32; 3] {
     let share = pass.share();
     let triangles = share.end_of_list();
@@ -134,11 +134,11 @@ fn marks(pass: &Pass) -> [u32; 3] {
     [triangles, spheres, spheres + 4 * share.all_spheres().len() as u32]
 }
 
-/// The primitives of one structure, and the addresses that the code needs to find the views of each primitive.
+/// The primitives of one structure, and addresses in memory for the search that finds the views of each primitive.
 ///
-/// `held` is the range of these primitives' indices among all primitives that the graphics processor holds. `first` is
-/// the address of the graphics processor's first primitive, and `bytes` is the size of one primitive. `marks` is the
-/// address of the first mark word. A mark word has a bit for each view that can contain the primitive.
+/// `held` has the indices of the structure's primitives in the list of the graphics processor's primitives. `first` is
+/// the address of the processor's first primitive, and `bytes` the size of a primitive. `marks` is the address of the
+/// first word of marks, with a bit for each view.
 struct ViewSort {
     held: Range<usize>,
     first: u32,
@@ -161,7 +161,7 @@ impl ViewSort {
         processor.call(&PROGRAM, entry, &[data.as_slice(), &numbers].concat(), budget(count))
     }
 
-    /// Returns, for each view, the number of primitives that are marked for the view.
+    /// Returns the number of marked primitives for each view.
     fn counts(&self, processor: &Processor) -> Result<[u32; MOST_VIEWS as usize], ProcessorFault> {
         let words: Vec<Word> = processor.read(self.words(), self.held.len())?;
         Ok(std::array::from_fn(|view| words.iter().map(|word| word >> view & 1).sum()))

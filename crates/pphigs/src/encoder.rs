@@ -1,9 +1,8 @@
-//! Encoder of triangle commands, chosen by the picture's shading.
+//! Encoders of triangle commands for each kind of shading.
 
 use crate::picture::{Picture, Shading};
 use pxpl5_renderer::{PhongTriangleEncoder, TriangleEncoder};
 
-/// Encoder of the triangle commands of a picture.
 #[derive(Debug)]
 pub(crate) enum Encoder {
     Gouraud(TriangleEncoder),
@@ -11,8 +10,8 @@ pub(crate) enum Encoder {
 }
 
 impl Encoder {
-    /// Creates the encoder of a picture's triangle commands. Returns `None` if the layout of pixel memory lacks a
-    /// field. The machine's configuration rejects such layouts.
+    /// Creates the encoder of a picture. Returns `None` if the layout of pixel memory lacks a field, which the
+    /// machine's configuration refuses.
     pub(crate) fn for_picture(picture: &Picture) -> Option<Self> {
         match picture.shading {
             Shading::Gouraud | Shading::Precomputed => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),

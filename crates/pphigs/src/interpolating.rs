@@ -1,8 +1,8 @@
 //! CPU work of interpolating triangles between two views (a *dual display list*).
 //!
-//! The code records each triangle's positions in the two views at the start and at the end of a field. Then the code
-//! makes the commands of a strip (a group of consecutive lines) for a view between the two views. The code is `ends.s` and
-//! `compiled.s` of `pxpl5-geometry`. This project made the rules for the code (kernels/between_rules.md).
+//! The code records each triangle's corners in the views at the start and at the end of a field. For each strip of
+//! lines, the code then makes commands for a view between these views. The code is `ends.s` and `compiled.s` of
+//! `pxpl5-geometry`. No paper describes the code; kernels/between_rules.md states its rules.
 
 use crate::code::{BUDGET, Next, Programs, TRIANGLE_BYTES, budget, kept};
 use crate::layout::{BLENDED, BLENDED_ELEMENTS, CODE, DISPLAY_LIST, PARAMETERS, STACK};
@@ -20,25 +20,24 @@ use pxpl5_wire::Word;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex};
 
-/// Bytes of the record of one triangle, with its positions in two views.
 const RECORD_BYTES: u32 = 4 * ENDS_WORDS as u32;
 const VIEW_BYTES: u32 = 4 * ENDS_VIEW_WORDS as u32;
 
-/// Work that records the positions of all triangles in two views. The records are stored in a part of memory.
+/// Work that records the corners of all triangles in two views, in a part of the board's memory.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleEndsRecorder<'a> {
     /// Primitives of the graphics processor.
     pub share: &'a Share,
-    /// The first and the second view.
+    /// Views at the start and at the end of a field.
     pub views: [&'a FrameView; 2],
-    /// Picture parameters of both views.
+    /// Picture that the views show.
     pub picture: Picture,
-    /// Part of memory that receives the records.
+    /// Part of the board's memory for the records.
     pub part: MemoryPart,
 }
 
 impl TriangleEndsRecorder<'_> {
-    /// Runs the code on a board that holds the display list, and returns the simulated time. The time includes the
+    /// Executes the code on a board that holds the display list, and returns the simulated time. The time includes the
     /// preparation of structures for both views.
     ///
     /// Returns `None` if no kernel can draw this kind of picture.
@@ -69,43 +68,42 @@ impl TriangleEndsRecorder<'_> {
     }
 }
 
-/// Returns three values: address of the first triangle, number of triangles, and address of the first triangle's
-/// record.
+/// Returns the address of the first triangle, the number of triangles, and the address of the first record.
 const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
     let first = held.start as u32;
     [DISPLAY_LIST + first * TRIANGLE_BYTES, (held.end - held.start) as u32, records + first * RECORD_BYTES]
 }
 
-/// Work that makes the commands of a strip of lines, for a view between two recorded views. The result has commands and
-/// bounding boxes of the triangles near the strip, and of all spheres.
+/// Work that makes the commands of a strip of lines, for a view between two recorded views.
+///
+/// The result has commands and bounding boxes of the triangles near the strip, and of all spheres.
 #[derive(Clone, Copy, Debug)]
 pub struct StripInterpolation<'a> {
     /// Primitives of the graphics processor.
     pub share: &'a Share,
-    /// The first and the second view. A [`TriangleEndsRecorder`] has recorded the positions of the triangles in both
-    /// views.
+    /// Views at the start and at the end of a field, in which a [`TriangleEndsRecorder`] has recorded the triangles.
     pub views: [&'a FrameView; 2],
-    /// View between the two views. Spheres, light source and clipped triangles are computed from this view, without
-    /// interpolation.
+    /// View between these views. Spheres, light and clipped triangles are computed for this view instead of
+    /// interpolated.
     pub between: &'a FrameView,
-    /// Position of `between` on a scale from the first view (0) to the second view (1).
+    /// The instant of `between`, from 0 (first view) to 1 (second view).
     pub part_of_way: f64,
-    /// True if triangles are interpolated in eye space, before the perspective division. False if triangles are
+    /// True if triangles are interpolated in eye space, before the division by depth. False if triangles are
     /// interpolated on the screen.
     pub in_eye_space: bool,
-    /// Range of lines near the strip, as the smallest and greatest distance from the frame's top in 1/16 px. Only
-    /// triangles within this range can touch the strip at any position between the views.
+    /// First and last line of a range around the strip, in 1/16 px from the top of the frame. Triangles outside this
+    /// range cannot touch the strip in any view between the two views.
     pub near: [i32; 2],
     /// Picture that contains the strip.
     pub picture: Picture,
-    /// Part of memory with the [recorded positions](TriangleEndsRecorder).
+    /// Part of the board's memory with the [recorded corners](TriangleEndsRecorder).
     pub ends: MemoryPart,
-    /// Part of memory that receives the strip's commands.
+    /// Part of the board's memory for the strip's commands.
     pub commands: MemoryPart,
 }
 
 impl StripInterpolation<'_> {
-    /// Runs the code on a board that holds the recorded positions. Returns `None` if no kernel can draw this kind of
+    /// Executes the code on a board that holds the recorded corners. Returns `None` if no kernel can draw this kind of
     /// picture.
     ///
     /// # Errors
@@ -122,7 +120,7 @@ impl StripInterpolation<'_> {
         Ok(Some(blended + beginning + of_kernels))
     }
 
-    /// Interpolates the matrices of the two views: the matrices of the eyes and of the edited structures.
+    /// Interpolates the matrices of the eyes and of the edited structures between the two views.
     fn blend(&self, processor: &mut Processor, kernel: Kernel) -> Result<Span, ProcessorFault> {
         let [from, to] = self.views.map(elements);
         let [low, high] = [self.part_of_way.to_bits(), self.part_of_way.to_bits() >> 32].map(|word| word as Word);
@@ -167,15 +165,14 @@ impl StripInterpolation<'_> {
     }
 }
 
-/// Returns the matrix elements to interpolate. Projection matrices are left out, because they are the same in both
-/// views.
+/// Returns the matrix elements to interpolate. Projection matrices are left out, because both views have the same.
 fn elements(view: &FrameView) -> Vec<Word> {
     let of_eyes = view.eyes.iter().flat_map(|eye| [eye.world_to_eye, eye.head_to_eye]);
     let matrices = of_eyes.chain(view.edits.iter().map(|edit| edit.model));
     matrices.flat_map(|matrix| matrix.to_cols_array()).map(f32::to_bits).collect()
 }
 
-/// Returns one program with the code of all steps for a kernel, including the kernel's clipper.
+/// Returns one program with the code of all steps, and the kernel's clipper.
 pub(crate) fn program(kernel: Kernel) -> Arc<Program> {
     static PROGRAMS: Programs<Kernel> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, kernel, |kernel| {

@@ -6,36 +6,35 @@
 //!   | table of bins, stack             | of context 0          |  of context 1  |
 //! ```
 
-/// Address of the code for triangles, with its clipper. The processor's trap vectors are below this address.
+/// Address of the code for triangles, with the clipper. The processor's trap vectors are below this address.
 pub(crate) const CODE: u32 = 0x1000;
-/// Address of the code that finds the views, among six, that contain a primitive.
+/// Address of the code that finds the views of a cube that contain a primitive.
 pub(crate) const SORT_CODE: u32 = 0xB000;
-/// Address of the code at the beginning of a pass. This code edits structures and places them for an eye.
+/// Address of the code that edits and places structures before the first triangle of a pass.
 pub(crate) const BEGIN_CODE: u32 = 0xC000;
 /// Address of the code for spheres.
 pub(crate) const SPHERE_CODE: u32 = 0xE000;
-/// Address of a kernel's parameter block.
+/// Address of the parameters of a triangle kernel.
 pub(crate) const PARAMETERS: u32 = 0x1_0000;
 /// Address of the table of bins. A kernel reads and updates the end of each bin in this table.
 pub(crate) const BIN_TABLE: u32 = 0x1_0200;
-/// Address of the parameter block for spheres.
+/// Address of the parameters of a sphere kernel.
 pub(crate) const SPHERE_PARAMETERS: u32 = 0x1_0400;
-/// Address of a kernel's stack frame. The stack frames of the clipper and of kernels/runs.s are below this address.
+/// Address of the stack frame of a kernel. The stack frames of the clipper and of kernels/runs.s are below this
+/// address.
 pub(crate) const STACK: u32 = 0x1_1400;
-/// Address of the right eye's parameter block, for kernels that transform both eyes.
+/// Address of the parameters for the right eye, if a kernel transforms both eyes.
 pub(crate) const RIGHT_PARAMETERS: u32 = 0x1_2500;
-/// Address of the display list. The list follows the first megabyte, which belongs to the program.
+/// Address of the display list, after the first megabyte, which belongs to the program.
 pub(crate) const DISPLAY_LIST: u32 = 1 << 20;
 /// Address of a message from the host, with matrices or edits.
 pub(crate) const MESSAGE: u32 = 0x1_4000;
 /// Address of the model matrices, sorted by structure.
 pub(crate) const MODELS: u32 = 0x1_6000;
-/// Address of the bin bounds of the second and later views that share a bin context (set of bins), in the format of
-/// [`BINS`]. Each view has bounds in both contexts.
+/// Address of the bounds of the bins for the second and later views in a set of bins, in the format of [`BINS`].
 const MORE_BINS: u32 = 0x7_D000;
-/// Address at the end of the model matrices.
 pub(crate) const MODELS_END: u32 = BLENDED;
-/// Address of three groups of matrix elements: the first view, the second view, and the interpolated view.
+/// Address of the matrix elements of the first view, of the second view, and of the view between them.
 pub(crate) const BLENDED: u32 = 0x7_5000;
 pub(crate) const BLENDED_ELEMENTS: u32 = 1024;
 /// Address of the code that finds the primitives in windows (rectangles of the screen).
@@ -43,38 +42,36 @@ pub(crate) const WINDOWS_CODE: u32 = 0x7_8000;
 /// Address of the windows (rectangles of the screen) to search. The rectangle around all windows comes first.
 pub(crate) const WINDOWS: u32 = 0x7_9000;
 pub(crate) const REGION_WINDOWS: u32 = 0x7_9C00;
-/// Address of the coordinates of the upper left pixel of each window (rectangle of the screen).
+/// Address of the upper left pixel of each window (rectangle of the screen).
 pub(crate) const WINDOW_PLACES: u32 = 0x7_AE00;
-/// Address of the lists of primitives in windows (rectangles of the screen). Each list has a start and an end address,
-/// like a bin (see [`bins`]).
+/// Address of the lists of the primitives in windows (rectangles of the screen), each with a start and an end like a
+/// bin (see [`bins`]).
 pub(crate) const WINDOW_LISTS: u32 = 0x7_B000;
-/// Address of the records of stored passes, one record for each part of memory. A stored pass is the result of a
-/// TRANSFORM without bins, which a part of memory holds for later searches.
+/// Address of the records of stored passes. A stored pass is a result of TRANSFORM that later searches use instead of
+/// bins.
 pub(crate) const KEPT: u32 = 0x7_B400;
-/// Bytes of the record of a stored pass (the result of a TRANSFORM that a part of memory holds).
+/// Size of the record of a stored pass, in bytes.
 pub(crate) const KEPT_BYTES: u32 = 32;
-/// Largest number of TRANSFORM results that a board's memory holds at a time.
+/// Largest number of stored passes in a board's memory.
 pub(crate) const MOST_KEPT: u32 = 16;
 /// Address of the code that assembles an order, the message of a master to its slaves.
 pub(crate) const ORDER_CODE: u32 = 0x7_B600;
 /// Address of the first words of an order, before its views.
 pub(crate) const ORDER_HEAD: u32 = 0x7_B800;
 pub(crate) const ORDER_VIEWS: u32 = 0x7_C000;
-/// Largest number of windows (rectangles of the screen) in one search for primitives.
+/// Largest number of windows (rectangles of the screen) in one search.
 pub(crate) const MOST_WINDOWS: u32 = 64;
-/// Bytes of the description of a window (rectangle of the screen).
+/// Size of the description of a window (rectangle of the screen), in bytes.
 pub(crate) const WINDOW_BYTES: u32 = 32;
-/// Number of bytes at the end of memory for the primitives that one search finds in its windows (rectangles of the
-/// screen).
+/// Bytes at the end of memory for the primitives that one search finds.
 pub(crate) const ENTRY_BYTES: u32 = 4 * (LISTS_END - PIECES) / 8;
-/// Largest number of views whose bins share a context: the six faces of a cube.
+/// Largest number of views that share a set of bins: the six faces of a cube.
 pub(crate) const MOST_VIEWS: u32 = 6;
-/// Address of the bin bounds: the start and end addresses of all bins, in both bin contexts (sets of bins). The code
-/// that sends a region's bin reads these bounds.
+/// Address of the bounds of all bins, in both sets of bins, for the code that sends a region's bin.
 const BINS: u32 = 0x1_2F00;
-/// Bytes of the bin bounds of one context: the address of its first sphere command, and two addresses for each region.
+/// Bytes of the bounds of one set of bins: the address of the first sphere command, and two addresses for each region.
 const BIN_BOUNDS_BYTES: u32 = 0x480;
-/// Address of the parameter block for the code that sends a region's bin.
+/// Address of the parameters of the code that sends a region's bin.
 pub(crate) const TOKEN_PARAMETERS: u32 = 0x1_3800;
 pub(crate) const ENVELOPES: u32 = 0x1_3900;
 pub(crate) const TOKEN_CODE: u32 = 0x1_3C00;
@@ -83,8 +80,8 @@ pub(crate) const LISTS: u32 = 0x8_0000;
 pub(crate) const PIECES: u32 = 0x9_0000;
 pub(crate) const LISTS_END: u32 = pxpl5_gp::RING_MEMORY.start;
 
-/// Returns the address of the start and end addresses of the bins of one view in a bin context (set of bins). `view` is
-/// 0 for the first view that shares the context.
+/// Returns the address of the bounds of the bins in the set of bins `context`. `view` is 0 for the first view in this
+/// set.
 pub(crate) fn bins(context: u8, view: u8) -> u32 {
     let context = u32::from(context % 2);
     match u32::from(view).checked_sub(1) {

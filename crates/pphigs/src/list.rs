@@ -9,34 +9,33 @@ use pxpl5_geometry::{Triangle, WorldSphere};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// All primitives to draw, divided into consecutive structures.
+/// All primitives to draw, divided into structures.
 #[derive(Clone, Debug, Default)]
 pub struct DisplayList {
-    /// Positions of the vertices in their structure's coordinates.
+    /// Positions of the vertices, in the coordinates of their structure.
     pub positions: Vec<Vec3>,
-    /// Normals at the vertices, as many as positions.
+    /// Normals of the vertices.
     pub normals: Vec<Vec3>,
-    /// Red, green and blue at the vertices, as many as positions.
+    /// Colours of the vertices: red, green and blue.
     pub colours: Vec<[u8; 3]>,
     /// Corners of each triangle, as indices of `positions`.
     pub triangles: Vec<[u32; 3]>,
-    /// Spheres in their structure's coordinates.
+    /// Spheres, in the coordinates of their structure.
     pub spheres: Vec<WorldSphere>,
-    /// Structures, in ascending order of their ranges of triangles and of spheres. No gap separates the ranges of
-    /// successive structures.
+    /// Structures. The ranges of triangles and of spheres of successive structures follow each other without gaps.
     pub structures: Vec<DisplayStructure>,
-    /// Unit vector towards the light source, in the coordinates of each structure's frame of reference (the room or the
-    /// head).
+    /// Unit vector towards the light source, in the room or, for structures that move with the head, in the head.
     pub towards_light: Vec3,
-    /// Fraction of the colour that is visible in shadow, 0 to 1.
+    /// Fraction of the colour that is visible without the light, 0 to 1.
     pub ambient: f32,
-    /// Fraction of the colour that light perpendicular to the surface adds to the ambient light, 0 to 1.
+    /// Fraction of the colour that light perpendicular to the surface adds, 0 to 1.
     pub diffuse: f32,
-    /// Background colour: red, green, blue.
+    /// Background colour: red, green and blue.
     pub background: [u8; 3],
-    /// True if surfaces have no highlight. Pictures with highlights need one eye direction for the whole picture.
+    /// True if surfaces have no highlight. A highlight needs one eye direction for the whole picture.
     pub is_matte: bool,
-    /// Cache of results that all graphics processors share. Code that changes the list must empty this cache.
+    /// Cache of placed structures, which all graphics processors share. Code that changes the list must empty this
+    /// cache.
     pub recent: RecentViews,
 }
 
@@ -76,8 +75,8 @@ impl DisplayList {
 
     /// Replaces the colours by lit colours, for [`Shading::Precomputed`](crate::Shading::Precomputed).
     ///
-    /// Each vertex gets ambient light. A vertex whose normal points towards the light also gets diffuse light. Every
-    /// structure is lit at its original position, before edits move the structure. Spheres keep their colours.
+    /// A vertex gets ambient light, and diffuse light if its normal points towards the light. Structures are lit at
+    /// their original positions, before edits. Spheres keep their colours.
     #[must_use]
     pub fn with_precomputed_colours(mut self) -> Self {
         let towards_light = self.towards_light.to_array().map(f64::from);
@@ -120,7 +119,7 @@ impl DisplayList {
     }
 }
 
-/// The primitives of one graphics processor (GP), or a consecutive part of these primitives.
+/// The primitives of one graphics processor (GP), or a clump of these primitives.
 ///
 /// The GP holds the triangles and the spheres with the indices `first`, `first + step`, `first + 2 step` and so on.
 #[derive(Clone, Debug)]
@@ -128,9 +127,9 @@ pub struct Share {
     pub(crate) list: Arc<DisplayList>,
     first: usize,
     step: usize,
-    /// Range of the share's triangles, as indices among the triangles that the graphics processor holds.
+    /// Range of this share in the list of the graphics processor's triangles.
     triangles: Range<usize>,
-    /// Range of the share's spheres, as indices among the spheres that the graphics processor holds.
+    /// Range of this share in the list of the graphics processor's spheres.
     spheres: Range<usize>,
 }
 
@@ -142,8 +141,8 @@ impl Share {
     /// Bytes of a sphere in a graphics processor's memory: centre, radius, colour and header (assumed).
     pub const SPHERE_BYTES: u64 = 32;
 
-    /// Returns the share of the graphics processor with index `index` among `of` graphics processors. Primitives are
-    /// distributed round-robin.
+    /// Returns the share of graphics processor `index` among `of` graphics processors. Primitives are distributed in
+    /// turn.
     ///
     /// # Panics
     ///
@@ -156,14 +155,14 @@ impl Share {
         Self { list, first: index, step: of, triangles, spheres }
     }
 
-    /// Returns the whole display list that this share belongs to.
+    /// Returns the whole display list.
     #[must_use]
     pub fn list(&self) -> &Arc<DisplayList> {
         &self.list
     }
 
-    /// Returns the share with the same primitives in another list. The other list must have the same structures, but
-    /// its vertices may be in another order.
+    /// Returns the same primitives of another list. The other list must have the same structures, but its vertices may
+    /// be in another order.
     #[must_use]
     pub fn with_list(&self, list: Arc<DisplayList>) -> Self {
         Self { list, ..self.clone() }
@@ -175,8 +174,7 @@ impl Share {
         PrimitiveCounts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
     }
 
-    /// Returns the numbers of the share's primitives in the chosen structures. `chosen` has one element for each
-    /// structure.
+    /// Returns the numbers of primitives in the chosen structures. `chosen` has one entry for each structure.
     #[must_use]
     pub fn chosen_counts(&self, chosen: &[bool]) -> PrimitiveCounts {
         let mut counts = PrimitiveCounts::default();
@@ -204,39 +202,37 @@ impl Share {
         })
     }
 
-    /// Returns an empty share of the same display list.
+    /// Returns a share without primitives.
     #[must_use]
     pub fn nothing(&self) -> Self {
         Self { triangles: 0..0, spheres: 0..0, ..self.clone() }
     }
 
-    /// Returns the bytes that the share's primitives take in the graphics processor's memory.
+    /// Returns the size of the primitives in the graphics processor's memory, in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let PrimitiveCounts { triangles, spheres } = self.counts();
         u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES
     }
 
-    /// Returns the indices, in the display list, of all triangles that the graphics processor holds. The result is the
-    /// same for every clump of the graphics processor.
+    /// Returns the indices of the graphics processor's triangles in the display list, also for a clump.
     pub(crate) fn all_triangles(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.triangles.len()).step_by(self.step)
     }
 
-    /// Returns the indices, in the display list, of all spheres that the graphics processor holds. The result is the
-    /// same for every clump of the graphics processor.
+    /// Returns the indices of the graphics processor's spheres in the display list, also for a clump.
     pub(crate) fn all_spheres(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.spheres.len()).step_by(self.step)
     }
 
-    /// Returns the triangles of this share that belong to one structure. `of` is the structure's range of triangles in
-    /// the display list. The result is a range of indices among all triangles that the graphics processor holds.
+    /// Returns the range of a structure's triangles among those of the graphics processor. `of` is the structure's
+    /// range in the display list.
     pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.triangles, of)
     }
 
-    /// Returns the spheres of this share that belong to one structure. `of` is the structure's range of spheres in the
-    /// display list. The result is a range of indices among all spheres that the graphics processor holds.
+    /// Returns the range of a structure's spheres among those of the graphics processor. `of` is the structure's range
+    /// in the display list.
     pub(crate) fn held_places_of_spheres(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.spheres, of)
     }
@@ -249,9 +245,8 @@ impl Share {
         self.held(&self.spheres, of)
     }
 
-    /// Returns the primitives of this share that belong to one structure, as indices in the display list. `of` is the
-    /// structure's range of primitives in the display list. `positions` is the range of the share, as indices among the
-    /// primitives that the graphics processor holds.
+    /// Returns the indices of a structure's primitives that belong to this share. `of` is the structure's range in the
+    /// display list, and `positions` the range of the share.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         let first = self.first;
         let step = self.step;
@@ -265,13 +260,11 @@ impl Share {
     }
 }
 
-/// Returns the number of primitives, among the first `all`, that the graphics processor with index `index` holds. `gps`
-/// is the number of graphics processors.
+/// Returns how many of the first `all` primitives belong to graphics processor `index` of `gps`.
 fn dealt(all: usize, index: usize, gps: usize) -> usize {
     all.saturating_sub(index).div_ceil(gps)
 }
 
-/// Returns the elements `from` to `to - 1` of a range, without elements beyond the end of the range.
 fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
     (range.start + from).min(range.end)..(range.start + to).min(range.end)
 }

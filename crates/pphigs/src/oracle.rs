@@ -14,9 +14,9 @@
 //! `pxpl5-renderer` share only the formats of commands, which `pxpl5-renderer` documents.
 //!
 //! If two primitives have exactly the same depth at a pixel, the pixel can have either colour. On the machine, the
-//! primitive whose commands arrive first is visible. The order of arrival depends on the number of processors. An [`IdealPicture`]
-//! lists these pixels and all colours that they can have ([`IdealPicture::ties`]). Any other difference is an error of
-//! the machine.
+//! primitive whose commands arrive first is visible. The order of arrival depends on the number of processors. An
+//! [`IdealPicture`] lists these pixels and all colours that they can have ([`IdealPicture::ties`]). Any other
+//! difference is an error of the machine.
 //!
 //! **Not modelled:** the display's light, pictures drawn for more than one time, and interlace. A field consists of
 //! every second line of its frame, so a frame can be compared with two fields.

@@ -1,5 +1,5 @@
-//! CPU work of assembling an order, which is the message of a master to its slaves. The code is kernels/order.s. This
-//! project made the rules for the code (kernels/order_rules.md).
+//! CPU work of assembling an order, which is the message of a master to its slaves. The code is kernels/order.s. No
+//! paper describes the code; kernels/order_rules.md states its rules.
 
 use crate::layout::{MESSAGE, ORDER_CODE, ORDER_HEAD, ORDER_VIEWS};
 use i860::Program;
@@ -8,14 +8,13 @@ use pxpl5_sim::Span;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
 use std::sync::{Arc, LazyLock};
 
-/// Instruction limit, twice the need of the longest message. Code that exceeds the limit counts as an endless loop.
+/// Largest number of instructions, twice what the longest message needs. Code that exceeds the limit counts as an
+/// endless loop.
 const BUDGET: u64 = 12 * MAX_MESSAGE_WORDS as u64;
 
-/// Largest number of words of an order before its views.
 const HEAD_WORDS: usize = (ORDER_VIEWS - ORDER_HEAD) as usize / 4;
 
-/// Assembles an order on a board, and returns the simulated time. The first `head` words of the order come before its
-/// views. All other words are views.
+/// Assembles an order on a board, and returns the simulated time. `head` is the number of words before the views.
 ///
 /// # Errors
 ///

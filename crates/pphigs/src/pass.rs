@@ -1,4 +1,4 @@
-//! The result of one TRANSFORM of a graphics processor's share of the primitives, for one eye.
+//! The result of TRANSFORM on one graphics processor, for one eye.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
@@ -13,82 +13,73 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// A triangle on the screen, or a piece of a clipped triangle, as an entry of a bin.
+/// A triangle, or a piece of a clipped triangle, as an entry of a bin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BinEntry {
     /// Index of the triangle in the display list.
     pub(crate) triangle: u32,
-    /// Index of the piece among the pieces of the clipped triangle. The index is 0 for an unclipped triangle. `None`
-    /// for an invisible triangle.
+    /// Index of the piece of a clipped triangle, 0 for an unclipped triangle. `None` for an invisible triangle.
     pub(crate) piece: Option<u8>,
 }
 
-/// Primitives that touch one region, in the order of the display list. `spheres` holds indices in the display list.
+/// Primitives in one region, in the order of the display list.
 #[derive(Debug)]
 pub(crate) struct Bin {
     pub(crate) triangles: Vec<BinEntry>,
     pub(crate) spheres: Vec<u32>,
 }
 
-/// Result of the TRANSFORM for one eye: the primitives on the screen that touch each region.
+/// Result of TRANSFORM for one eye: the primitives in each region.
 ///
-/// Simulated time depends only on the counts of primitives. The content of the bins is computed when it is first read.
+/// Simulated time depends only on the numbers of primitives, which are counted at once. The bins are filled when they
+/// are first read.
 #[derive(Debug)]
 pub struct Pass {
     walk: Walk,
     found: Found,
     stats: SetupStats,
-    /// Bins, one for each region, filled at the first use.
+    /// Bins of the regions, filled at the first use.
     bins: OnceLock<Vec<Bin>>,
-    /// Triangles that touch each region, computed at the first use. The list is used only if every region's bin gets
-    /// all triangles.
+    /// Triangles that touch each region, found at the first use. Needed only if every region receives all triangles.
     touching: OnceLock<RegionTriangles>,
-    /// Encoder of triangle commands, created at the first use.
     encoder: OnceLock<Option<Encoder>>,
 }
 
-/// Input of the binning: the share, its placed structures and the picture.
 #[derive(Debug)]
 struct Walk {
     share: Share,
     placed: Arc<[PlacedStructure]>,
     picture: Picture,
-    /// For each structure, by its index in the display list: true if the pass includes the structure. `None` includes
-    /// all structures.
+    /// True for each structure that is drawn, by index in the display list. `None` if all structures are drawn.
     chosen: Option<Box<[bool]>>,
 }
 
-/// A consumer of the binning results. The results arrive structure by structure, in the order of the display list.
+/// Receives the results of the binning, in the order of the display list.
 trait BinningSink {
     /// Receives a triangle that touches only one region.
     fn triangle_in(&mut self, region: RegionId, triangle: u32);
 
-    /// Receives a triangle, or a piece of a clipped triangle, and the set of regions that it touches.
-    ///
-    /// The entry belongs to the bins of these regions, or to the bins of all regions under [`RegionBinning::All`].
+    /// Receives a triangle, or a piece of a clipped triangle, and the regions that it touches. Under
+    /// [`RegionBinning::All`], the entry belongs to the bins of all regions.
     fn piece(&mut self, touched: RegionMask, entry: BinEntry);
 
-    /// Receives the index of a sphere in the display list and the set of regions that the sphere touches.
+    /// Receives the index of a sphere in the display list, and the regions that the sphere touches.
     fn sphere(&mut self, regions: RegionMask, number: u32);
 }
 
-/// Counts of the primitives that the binning found.
 #[derive(Debug)]
 struct Found {
-    /// Number of entries in each region's bin.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
-    /// Indices, in the display list, of the triangles and spheres that are in at least one bin. The indices are
-    /// recorded only if the pass has chosen structures.
+    /// Indices of the triangles and spheres in at least one bin. Recorded only if the pass draws chosen structures.
     touching: Option<[Vec<u32>; 2]>,
 }
 
-/// A binning consumer that counts primitives.
+/// Counts primitives without storing them.
 struct PrimitiveCounter {
-    /// For each region, the number of triangles that touch only that region.
+    /// For each region, the number of triangles that touch only this region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// For each region, the number of triangles that touch this region and also other regions, and the number of
-    /// spheres that touch this region.
+    /// For each region, the number of triangles that also touch another region, and the number of spheres.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,
@@ -136,8 +127,7 @@ impl BinningSink for PrimitiveCounter {
     }
 }
 
-/// A binning consumer that counts primitives. The consumer also records the indices of the primitives that are in at
-/// least one bin.
+/// Counts primitives, and records the indices of those in at least one bin.
 struct PrimitiveRecorder {
     counting: PrimitiveCounter,
     touching: [Vec<u32>; 2],
@@ -162,7 +152,6 @@ impl BinningSink for PrimitiveRecorder {
     }
 }
 
-/// A binning consumer that fills the bins.
 struct BinFiller {
     bins: Vec<Bin>,
     binning: RegionBinning,
@@ -188,11 +177,10 @@ impl BinningSink for BinFiller {
     }
 }
 
-/// A binning consumer that collects the triangles that touch each region. This consumer is used if every region's bin
-/// gets all triangles.
+/// Collects the triangles that touch each region, if every region receives all triangles.
 #[derive(Debug)]
 struct RegionTriangles {
-    /// Entries of each region. Each entry has its index in the region's bin.
+    /// Triangles of each region, with their indices in the region's bin.
     entries: Vec<Vec<(u32, BinEntry)>>,
     n_triangles: u32,
 }
@@ -212,7 +200,6 @@ impl BinningSink for RegionTriangles {
 }
 
 impl Walk {
-    /// Returns the chosen structures, or all structures if none were chosen.
     fn taken(&self) -> impl Iterator<Item = &PlacedStructure> {
         let is_chosen = |structure: usize| self.chosen.as_ref().is_none_or(|all| all.get(structure) == Some(&true));
         self.placed.iter().enumerate().filter(move |(structure, _)| is_chosen(*structure)).map(|(_, place)| place)
@@ -276,13 +263,13 @@ impl Walk {
 }
 
 impl Share {
-    /// Runs one TRANSFORM of all primitives in the share, for the eye with index `eye` of a view.
+    /// Executes TRANSFORM of the share, for the eye with index `eye` of a view.
     #[must_use]
     pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
         Arc::new(Pass::new(self.clone(), view, eye, picture, None))
     }
 
-    /// Runs one TRANSFORM of the primitives of the chosen structures. `chosen` has one element for each structure.
+    /// Executes TRANSFORM of the chosen structures. `chosen` has one entry for each structure.
     #[must_use]
     pub fn transform_chosen(&self, view: &FrameView, eye: usize, picture: Picture, chosen: &[bool]) -> Arc<Pass> {
         Arc::new(Pass::new(self.clone(), view, eye, picture, Some(chosen)))
@@ -303,8 +290,7 @@ impl Pass {
         Self { walk, found, stats, bins: OnceLock::new(), touching: OnceLock::new(), encoder: OnceLock::new() }
     }
 
-    /// Computes the content of the bins. The binning runs a second time, because the first run counted primitives
-    /// without storing them.
+    /// Fills the bins by a second binning, because the first binning only counted primitives.
     fn filled(&self) -> Vec<Bin> {
         let room = |counts: &PrimitiveCounts| Bin {
             triangles: Vec::with_capacity(counts.triangles as usize),
@@ -322,13 +308,13 @@ impl Pass {
         touching
     }
 
-    /// Returns the number of triangles and the number of spheres in a region's bin.
+    /// Returns the numbers of triangles and spheres in a region's bin.
     #[must_use]
     pub fn counts(&self, region: RegionId) -> PrimitiveCounts {
         self.found.counts[usize::from(region.0)]
     }
 
-    /// Returns the numbers of primitives on the screen. Each primitive counts once, in any number of regions.
+    /// Returns the numbers of primitives on the screen. A primitive in several regions counts once.
     #[must_use]
     pub const fn screen_counts(&self) -> PrimitiveCounts {
         self.found.on_screen
@@ -346,20 +332,20 @@ impl Pass {
         self.walk.share.counts()
     }
 
-    /// Returns the indices of the triangles and of the spheres that are in at least one bin, in the order of the
-    /// display list. Returns `None` for a pass over all structures.
+    /// Returns the indices of the triangles and of the spheres in at least one bin. Returns `None` for a pass over all
+    /// structures.
     #[must_use]
     pub const fn touching(&self) -> Option<&[Vec<u32>; 2]> {
         self.found.touching.as_ref()
     }
 
-    /// Returns the counts of primitives that were left out, clipped, or limited to the range of a number format.
+    /// Returns how many primitives were dropped, cut, or limited to the range of a number format.
     #[must_use]
     pub const fn stats(&self) -> SetupStats {
         self.stats
     }
 
-    /// Returns the picture parameters that the TRANSFORM used.
+    /// Returns the picture for which the primitives were transformed.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.walk.picture
@@ -393,14 +379,12 @@ impl Pass {
         &self.bins.get_or_init(|| self.filled())[usize::from(region.0)]
     }
 
-    /// Returns the triangles at the indices `places` of a region's bin.
     pub(crate) fn triangles_in(&self, region: RegionId, places: &Range<u32>) -> &[BinEntry] {
         &self.bin(region).triangles[places.start as usize..places.end as usize]
     }
 
-    /// Returns the triangles that touch a region, among the triangles at the indices `places` of the region's bin.
-    ///
-    /// Under [`RegionBinning::Touched`] all triangles of a bin touch the region.
+    /// Returns those triangles at the indices `places` of a bin that touch the region. Without [`RegionBinning::All`],
+    /// these are all triangles of the bin.
     pub(crate) fn triangles_touching(&self, region: RegionId, places: &Range<u32>) -> Cow<'_, [BinEntry]> {
         if self.walk.picture.binning == RegionBinning::Touched {
             return Cow::Borrowed(self.triangles_in(region, places));
@@ -410,13 +394,11 @@ impl Pass {
         all[from..to].iter().map(|entry| entry.1).collect()
     }
 
-    /// Returns the structures to draw in order, with their transforms.
     pub(crate) fn drawn(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform)> {
         self.walk.taken().filter_map(|place| Some((place, place.transform.as_ref()?)))
     }
 
-    /// Returns a list with true for each structure to draw, by its index in the display list. Returns `None` if all
-    /// structures are drawn.
+    /// Returns true for each structure that is drawn, or `None` if all structures are drawn.
     pub(crate) fn chosen(&self) -> Option<&[bool]> {
         self.walk.chosen.as_deref()
     }

@@ -1,59 +1,58 @@
-//! Parameters of drawing a view, such as its shading and binning modes.
+//! Settings for the drawing of a view, such as shading and binning.
 
 use pxpl5_geometry::Viewport;
 use pxpl5_geometry::kernel::{Kernel, KernelSurface, Schedule};
 use pxpl5_renderer::Layout;
 
-/// Shading mode: the processor that computes colours, and the points at which it computes them.
+/// Method of shading: where and when colours are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
     /// The graphics processor computes colours at the corners, and the renderers interpolate the colours.
     Gouraud,
-    /// Lighting is computed once for the vertices, before the run. The renderers interpolate the resulting colours.
-    /// Spheres have no corners, so they are lit as with [`Shading::Gouraud`].
+    /// Colours are computed once, before the run, and the renderers interpolate these colours. Spheres have no corners,
+    /// and are lit as with [`Shading::Gouraud`].
     Precomputed,
-    /// The renderers compute the colour of each pixel once, at the end of the frame.
+    /// The renderers compute the colour of each pixel, after all primitives are drawn.
     Phong,
 }
 
-/// Binning mode: the regions that receive a primitive's commands.
+/// Choice of the regions that receive a primitive's commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegionBinning {
     /// The regions that the primitive touches.
     Touched,
-    /// All regions (Slats prototype, TR94). An invisible triangle takes as much time as a visible triangle, but draws
-    /// nothing.
+    /// All regions (Slats prototype, TR94). An invisible triangle takes as much time as a visible triangle.
     ///
-    /// Spheres go only to the touched regions. Elsewhere, the values of a sphere's quadratic expression would exceed
-    /// the renderers' 48 bits. The prototype had no spheres.
+    /// Spheres go only to the regions that they touch. Elsewhere, a sphere's quadratic expression would exceed the
+    /// renderers' 48 bits. The prototype had no spheres.
     All,
 }
 
 impl RegionBinning {
-    /// Both binning modes with their names in experiment files.
+    /// Both choices with their names in experiment files.
     pub const ALL: [(&str, Self); 2] = [("all", Self::All), ("touched", Self::Touched)];
 }
 
 pxpl5_sim::parameters::named!(RegionBinning, "choice of regions", RegionBinning::ALL);
 
-/// Parameters of drawing a view.
+/// Settings for the drawing of a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {
-    /// Lines of the frame that the picture contains, and their division into regions.
+    /// Lines of the frame in the picture, and division into regions.
     pub viewport: Viewport,
-    /// Shading mode: colours computed at corners or at pixels.
+    /// Method of shading.
     pub shading: Shading,
-    /// Binning mode: regions that receive a primitive's commands.
+    /// Choice of the regions that receive a primitive's commands.
     pub binning: RegionBinning,
-    /// Layout of pixel memory, for which the commands are encoded.
+    /// Use of the bits of a pixel's memory.
     pub layout: Layout,
-    /// True if the run can compute pixels. Pixels require the words of commands.
+    /// True if the run can compute pixels, so that the words of commands are needed.
     pub pixels: bool,
 }
 
 impl Picture {
-    /// Returns the kernel for the picture's triangles. Returns `None` if TRANSFORM has no i860 code for this kind of
-    /// picture. The time of TRANSFORM then comes from the timing table.
+    /// Returns the kernel for the picture's triangles, or `None` if the picture has no kernel. The time of TRANSFORM
+    /// then comes from the timing table.
     pub(crate) fn kernel(&self, schedule: Schedule) -> Option<Kernel> {
         let surface = match self.shading {
             Shading::Gouraud => KernelSurface::Gouraud,

@@ -8,45 +8,45 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// One structure, placed for an eye: its matrices, light source and transformed vertices.
+/// A structure in the coordinates of one eye: matrices, light source and transformed vertices.
 #[derive(Debug)]
 pub struct PlacedStructure {
-    /// Map from the structure's coordinates to the picture. `None` if a matrix is not finite. Such a structure is not
+    /// Transform from the structure to the picture. `None` if a matrix is not finite, so that the structure is not
     /// drawn.
     pub transform: Option<Transform>,
     /// The light source in eye coordinates.
     pub light: Light,
-    /// The structure's primitives and its frame of reference.
+    /// The structure's primitives and settings.
     pub structure: DisplayStructure,
-    /// Three matrices. The first leads from the structure's frame of reference to the eye. The second leads from the
-    /// structure's own coordinates to this frame. The third leads from the eye to the picture.
+    /// Three matrices: from the room (or the head) to the eye, from the structure to the room, and from the eye to the
+    /// picture.
     pub(crate) matrices: [Mat4; 3],
-    /// Range of the list's vertices from the first vertex to the last vertex of the structure's triangles.
+    /// Range of the display list's vertices that contains all vertices of the structure.
     pub(crate) named: Range<usize>,
     pub(crate) vertices: OnceLock<Vertices>,
     pub(crate) touched: OnceLock<Touched>,
 }
 
-/// The transformed vertices of a structure, for the range [`PlacedStructure::named`] of the display list's vertices.
+/// The transformed vertices of a structure, from vertex `first` of the display list on.
 #[derive(Debug)]
 pub(crate) struct Vertices {
     pub(crate) first: usize,
     pub(crate) on_screen: Vec<ScreenVertex>,
     pub(crate) normals: OnceLock<Vec<SurfaceVertex>>,
     pub(crate) colours: OnceLock<Vec<SurfaceVertex>>,
-    /// Vertices with the unlit colours of the display list.
+    /// Vertices with the colours of the display list, without light.
     pub(crate) precomputed: OnceLock<Vec<SurfaceVertex>>,
 }
 
-/// Cache of a display list's recent views.
+/// A cache of the structures of a display list, placed for recent views.
 ///
-/// All graphics processors draw the same views, so they share the transformed vertices. The cache shortens the run time
-/// of the simulator, and does not change simulated time.
+/// All graphics processors draw the same views, so they share the transformed vertices. The cache does not change
+/// simulated time.
 #[derive(Debug)]
 pub struct RecentViews {
     views: Mutex<VecDeque<(ViewKey, Arc<[PlacedStructure]>)>>,
     kept: usize,
-    /// For each structure, the range of vertices that it uses. The range is the same in all views.
+    /// Range of vertices of each structure, which is the same in all views.
     named: OnceLock<Vec<Range<usize>>>,
 }
 
@@ -63,11 +63,10 @@ impl Clone for RecentViews {
     }
 }
 
-/// Capacity of the cache: two eyes of two views. A slow processor may still work on the previous frame while another
-/// processor works on the newest frame.
+/// Capacity of the cache: the views of two eyes in two frames. A slow processor may still draw the previous frame.
 const RECENT: usize = 4;
 
-/// Cache key of a view. The key contains all data that affect the placement of structures.
+/// The data that determine where structures are placed.
 #[derive(Debug, PartialEq)]
 pub(crate) struct ViewKey {
     pub(crate) eye: EyeView,
@@ -76,18 +75,17 @@ pub(crate) struct ViewKey {
 }
 
 impl RecentViews {
-    /// Creates an empty cache for `views` views. A value of 0 counts as 1.
+    /// Creates an empty cache for `views` views, at least one.
     #[must_use]
     pub fn keeping(views: usize) -> Self {
         Self { views: Mutex::default(), kept: views.max(1), named: OnceLock::new() }
     }
 
-    /// Returns the range of vertices that each structure uses. `find` computes the ranges at the first call.
     pub(crate) fn named(&self, find: impl FnOnce() -> Vec<Range<usize>>) -> &[Range<usize>] {
         self.named.get_or_init(find)
     }
 
-    /// Returns the structures of a view from the cache. If the view is not in the cache, `place` places them.
+    /// Returns the structures of a view from the cache. If the view is not in the cache, `place` computes them.
     pub(crate) fn cached_or_placed(
         &self,
         key: ViewKey,

@@ -1,5 +1,4 @@
-//! Placement of a display list's structures for one eye. Each vertex is transformed once for all triangles that share
-//! the vertex.
+//! Placement of structures: computes matrices and light for one eye, and transforms each vertex once.
 
 use crate::list::DisplayList;
 use crate::picture::Shading;
@@ -11,7 +10,6 @@ use pxpl5_geometry::{Light, SurfaceVertex, Touched, Transform, ViewTransform, Vi
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// The model matrix of a structure without edits.
 const UNMOVED: Mat4 = Mat4::IDENTITY;
 
 /// Places all structures of a display list for one eye of a view. `eye` is 0 for a single or left eye, 1 for a right
@@ -19,8 +17,8 @@ const UNMOVED: Mat4 = Mat4::IDENTITY;
 ///
 /// # Panics
 ///
-/// Panics if the view has no eye. Also panics if the list's structures have changed since its first placement, and the
-/// list's cache [`recent`](DisplayList::recent) was not emptied.
+/// Panics if the view has no eye. Also panics if the structures have changed since they were first placed, and the
+/// cache [`recent`](DisplayList::recent) was not emptied.
 #[must_use]
 pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);
@@ -30,8 +28,7 @@ pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Vie
     structures.map(|(i, (s, named))| place(list, s, named, model(view, i), eye, viewport)).collect()
 }
 
-/// Returns a range of vertices for each structure. The range extends from the first vertex to the last vertex of the
-/// structure's triangles.
+/// Returns for each structure the range from the first to the last of its vertices.
 fn named(list: &DisplayList) -> Vec<Range<usize>> {
     let of = |structure: &DisplayStructure| {
         let all = list.triangles[structure.triangles.clone()].iter().flatten();
@@ -41,7 +38,7 @@ fn named(list: &DisplayList) -> Vec<Range<usize>> {
     list.structures.iter().map(of).collect()
 }
 
-/// Places all structures like [`place_all`], or returns them from the list's cache.
+/// Places structures like [`place_all`], but takes known results from the list's cache.
 pub(crate) fn place_cached(
     list: &DisplayList,
     view: &FrameView,
@@ -60,7 +57,7 @@ fn model(view: &FrameView, structure: usize) -> Mat4 {
     view.edits.iter().rev().find(|edit| edit.structure as usize == structure).map_or(UNMOVED, |edit| edit.model)
 }
 
-/// Places one structure. If a matrix is not finite, the structure gets no transform and is not drawn.
+/// Places one structure. If a matrix is not finite, the structure has no transform and is not drawn.
 fn place(
     list: &DisplayList,
     structure: &DisplayStructure,
@@ -88,21 +85,19 @@ fn place(
     }
 }
 
-/// Rotates a direction into eye coordinates. The matrix must consist of a rotation and a translation.
+/// Rotates a direction. The matrix must consist of a rotation and a translation.
 fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
     let [x, y, z, _] = matrix.to_cols_array_2d();
     std::array::from_fn(|i| x[i] * v.x + y[i] * v.y + z[i] * v.z)
 }
 
 impl PlacedStructure {
-    /// Returns the light source for the colours of triangle corners. Returns [`Light::NONE`] if the colours are
-    /// precomputed.
+    /// Returns the light source for the corners of triangles: [`Light::NONE`] if the colours are precomputed.
     #[must_use]
     pub fn light_of_corners(&self, shading: Shading) -> &Light {
         if shading == Shading::Precomputed { &Light::NONE } else { &self.light }
     }
 
-    /// Returns the structure's vertices on the screen, transformed at the first call.
     pub(crate) fn vertices(&self, list: &DisplayList, transform: &Transform) -> &Vertices {
         self.vertices.get_or_init(|| {
             let positions = list.positions.get(self.named.clone()).unwrap_or_default();
@@ -117,7 +112,6 @@ impl PlacedStructure {
         })
     }
 
-    /// Returns the regions that the structure's triangles touch, computed at the first call.
     pub(crate) fn touched(&self, list: &DisplayList, transform: &Transform) -> &Touched {
         self.touched.get_or_init(|| {
             let vertices = self.vertices(list, transform);
@@ -132,7 +126,6 @@ impl Vertices {
         self.first..self.first + self.on_screen.len()
     }
 
-    /// Returns all vertices with their normals.
     pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SurfaceVertex] {
         let find =
             || transform.vertex_normals(&self.on_screen, &list.positions[self.named()], &list.normals[self.named()]);

@@ -1,4 +1,4 @@
-//! The SEND step of a host that does not wait for the pipeline.
+//! SEND for a host that sends every tracker report at once.
 
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage, Ticket};
 use pxpl5_sim::Time;
@@ -6,16 +6,16 @@ use pxpl5_wire::{Body, NodeId, ViewNumber, Word};
 
 /// Sends the tracker's reports to one board, as often as tracker, link and ring permit (TR94).
 ///
-/// A message is sent for each report, as soon as the report has arrived and the previous message has been accepted. If
-/// several reports have arrived in the meantime, only the newest report is sent.
+/// A message is sent for each report, when the previous message has been accepted. If several reports have arrived in
+/// the meantime, only the newest report is sent.
 ///
-/// The first message is sent at `first`. If `first` is `None`, no message is sent. `next_report` returns the time at
-/// which the first report after a given time arrives, or `None` if there are no more reports. `message` makes the words
-/// of a message from its number and a time. The words use only reports that the host has received by that time.
+/// The first message is sent at `first`, if there is such a time. `next_report` returns the arrival time of the first
+/// report after a time, or `None` if no more reports follow. `message` makes the words of a message from its number and
+/// a time. The words use only reports that the host has received by that time.
 ///
 /// # Errors
 ///
-/// The function never returns an error. Its return type is the return type of all programs.
+/// The function never returns an error. The return type is the same for all programs.
 pub async fn send_as_tracked(
     gp: Gp,
     receiver: NodeId,
@@ -42,7 +42,7 @@ pub async fn send_as_tracked(
     Ok(())
 }
 
-/// Waits for the duration of the transfer over the host's link, then sends the message.
+/// Sends a message after its transfer over the host's link.
 async fn send(gp: &Gp, receiver: NodeId, timing: HostTiming, words: Vec<Word>) -> Ticket {
     let length = words.len() as u32;
     gp.spend(timing.link_span(length)).await;

@@ -3,24 +3,24 @@
 use pxpl5_geometry::Culling;
 use std::ops::Range;
 
-/// Frame of reference of a structure's coordinates.
+/// The coordinates in which a structure is placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModelFrame {
     /// The room, in which the viewer moves.
     World,
-    /// The viewer's head. The structure moves with the head.
+    /// The viewer's head, so that the structure moves with the head.
     Head,
 }
 
-/// Consecutive primitives with a common model matrix.
+/// Successive primitives that move together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayStructure {
     /// Range of the structure's triangles in the display list.
     pub triangles: Range<usize>,
     /// Range of the structure's spheres in the display list.
     pub spheres: Range<usize>,
-    /// Frame of reference: the room or the viewer's head.
+    /// The coordinates in which the structure is placed.
     pub frame: ModelFrame,
-    /// Culling mode of the structure's triangles. PHIGS+ sets this mode for each structure.
+    /// Choice of the triangles that are not drawn because of their winding. PHIGS+ has this choice for each structure.
     pub culling: Culling,
 }

@@ -1,4 +1,4 @@
-//! The host's message for a frame: matrices of the eyes and edits of structures, encoded as words for the ring.
+//! The host's message for a frame, with the matrices of the eyes and the new positions of structures, as words.
 
 use glam::{DMat4, Mat4};
 use pxpl5_sim::parameters::SettingError;
@@ -15,23 +15,23 @@ pub struct EyeView {
     pub projection: Mat4,
 }
 
-/// A new model matrix for one structure.
+/// A new matrix for one structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelEdit {
     /// Index of the structure in the display list.
     pub structure: u32,
-    /// Matrix from the structure's coordinates to its frame's coordinates.
+    /// Matrix from the structure's coordinates to the coordinates of the room or the head.
     pub model: Mat4,
 }
 
-/// One view: the matrices of the eyes, and the edits of structures.
+/// One view: the matrices of the eyes, and the structures that have moved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameView {
-    /// Number of the view. Each pipeline numbers its own views.
+    /// Number of the view, as counted by its pipeline.
     pub number: ViewNumber,
     /// Matrices of a single eye, or of the left and the right eye.
     pub eyes: Vec<EyeView>,
-    /// Edits of structures since the previous frame.
+    /// Structures that have moved since the previous frame.
     pub edits: Vec<ModelEdit>,
 }
 
@@ -39,7 +39,7 @@ const EYE_WORDS: usize = 48;
 const EDIT_WORDS: usize = 17;
 const HEADER_WORDS: usize = 4;
 
-/// Largest number of edits that fit in one message together with the transforms of two eyes.
+/// Largest number of edits that fit into one message with the matrices of two eyes.
 pub const MAX_EDITS: usize = (MAX_MESSAGE_WORDS as usize - 8 - HEADER_WORDS - 2 * EYE_WORDS) / EDIT_WORDS;
 
 impl FrameView {
@@ -86,7 +86,6 @@ impl FrameView {
     }
 }
 
-/// Returns the header word at index `place`. Returns 0 if there is no word at this index.
 fn header_word(words: &[Word], place: usize) -> usize {
     words.get(place).map_or(0, |word| *word as usize)
 }
@@ -104,8 +103,7 @@ fn eye(words: &[Word]) -> EyeView {
     EyeView { world_to_eye, head_to_eye, projection }
 }
 
-/// Returns `left * right`. The product is computed in double precision and rounded once, so that it is the same on
-/// every host.
+/// Returns `left * right`, computed in double precision and rounded once, so that every host gets the same result.
 pub(crate) fn product(left: &Mat4, right: &Mat4) -> Mat4 {
     let left: DMat4 = left.as_dmat4();
     let right: DMat4 = right.as_dmat4();

@@ -1,10 +1,9 @@
-//! CPU work of searching for the primitives in *windows*, which are rectangles of the screen without bins. A window is
-//! a strip of lines or a block.
+//! CPU work of a search for the primitives in *windows*, which are rectangles of the screen such as strips and blocks.
 //!
-//! [`Pass::keep`] stores the result of a TRANSFORM in a part of memory: commands, and the bounding box of each command.
-//! [`WindowSearchWork`] finds the primitives in each requested window, and lists the messages that draw the window. The
-//! code is kernels/windows.s. This project made the rules for the code (kernels/windows_rules.md). In the timing table,
-//! each primitive found in a window takes `bin_entry_ns`.
+//! [`Pass::keep`] stores the commands of TRANSFORM with their bounding boxes, without bins. [`WindowSearchWork`] finds
+//! the primitives in each window, and lists the messages that draw the window. The code is kernels/windows.s. No paper
+//! describes the code; kernels/windows_rules.md states its rules. In the timing table, each primitive that is found in
+//! a window takes `bin_entry_ns`.
 
 use crate::begin::PassStartWork;
 use crate::bin_handoff::{
@@ -29,16 +28,14 @@ use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionGrid, RegionId, Word};
 use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
-/// Size of a bounding box, in bytes.
 const BOX_BYTES: u32 = 16;
-/// Size of a line of the data cache, in bytes.
 const LINE: u32 = 32;
 
-/// Number of words of the commands before a window's primitives: context selection and clear.
+/// Number of words of the commands before a window's primitives.
 const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.words();
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
-/// One of several equal parts of the memory after a display list. The part holds the result of one pass.
+/// One of several equal parts of a board's memory after the display list, for the result of TRANSFORM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryPart {
     number: u8,
@@ -49,8 +46,7 @@ impl MemoryPart {
     /// The whole memory after the display list.
     pub const WHOLE: Self = Self { number: 0, of: 1 };
 
-    /// Returns part `number` of `of` parts. `number` is taken modulo `of`. If `of` is outside the range from 1 to 16,
-    /// the nearest limit is used.
+    /// Returns part `number` (modulo `of`) of `of` equal parts. `of` is limited to 1 to 16.
     #[must_use]
     pub const fn of(number: usize, of: u8) -> Self {
         let of = if of == 0 { 1 } else { of };
@@ -58,7 +54,6 @@ impl MemoryPart {
         Self { number: (number % of as usize) as u8, of }
     }
 
-    /// Returns the address range of the part, which consists of whole lines of the data cache.
     fn place(self, processor: &Processor, share: &Share) -> Range<u32> {
         let begin = share.end_of_list().next_multiple_of(LINE);
         let bytes = entries(processor).saturating_sub(begin) / u32::from(self.of) / LINE * LINE;
@@ -66,7 +61,7 @@ impl MemoryPart {
         begin..begin + bytes
     }
 
-    /// Returns the start address of the part. Returns an error if the part has fewer than `needed_bytes` bytes.
+    /// Returns the start address of the part, or an error if the part has fewer than `needed_bytes` bytes.
     pub(crate) fn checked(
         self,
         processor: &Processor,
@@ -87,13 +82,11 @@ impl MemoryPart {
     }
 }
 
-/// Returns the address of the lists of primitives that a search finds in its windows (rectangles of the screen).
 fn entries(processor: &Processor) -> u32 {
     processor.memory_bytes().saturating_sub(ENTRY_BYTES)
 }
 
-/// Consecutive commands of one kind: the address of the first command, the number of commands, and the address of their
-/// bounding boxes.
+/// Successive commands of one kind: address and number of the commands, and address of their bounding boxes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct KeptCommands {
     first: u32,
@@ -101,7 +94,7 @@ struct KeptCommands {
     boxes: u32,
 }
 
-/// Commands of triangles and of spheres that a pass has stored in a part of memory.
+/// The commands of triangles and of spheres in a part of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Kept([KeptCommands; 2]);
 
@@ -111,8 +104,7 @@ impl Kept {
         processor.write(part.note(), words.as_flattened())
     }
 
-    /// Reads the records of the commands that a pass has stored in a part of memory. Returns `None` if no pass was
-    /// stored there.
+    /// Reads which commands are stored in a part of memory, or returns `None` if the part is empty.
     fn noted(processor: &Processor, part: MemoryPart) -> Result<Option<Self>, ProcessorFault> {
         let words = processor.read(part.note(), 6)?;
         let mut kinds = words.as_chunks::<3>().0.iter().map(|[first, count, boxes]| KeptCommands {
@@ -126,8 +118,8 @@ impl Kept {
 }
 
 impl Pass {
-    /// Prepares the structures and runs the kernels of a pass without bins. Stores the command and bounding box of
-    /// every primitive in a part of memory.
+    /// Executes TRANSFORM without bins, and stores the command and the bounding box of every primitive in a part of
+    /// memory.
     ///
     /// Returns `None` if no kernel can draw this kind of picture.
     ///
@@ -175,7 +167,7 @@ impl Pass {
         Ok(of_triangles + of_spheres)
     }
 
-    /// Returns the addresses at which the pass stores its bounding boxes (`table`) and commands (`command`).
+    /// Returns the addresses for bounding boxes (`table`) and commands (`command`).
     fn room(&self, processor: &Processor, kernel: Kernel, part: MemoryPart) -> Result<Next, ProcessorFault> {
         let given = self.transformed();
         let triangles = self.most_commands(given);
@@ -187,19 +179,18 @@ impl Pass {
     }
 }
 
-/// Work of searching a stored pass (the result of a TRANSFORM in a part of memory). The search finds the primitives in
-/// each window, which is a rectangle of the screen.
+/// Work of a search for the primitives in windows, which are rectangles of the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowSearchWork<'a> {
-    /// Part of memory that holds the result of the TRANSFORM to search.
+    /// Part of memory with the stored commands and bounding boxes.
     pub part: MemoryPart,
-    /// Frame lines and regions of the picture for which [`Pass::keep`] stored the pass.
+    /// Picture for which [`Pass::keep`] stored the commands.
     pub viewport: Viewport,
     /// Division of the picture into windows.
     pub grid: RegionGrid,
-    /// Windows to search, by their indices in the grid.
+    /// Windows to search, by index in the grid.
     pub windows: &'a [RegionId],
-    /// Numbers of primitives that touch each window.
+    /// Numbers of primitives in each window.
     pub counts: &'a [PrimitiveCounts],
 }
 
@@ -213,7 +204,7 @@ impl Work for WindowSearchWork<'_> {
     }
 }
 
-/// Result of a search: its time, and the number of messages that the search has listed for each window.
+/// Time of a search, and the number of messages for each window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SearchOutput {
     /// Simulated time of all steps together.
@@ -225,7 +216,7 @@ pub struct SearchOutput {
 }
 
 impl SearchOutput {
-    /// Reads the messages that the search has listed, in the order of the windows.
+    /// Returns the messages that the search has listed, in the order of the windows.
     ///
     /// # Errors
     ///
@@ -240,7 +231,8 @@ impl WindowSearchWork<'_> {
         self.counts.iter().map(|counts| counts.total()).sum()
     }
 
-    /// Runs the code on a board that holds a pass stored by [`Pass::keep`]. Returns `None` if no pass is stored.
+    /// Executes the code on a board with commands that [`Pass::keep`] stored. Returns `None` if there are no stored
+    /// commands.
     ///
     /// # Errors
     ///
@@ -270,8 +262,7 @@ impl WindowSearchWork<'_> {
         Ok(Some(output))
     }
 
-    /// Checks that the found primitives and the messages fit into memory. They use the memory that
-    /// [`crate::BinHandoffWork`] uses for a region's messages.
+    /// Checks that the found primitives and the messages fit into the memory that is reserved for a region's messages.
     fn check_room(&self, processor: &Processor) -> Result<(), ProcessorFault> {
         let entries = self.entries() + 2 * self.windows.len() as u32;
         let fits =
@@ -298,8 +289,8 @@ impl WindowSearchWork<'_> {
         (0..self.viewport.grid().regions() as u16).map(RegionId).collect()
     }
 
-    /// Searches the bounding boxes of all stored primitives for primitives in the windows. The length of each window's
-    /// list is known in advance, so each list begins at the end of the previous list.
+    /// Searches the bounding boxes of all stored primitives. The number of primitives in each window is known, so the
+    /// lists of the windows follow each other without gaps.
     fn search(
         &self,
         processor: &mut Processor,
@@ -335,14 +326,12 @@ impl WindowSearchWork<'_> {
     }
 }
 
-/// Returns two registers with their values. The first value is the frame line of row 0. The second value is the
-/// distance between rows, in lines, minus one.
+/// Returns two registers: the frame line of row 0, and the distance between rows in lines, minus one.
 fn line_registers(viewport: &Viewport, first: usize) -> [(usize, Word); 2] {
     [(first, viewport.first_line()), (first + 1, viewport.line_step() - 1)]
 }
 
-/// Runs the code that computes the limits of the windows. Each window is a cell of `grid`. Cells at the edges of the
-/// picture are cut off.
+/// Executes the code that computes the limits of the windows, which are cut off at the edges of the picture.
 fn make_windows(
     processor: &mut Processor,
     grid: RegionGrid,
@@ -364,8 +353,7 @@ fn make_windows(
     processor.call(&PROGRAM, "windows", &registers, BUDGET + BUDGET_OF_ENTRY * windows.len() as u64)
 }
 
-/// Runs the kernel that lists the messages of one window. In memory, the list of messages follows the lists of earlier
-/// windows.
+/// Executes the code that lists the messages of one window. In memory, the list follows the lists of earlier windows.
 fn hand_over(
     processor: &mut Processor,
     window: u32,
@@ -387,8 +375,8 @@ pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
 }
 
-/// The program that searches windows and lists their messages. Every message has room for the copy command, as in the
-/// messages that the simulator makes without code.
+/// The code that searches windows and lists messages. Every message has room for the copy command, like the messages
+/// that the simulator makes without code.
 static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);
     let sources = [("windows", include_str!("../kernels/windows.s")), ("token", token.as_str())];

@@ -1,13 +1,13 @@
-//! TRANSFORM and RENDER of Slats on one graphics processor, computed for several machine configurations together.
+//! TRANSFORM and RENDER of Slats on one graphics processor. Each formula is computed for several machines together.
 
 use super::model::{MAX_CHANNELS, PerTriangle, REGIONS, SlatsModel};
 use super::renderer::{Array, Commands, Costs, Fifos, Times};
 use slats::CLUMP;
 
-/// Computes TRANSFORM and RENDER of all clumps (groups of triangles) of a field.
+/// Computes TRANSFORM and RENDER of a field, which is divided into clumps (groups) of triangles.
 ///
-/// Returns two times of the last clump: when the renderers had accepted the clump, and when the graphics processor had
-/// handed the clump over for sending.
+/// Returns two times of the last clump: when the renderers had accepted its messages, and when the graphics processor
+/// had started to send them.
 #[inline(always)]
 pub(super) fn render<const N: usize>(
     models: &[SlatsModel; N],
@@ -36,7 +36,7 @@ pub(super) fn render<const N: usize>(
     [chain.accepted, chain.cpu]
 }
 
-/// Costs of messages and commands that do not depend on the number of triangles.
+/// Costs that do not depend on the number of triangles.
 struct MessageCosts<const N: usize> {
     source_channels: usize,
     overhead: Times<N>,
@@ -64,28 +64,27 @@ impl<const N: usize> MessageCosts<N> {
         }
     }
 
-    /// Returns the message that sends a region's part of a clump (group of triangles).
+    /// Returns the message with one region's part of a clump (group of triangles).
     #[inline(always)]
     fn commands(&self, head: Costs<N>, triangles: f64, each: PerTriangle) -> Commands<N> {
         Commands::new(&self.fifos, &head, triangles * each.entries / 10.0, &self.command)
     }
 }
 
-/// A clump (group of triangles), and the message that a renderer receives for each region. The message selects the
-/// region and draws the triangles. In the field's first clump, the message also clears the region.
+/// A clump (group of triangles), and the message with its triangles for one region.
+///
+/// The message selects the region and draws the triangles. In the first clump of a field, the message also clears the
+/// region.
 struct Clump<const N: usize> {
     transform: Times<N>,
     message: Commands<N>,
-    /// Time until a renderer's FIFO has [room](Commands::room_behind) for a message that follows a message of the
-    /// previous clump (group of triangles).
+    /// Time until a renderer's FIFO has [room](Commands::room_behind) after a message of the previous clump.
     behind_last: Times<N>,
-    /// Time until a renderer's FIFO has room for a message that follows another message of the same clump (group of
-    /// triangles).
+    /// Time until a renderer's FIFO has room after another message of this clump.
     behind_itself: Times<N>,
 }
 
 impl<const N: usize> Clump<N> {
-    /// Returns the first clump (group of triangles) of a field.
     #[inline(always)]
     fn first(models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select + sending.clear, triangles, each);
@@ -94,7 +93,6 @@ impl<const N: usize> Clump<N> {
         Self { transform, message, behind_last: Times::all(f64::NEG_INFINITY), behind_itself }
     }
 
-    /// Returns the clump (group) of `triangles` triangles that is sent after this clump.
     #[inline(always)]
     fn next(&self, models: &[SlatsModel; N], sending: &MessageCosts<N>, triangles: f64, each: PerTriangle) -> Self {
         let message = sending.commands(sending.select, triangles, each);
@@ -104,13 +102,13 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// Times up to which the sending of clumps (groups of triangles) has been computed.
+/// Progress of the clumps (groups of triangles) that have been sent so far.
 struct Chain<const N: usize> {
     /// Time at which the graphics processor has finished its latest work.
     cpu: Times<N>,
-    /// Time at which the last message of the latest clump (group of triangles) was accepted by the FIFO of a renderer.
+    /// Time at which the renderers had accepted all messages of the latest clump.
     accepted: Times<N>,
-    /// Time at which every renderer has accepted its first message of the latest clump (group of triangles).
+    /// Time at which every renderer had accepted its first message of the latest clump.
     draining: Times<N>,
 }
 
@@ -119,8 +117,7 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// Sends the messages of one clump (group of triangles). The graphics processor's port sends on several channels at
-    /// a time.
+    /// Sends the messages of one clump, on several channels at a time.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &MessageCosts<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);
@@ -148,7 +145,7 @@ impl<const N: usize> Chain<N> {
     }
 }
 
-/// Times from which the channels of a port are free: the earliest time, then the other times in ascending order.
+/// Times at which the channels of a port become free, in ascending order.
 struct Channels<const N: usize> {
     soonest: Times<N>,
     others: [Times<N>; MAX_CHANNELS - 1],
@@ -161,8 +158,7 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Replaces the first time by `free`, the time from which this channel is free again, and restores the ascending
-    /// order of the times.
+    /// Makes the channel with the earliest time busy until `free`, and restores the ascending order.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {
         let mut here = free;

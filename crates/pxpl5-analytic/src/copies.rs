@@ -2,8 +2,7 @@
 
 use super::renderer::{Array, Times};
 
-/// Computes an array with one value (lane) for each machine configuration. The compiler turns the loop into vector
-/// instructions.
+/// Computes an array with one value for each machine. The compiler turns the loop into vector instructions.
 macro_rules! lanes {
     ($i:ident => $lane:expr) => {{
         let mut all = [Default::default(); N];
@@ -14,13 +13,11 @@ macro_rules! lanes {
     }};
 }
 
-/// Largest number of renderers in the analytic model. A field has 20 regions, so more than 20 renderers would not be
-/// faster.
+/// Largest number of renderers in the model. With 20 regions per field, more than 20 renderers are not faster.
 pub(super) const MAX_RENDERERS: usize = 20;
 
-/// Copies that a renderer has to make, with two bits for each copy. The first copy is in the lowest bits.
-///
-/// [`Queue::ONE`] is set for each copy. `Queue::RIGHT` is set for a copy to the right frame buffer.
+/// The copies of a renderer, with two bits for each copy: [`Queue::ONE`] is always set, and `Queue::RIGHT` is set for
+/// the right frame buffer. The first copy is in the lowest bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Queue(u64);
 
@@ -33,17 +30,15 @@ impl Queue {
         (u64::BITS - self.0.leading_zeros()).div_ceil(Self::BITS)
     }
 
-    /// Appends a copy to the right or left frame buffer.
     pub(super) const fn push(&mut self, to_right: bool) {
         let board = if to_right { Self::RIGHT } else { 0 };
         self.0 |= (Self::ONE | board) << (Self::BITS * self.len());
     }
 
-    /// Returns the same copies in an order that alternates between left and right, as long as copies of both sides
-    /// remain.
+    /// Returns the same copies in an order that alternates between left and right.
     ///
-    /// If `begins_right` is true and a right copy exists, the first copy goes to the right frame buffer. Otherwise the
-    /// first copy goes to the same frame buffer as the first copy of the original order.
+    /// If `begins_right` is true, the order begins with a right copy if there is one. Otherwise the first copy stays
+    /// the first.
     pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];
@@ -72,19 +67,17 @@ pub struct CopyTimes {
     pub end_ns: f64,
 }
 
-/// The two frame-buffer ports in several machine configurations: the times from which the ports are free, and the times
-/// of the copies so far.
+/// The ports of the two frame buffers, for several machines: when the ports become free, and the times of the copies.
 struct Ports<const N: usize> {
     free: [Times<N>; 2],
     begins: Times<N>,
     ends: Times<N>,
 }
 
-/// Makes all copies of the renderers. Each copy takes `region` nanoseconds.
+/// Copies the regions of all renderers to the frame buffers. Each copy takes `region` nanoseconds.
 ///
-/// The renderer that is ready first copies first. If several renderers are ready at the same time, the lowest index
-/// comes first. The free time of a renderer becomes the end of its last copy. As long as the same renderer is first in
-/// all configurations, one computation serves all configurations.
+/// The renderer that is free first copies first, and for equal times the renderer with the lower index. While this
+/// order is equal on all machines, the machines are computed together.
 #[inline(always)]
 pub(super) fn make<const N: usize>(
     arrays: &mut [Array<N>],
@@ -104,9 +97,8 @@ pub(super) fn make<const N: usize>(
     std::array::from_fn(|i| CopyTimes { begin_ns: ports.begins.0[i], end_ns: ports.ends.0[i] })
 }
 
-/// Returns the index of the renderer that makes the next copy in all configurations.
-///
-/// Returns `None` if the next renderer differs between configurations, or if all copies are done.
+/// Returns the index of the renderer that makes the next copy on all machines. Returns `None` if this renderer differs
+/// between machines, or if all copies are done.
 #[inline(always)]
 fn first_of_all<const N: usize>(arrays: &[Array<N>], left: &[Queue; MAX_RENDERERS]) -> Option<usize> {
     let waiting = || (0..arrays.len()).filter(|r| left[*r].0 != 0);
@@ -132,8 +124,7 @@ impl<const N: usize> Ports<N> {
         Self { free: [Times::all(f64::MIN); 2], begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
     }
 
-    /// Makes a copy to one of the two frame-buffer ports. The copy starts at `ready`, or when the port is free. Returns
-    /// the end time of the copy.
+    /// Makes a copy that starts at `ready` or when the port is free. Returns the end of the copy.
     #[inline(always)]
     fn copy(&mut self, ready: Times<N>, to_right: bool, region: Times<N>) -> Times<N> {
         let begin = self.free[usize::from(to_right)].later(ready);
@@ -143,14 +134,14 @@ impl<const N: usize> Ports<N> {
         end
     }
 
-    /// Records the times of a copy. A copy to the other port can begin before a copy that was recorded earlier.
+    /// Records the times of a copy, which may be earlier than the copies so far.
     #[inline(always)]
     fn note(&mut self, begin: Times<N>, end: Times<N>) {
         self.begins = self.begins.sooner(begin);
         self.ends = self.ends.later(end);
     }
 
-    /// Makes the remaining copies of the renderers. The order of the renderers can differ between configurations.
+    /// Makes the remaining copies, in an order that may differ between machines.
     #[inline(always)]
     fn copy_apart(&mut self, arrays: &mut [Array<N>], queues: &[Queue; MAX_RENDERERS], region: Times<N>) {
         let never = [f64::INFINITY; N];
@@ -181,8 +172,8 @@ impl<const N: usize> Ports<N> {
         }
     }
 
-    /// Makes one copy in each configuration: to the right port where the mask is set, otherwise to the left port.
-    /// Returns the end times of the copies.
+    /// Makes one copy on each machine, to the right frame buffer if the mask is set, otherwise to the left. Returns the
+    /// end times.
     #[inline(always)]
     fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
         let [left, right] = self.free;
@@ -194,7 +185,7 @@ impl<const N: usize> Ports<N> {
     }
 }
 
-/// A condition for each configuration: all bits are set if the condition is true, and no bit is set otherwise.
+/// A condition for each machine: all bits are set if the condition is true, and no bit otherwise.
 type Mask<const N: usize> = [u64; N];
 
 #[inline(always)]

@@ -55,8 +55,8 @@ pub fn add_closed_forms(registry: &mut Registry) {
     registry.closed_form("slats", slats::CLOSED_FORM);
 }
 
-/// Checks an experiment and returns its pipeline. Returns an error if the pipeline is not `P`, or if the head has a
-/// tracker.
+/// Returns the experiment's pipeline. Returns an error if the pipeline is not a `P`, or if a tracker reports the head's
+/// pose.
 fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, ExperimentError> {
     experiment.config().check()?;
     if experiment.tracked_head().is_some() {
@@ -69,16 +69,14 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
 
 /// Smallest and largest number of fields that an estimate computes.
 ///
-/// A run of this length reaches a steady state and shows some views of a moving head.
+/// In this time, a run reaches a steady state and shows several views of a moving head.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
-/// Estimates how many primitives the scene can have so that all pictures are in time. The scene is decimated to this
-/// number.
+/// Estimates the largest number of primitives for which all pictures are in time.
 ///
-/// The estimate uses no tracker; the head follows the scene's own motion.
-///
-/// The search decimates the last scene that was too heavy, instead of the whole scene. The result can differ slightly
-/// from a direct decimation of the whole scene. The final number is therefore tested with a direct decimation.
+/// The head follows the scene's own motion without a tracker. The search decimates the last scene that was too heavy,
+/// so the result can differ slightly from a decimation of the whole scene. The last step therefore tests the final
+/// number with a decimation of the whole scene.
 fn triangles_in_time(
     experiment: &Experiment,
     summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
@@ -123,7 +121,6 @@ fn no_form(what: &str) -> SettingError {
     SettingError::combination(format_args!("the analytic level has no closed form of {what}"))
 }
 
-/// Returns the video timing of the first display, which must be an NTSC display.
 fn video_of(config: &MachineConfig) -> Result<Video, SettingError> {
     let display: Option<&FrameBufferConfig> =
         config.displays.first().and_then(|display| (display.as_ref() as &dyn Any).downcast_ref());

@@ -1,4 +1,4 @@
-//! The work that a scene causes in the machine, as numbers.
+//! The work that a scene causes, as numbers of triangles, spheres and bin entries.
 
 use pphigs::{Picture, PrimitiveCounts, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_geometry::Viewport;
@@ -8,7 +8,7 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{RegionId, ViewNumber};
 use std::sync::Arc;
 
-/// The primitives and bins of one eye's picture.
+/// The work for one eye's picture: primitives and bins.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Load {
     /// Number of triangles, summed over all graphics processors.
@@ -19,9 +19,9 @@ pub struct Load {
     pub clipped: f64,
     /// Number of structures in the display list.
     pub structures: f64,
-    /// Number of structures of the display list that contain spheres.
+    /// Number of structures that contain spheres.
     pub sphere_views: f64,
-    /// For each region, the number of triangles and the number of spheres in its bin.
+    /// Numbers of triangles and of spheres in the bin of each region.
     pub bins: Vec<[f64; 2]>,
 }
 
@@ -39,15 +39,12 @@ impl Load {
         self.bins.iter().map(|[triangles, spheres]| triangles + spheres).sum()
     }
 
-    /// Returns the number of triangles and spheres in a region's bin.
     pub(crate) fn primitives_in(&self, region: usize) -> f64 {
         let [triangles, spheres] = self.bins[region];
         triangles + spheres
     }
 
-    /// Returns the loads of an experiment's scene: two loads, one for each eye, at each time in `times` (in ps).
-    ///
-    /// The head moves as the scene defines.
+    /// Returns the work for both eyes at each time in `times` (in picoseconds). The head moves as the scene defines.
     ///
     /// # Errors
     ///
@@ -91,7 +88,6 @@ impl Load {
     }
 }
 
-/// Returns the number of triangles and the number of spheres in a bin.
 fn bin(counts: PrimitiveCounts) -> [f64; 2] {
     [f64::from(counts.triangles), f64::from(counts.spheres)]
 }

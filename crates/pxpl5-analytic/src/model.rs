@@ -1,4 +1,4 @@
-//! Parameters of Slats on a machine, and the times of a field.
+//! Parameters of Slats on a machine, and the results for a field.
 
 use super::copies::{CopyTimes, MAX_RENDERERS, Queue};
 use super::renderer::Cost;
@@ -13,20 +13,17 @@ use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{PeriodNumber, RegionGrid};
 
-/// Number of regions of a field, both eyes together.
 pub(super) const REGIONS: usize = 20;
 
-/// Largest number of ring channels in the model.
 pub(super) const MAX_CHANNELS: usize = 8;
 
-/// Number of ring channels that copies to two frame buffers need.
+/// Number of ring channels that copies occupy, one for each frame buffer.
 const COPY_CHANNELS: u64 = 2;
 
-/// Number of eyes. A graphics processor transforms each structure of the display list once per eye.
 const EYES: f64 = 2.0;
 
-/// Returns the time that a graphics processor needs to begin a pass over all structures for both eyes, in nanoseconds.
-/// `sphere_views` is the number of structures with spheres.
+/// Returns the time before the first triangle of TRANSFORM, for both eyes, in nanoseconds. `sphere_views` is the number
+/// of structures with spheres.
 fn begin_ns(gp: &GpTiming, structures: usize, sphere_views: usize) -> f64 {
     let [structures, sphere_views] = [structures, sphere_views].map(|n| EYES * n as f64);
     TransformCost { passes: 1.0, structures, sphere_views, ..TransformCost::default() }.ns(gp)
@@ -40,7 +37,7 @@ pub struct SlatsModel {
     pub(super) overhead_ns: f64,
     pub(super) hop_ns: f64,
     pub(super) gp: GpTiming,
-    /// Time to begin a pass over all structures for both eyes, in nanoseconds.
+    /// Time before the first triangle of TRANSFORM, for both eyes, in nanoseconds.
     pub(super) begin_ns: f64,
     pub(super) message_ns: f64,
     pub(super) command: Cost,
@@ -49,41 +46,40 @@ pub struct SlatsModel {
     pub(super) clear: Cost,
     pub(super) region_ns: f64,
     pub(super) field_ns: f64,
-    /// Time from a retrace to the scan of the bottom regions' first line, in nanoseconds.
+    /// Time from a retrace until the beam reaches the lower half of the picture, in nanoseconds.
     bottom_ns: f64,
     pub(super) renderers: usize,
     pub(super) gps: usize,
     pub(super) source_channels: usize,
-    /// Largest number of channels that messages to renderers occupy at the same time.
     pub(super) fifo_channels: usize,
     pub(super) split: bool,
 }
 
-/// Times of a field, in nanoseconds after the retrace at which the field's view was sampled.
+/// Times of a field, in nanoseconds after the retrace at which TRANSFORM begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldTimes {
-    /// Time at which the last clump (group of triangles) was accepted.
+    /// Time at which the renderers had accepted all triangles.
     pub rendered_ns: f64,
-    /// Copy of the top regions, or of all regions if copies are not split.
+    /// Copies of the upper half of the picture, or of the whole picture if copies are not split.
     pub top: CopyTimes,
-    /// Copy of the bottom regions after the retrace, if copies are split.
+    /// Copies of the lower half of the picture after the retrace, if copies are split.
     pub bottom: Option<CopyTimes>,
-    /// True if all copies finished before their deadlines.
+    /// True if all copies ended before their deadlines.
     pub in_time: bool,
 }
 
-/// Mean effects of one triangle on the picture of one eye: bin entries and clipping.
+/// Mean work for one triangle in the picture of one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerTriangle {
-    /// Number of entries in all bins together.
+    /// Number of bin entries, which is the number of regions that the triangle touches.
     pub entries: f64,
     /// Fraction of triangles that the clipper cuts, 0 to 1.
     pub clipped: f64,
 }
 
 impl SlatsModel {
-    /// Derives the parameters from the configuration of a machine. If the program runs i860 code, the times of this
-    /// code are used. All triangles form one structure.
+    /// Returns the parameters for a machine. If the machine runs i860 code, the times of this code are used. All
+    /// triangles form one structure.
     ///
     /// # Errors
     ///
@@ -139,21 +135,22 @@ impl SlatsModel {
         })
     }
 
-    /// Returns the parameters for a scene, with the scene's number of structures.
+    /// Returns the parameters for a scene with several structures.
     #[must_use]
     pub fn over(self, scene: &Scene) -> Self {
         let sphere_views = scene.structures().iter().filter(|structure| !structure.spheres.is_empty()).count();
         Self { begin_ns: begin_ns(&self.gp, scene.structures().len(), sphere_views), ..self }
     }
 
-    /// Returns the parameters that determine the number and order of messages.
+    /// Returns the parameters that determine the number and order of messages. Machines that are computed together must
+    /// have equal values.
     pub(super) const fn structure(&self) -> (usize, usize, usize, bool) {
         (self.renderers, self.gps, self.source_channels, self.split)
     }
 
-    /// Counts the pictures that are due and the pictures that are shown, if all fields have the times `times`.
+    /// Counts the pictures that are due and shown in `fields` fields, if each field has the times `times`.
     ///
-    /// A field begins at the first retrace after the commands of the previous field are finished.
+    /// A field begins at the first retrace after the previous field is finished.
     pub(super) fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
         let copied_ns = times.bottom.unwrap_or(times.top).end_ns;
         // A field is drawn in one field and scanned in the next, so its scan ends two fields after its view was taken.
@@ -165,7 +162,7 @@ impl SlatsModel {
         DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
     }
 
-    /// Returns the copies that each renderer makes. `wanted` returns true for the regions to copy.
+    /// Returns the copies of each renderer, for the regions for which `wanted` returns true.
     pub(super) fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MAX_RENDERERS] {
         let mut queues = [Queue::default(); MAX_RENDERERS];
         let per_half = REGIONS / 4;
@@ -181,13 +178,13 @@ impl SlatsModel {
         queues
     }
 
-    /// Returns the times of a field. Also determines if the field's copies meet their deadlines.
+    /// Returns the times of a field, and checks the deadlines of its copies.
     pub(super) fn times(&self, rendered_ns: f64, top: CopyTimes, bottom: Option<CopyTimes>) -> FieldTimes {
         let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
         FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
     }
 
-    /// Returns the TRANSFORM time of a clump (group) of `triangles` triangles, for both eyes, in nanoseconds.
+    /// Returns the time of TRANSFORM for `triangles` triangles and both eyes, in nanoseconds.
     pub(super) fn clump_ns(&self, triangles: f64, each: PerTriangle) -> f64 {
         let both_eyes = EYES * triangles;
         let [entries, clipped] = [each.entries, each.clipped].map(|n| both_eyes * n);

@@ -1,21 +1,20 @@
-//! A renderer's input FIFO and array of pixel processors, computed one message at a time.
+//! A renderer's input FIFO and its array of pixel processors, computed one message at a time.
 
 use pxpl5_renderer::{CommandKind, RendererTiming};
 use std::ops::{Add, Mul, Sub};
 
-/// Returns the later of two times. Neither time is NaN, so this function can be faster than `f64::max`.
+/// Returns the later of two times. No time is NaN, so this function can be faster than `f64::max`.
 #[inline]
 pub(super) fn later(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Returns the earlier of two times.
 #[inline]
 pub(super) fn sooner(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// Number of words and execution time of a command or of a message.
+/// Number of words and execution time, of a command or of a message.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cost {
     pub(super) words: f64,
@@ -23,17 +22,15 @@ pub(super) struct Cost {
 }
 
 impl Cost {
-    /// Returns the cost of one command on a renderer.
     pub(super) fn of_command(timing: &RendererTiming, kind: CommandKind) -> Self {
         let ns = timing.span(kind).map_or(0.0, |span| span.as_ms() * 1e6);
         Self { words: f64::from(kind.words()), ns }
     }
 }
 
-/// Times of several configurations in nanoseconds. Each configuration has a lane, and operations treat each lane
-/// separately.
+/// One time for each of several machines, in nanoseconds.
 ///
-/// The values are aligned as vector registers are. A vector that crosses a cache line would take twice as long.
+/// The values are aligned like vector registers, because a vector across two cache lines takes twice as long.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Times<const N: usize>(pub(super) [f64; N]);
@@ -53,13 +50,11 @@ impl<const N: usize> Times<N> {
         Self(all)
     }
 
-    /// Returns the later of two times for each configuration.
     #[inline(always)]
     pub(super) fn later(self, other: Self) -> Self {
         Self::each(|i| later(self.0[i], other.0[i]))
     }
 
-    /// Returns the earlier of two times for each configuration. For equal times the result is the time of `other`.
     #[inline(always)]
     pub(super) fn sooner(self, other: Self) -> Self {
         Self::each(|i| sooner(self.0[i], other.0[i]))
@@ -90,14 +85,14 @@ impl<const N: usize> Mul for Times<N> {
     }
 }
 
-/// Depth of the renderers' FIFOs in words, and time that a word takes on the ring, for several machine configurations.
+/// Depth of the renderers' FIFOs in words, and time of a word on the ring, for several machines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fifos<const N: usize> {
     pub(super) depth_words: Times<N>,
     pub(super) word_ns: Times<N>,
 }
 
-/// Number of words and execution time of a command or of a message, in several configurations.
+/// Number of words and execution time of a command or of a message, for several machines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Costs<const N: usize> {
     pub(super) words: Times<N>,
@@ -119,45 +114,38 @@ impl<const N: usize> Add for Costs<N> {
     }
 }
 
-/// A message to a renderer: a header of a few commands, followed by many commands of one kind. The type holds all times
-/// that do not depend on the arrival of the message.
+/// A message to a renderer: a header of a few commands, then many equal commands. The fields are the times that do not
+/// depend on the arrival of the message.
 ///
-/// All other times follow from the arrival of the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b +
+/// All later times follow from the arrival of the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b +
 /// c)` exactly, even with rounding. Sums are therefore computed before maxima, which shortens the chain of dependent
 /// operations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Commands<const N: usize> {
-    /// Time that the message's header takes on the channel. The header consists of commands such as selection and
-    /// clearing of a region.
+    /// Time of the header on the ring. The header selects and clears the region.
     head_wire: Times<N>,
-    /// Execution time of the message's header.
     head: Times<N>,
-    /// Time from the last word of the message's header to the start of the first command after the header, if the pixel
-    /// array is free.
+    /// Time from the last word of the header to the start of the first command after it, if no earlier command is
+    /// running.
     lead: Times<N>,
-    /// Number of commands after the header.
     count: f64,
-    /// Execution time of one command after the header.
     each: Times<N>,
-    /// Time that the whole message takes on the channel.
     wire: Times<N>,
-    /// Time from the start of the first command after the header to the end of the last command. Either the execution
-    /// of commands or the arrival of words determines this time.
+    /// Time from the start of the first command after the header to the end of the last command. The slower of
+    /// execution and arrival determines this time.
     drawing: Times<N>,
-    /// Time until the FIFO has room for the last word, counted from the start of this message's first command after the
-    /// header.
+    /// Time from the start of the first command after the header until the FIFO has room for the last word.
     ///
-    /// The FIFO has room when a certain command has started: the command that contains the word one FIFO depth before
-    /// the last word. The value is `f64::MIN` if this command belongs to the previous message.
+    /// The room comes from an earlier command: when it starts, the words one FIFO depth before the last word leave the
+    /// FIFO. The value is `f64::MIN` if this is a command of the previous message.
     room_after: Times<N>,
-    /// Position of the command that must have started before the FIFO has room for the last word. The position is a
-    /// number of commands, counted back from the end of the previous message. The value is infinite if the command
-    /// belongs to the same message.
+    /// Position of the command whose start makes room for the last word, as a number of commands before the end of the
+    /// previous message. The value is infinite if a command of the same message makes the room.
     room_before: Times<N>,
 }
 
 impl<const N: usize> Commands<N> {
-    /// Creates a message with the header `head` and `count` commands that each have the cost `each`.
+    /// Creates a message with the header `head` and `count` commands that each cost `each`.
     #[inline(always)]
     pub(super) fn new(fifos: &Fifos<N>, head: &Costs<N>, count: f64, each: &Costs<N>) -> Self {
         let (word_ns, counts) = (fifos.word_ns, Times::all(count));
@@ -193,8 +181,8 @@ impl<const N: usize> Commands<N> {
     /// Returns the time until the FIFO has room for this message's last word, if this message follows the message
     /// `before`.
     ///
-    /// The time counts from the start of the first command of `before`. The time is negative infinity if this message
-    /// needs no room that `before` occupies.
+    /// The time counts from the start of the first command of `before`. The time is negative infinity if `before` does
+    /// not delay this message.
     #[inline(always)]
     pub(super) fn room_behind(&self, before: &Self) -> Times<N> {
         Times::each(|i| {
@@ -204,24 +192,23 @@ impl<const N: usize> Commands<N> {
     }
 }
 
-/// State of a renderer between two messages: the times from which its parts are free.
+/// A renderer between two messages: the times from which its parts are free.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Array<const N: usize> {
-    /// Time at which all commands so far were executed, or at which the current copy has ended.
+    /// Time at which the renderer has executed all commands, or has ended a copy.
     pub(super) free: Times<N>,
-    /// Time from which the renderer's port is free.
+    /// Time from which the port accepts a message.
     pub(super) released: Times<N>,
-    /// Start of the first command after the header of the last message.
+    /// Start of the first command after the header, in the last message.
     last_start: Times<N>,
 }
 
 impl<const N: usize> Array<N> {
-    /// Returns a renderer that has executed all its commands.
     pub(super) const fn idle() -> Self {
         Self { free: Times::all(0.0), released: Times::all(0.0), last_start: Times::all(0.0) }
     }
 
-    /// Receives a message whose first word arrives at `first_word`. Returns the time at which its last word has entered
+    /// Receives a message whose first word arrives at `first_word`. Returns the time at which the last word has entered
     /// the FIFO.
     ///
     /// `behind` is the time until the FIFO has room after the previous message ([`Commands::room_behind`]).

@@ -1,4 +1,4 @@
-//! Closed form of Rendering Control: the times of frame after frame, computed without simulation.
+//! Closed form of Rendering Control, which computes the times of one frame after the other.
 
 use super::load::Load;
 use super::renderer::Cost;
@@ -16,7 +16,7 @@ use pxpl5_sim::parameters::SettingError;
 use pxpl5_sim::{Time, mix};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
-/// Number of words of a message between master and slaves, such as the token of a region.
+/// Number of words of a message between master and slaves, such as a token.
 const ORDER_WORDS: f64 = 6.0;
 
 /// The parameters that determine the times of Rendering Control on a machine.
@@ -40,11 +40,10 @@ pub struct StereoModel {
     fifo_words: f64,
     store_ns: f64,
     backing_regions: usize,
-    /// Number of finished regions that a renderer can store while their frame buffer is not available.
+    /// Number of finished regions that a renderer can store while the frame buffer is not available.
     regions_stored: usize,
     field_ns: f64,
-    /// For each region, the time for which the messages with the region's pixels occupy a frame-buffer port, in
-    /// nanoseconds.
+    /// Time for which the pixels of each region occupy a port of the frame buffer, in nanoseconds.
     copy_ns: Vec<f64>,
 }
 
@@ -60,28 +59,24 @@ pub struct StereoTimes {
 }
 
 impl StereoTimes {
-    /// Returns the time from the first to the last word of an eye's copies, in nanoseconds.
     fn copy_length_ns(&self, eye: usize) -> f64 {
         self.copy_ns[eye].1 - self.copy_ns[eye].0
     }
 }
 
-/// Returns the mean of a time over frames, in milliseconds. `ns` returns the time of one frame in nanoseconds.
 fn mean_ms(frames: &[&StereoTimes], ns: impl Fn(&StereoTimes) -> f64) -> f64 {
     frames.iter().map(|frame| ns(frame)).sum::<f64>() / frames.len().max(1) as f64 * 1e-6
 }
 
-/// Times at which all pictures so far completed each stage. The predecessor of the first picture counts as complete at
-/// time 0.
+/// Times at which each stage of the pictures so far ended.
 #[derive(Debug, Default)]
 struct History {
     transformed: Vec<f64>,
     rendered: Vec<f64>,
     copied: Vec<f64>,
-    /// Bytes of the bins that a slave has filled for the previous picture.
+    /// Size of the bins of the previous picture on one slave, in bytes.
     bin_bytes: f64,
-    /// Time from the moment at which the first slave has freed its bins to the moment at which the last slave has freed
-    /// its bins.
+    /// Time between the instants at which the first and the last slave have sent all bins of the previous picture.
     first_free_ns: f64,
     edited_ns: f64,
     swapped_ns: f64,
@@ -90,18 +85,17 @@ struct History {
 
 #[derive(Debug, Default)]
 struct Renderers {
-    /// Time from which the master can assign the next region to each renderer.
+    /// Time from which the master can give each renderer its next region.
     idle_ns: Vec<f64>,
-    /// Time at which each renderer's pixel processors have executed all their commands so far.
+    /// Time at which each renderer has executed all commands so far.
     free_ns: Vec<f64>,
-    /// For each renderer, the times at which its regions had been copied to the frame buffer.
+    /// Times at which the regions of each renderer were copied to the frame buffer.
     sent_ns: Vec<Vec<f64>>,
-    /// For each renderer, the times at which the frame buffers of its stored regions become available.
+    /// For each renderer, the times until which its backing store holds finished regions.
     stored_until_ns: Vec<Vec<f64>>,
-    /// Number of words sent to each renderer.
     words: Vec<f64>,
-    /// Three values for each of the latest regions of a renderer. They are the number of words sent before the region,
-    /// the start of the region's first command, and the cost of all commands.
+    /// For the latest regions of each renderer: number of words before the region, start of the first command, and cost
+    /// of all commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }
@@ -110,7 +104,6 @@ fn back(times: &[f64], picture: usize, by: usize) -> f64 {
     picture.checked_sub(by).and_then(|i| times.get(i)).copied().unwrap_or(0.0)
 }
 
-/// Returns how long the messages of a region's pixels occupy a frame buffer's port, in nanoseconds.
 fn copy_ns(grid: RegionGrid, region: RegionId, word_ns: f64, overhead_ns: f64) -> f64 {
     let [_, _, width, height] = grid.rectangle(region);
     let pixels = width * height;
@@ -170,7 +163,7 @@ impl StereoModel {
         })
     }
 
-    /// Computes the times of consecutive frames. `loads` has one load for each eye of each frame.
+    /// Returns the times of successive frames. `loads` has the work for each eye of each frame.
     #[must_use]
     pub fn frames(&self, loads: &[Load]) -> Vec<StereoTimes> {
         let mut history = History::default();
@@ -183,12 +176,11 @@ impl StereoModel {
         loads.chunks(self.eyes).enumerate().map(|(frame, eyes)| self.frame(&mut history, frame, eyes)).collect()
     }
 
-    /// Returns the time that a short message spends on the ring, in nanoseconds.
     fn transit_ns(&self) -> f64 {
         self.overhead_ns + ORDER_WORDS * self.word_ns + self.hop_ns * self.slaves / 2.0
     }
 
-    /// Returns the time of a message between two processors, with the software time of sender and receiver.
+    /// Returns the time from one processor to another, including the software on both sides, in nanoseconds.
     fn order_ns(&self) -> f64 {
         2.0 * self.message_ns + self.transit_ns()
     }
@@ -240,7 +232,7 @@ impl StereoModel {
         times
     }
 
-    /// Returns the number of bin entries of the slave that holds the most primitives.
+    /// Returns the number of bin entries of the slave with the most primitives.
     fn entries(&self, load: &Load) -> f64 {
         let primitives = self.largest_share(load.triangles) + self.largest_share(load.spheres);
         load.entries() * primitives / (load.triangles + load.spheres).max(1.0)
@@ -250,18 +242,18 @@ impl StereoModel {
         self.entries(load) * BIN_ENTRY_BYTES as f64
     }
 
-    /// Returns the time from the instant at which the first slave has finished all tokens of a picture to the instant
-    /// at which the last slave has.
+    /// Returns the time between the instants at which the first and the last slave have sent all their bins of a
+    /// picture.
     ///
-    /// Each token starts at one slave and moves from slave to slave as fast as renderers accept commands. If there are
-    /// fewer renderers than slaves, a slave can finish early. The first slave finishes when the number of slaves that
-    /// each token has visited equals the number of renderers.
+    /// A region's token starts at one slave and moves from slave to slave as fast as renderers accept commands. With
+    /// fewer renderers than slaves, some slaves finish early. The first slave finishes when each token has visited as
+    /// many slaves as there are renderers.
     fn first_free_ns(&self, load: &Load) -> f64 {
         let drawing_ns = load.entries() / load.bins.len().max(1) as f64 * self.triangle.ns;
         drawing_ns * (1.0 - self.renderers as f64 / self.slaves).max(0.0)
     }
 
-    /// Returns the TRANSFORM time of the slave that holds the most primitives, in nanoseconds.
+    /// Returns the time of TRANSFORM on the slave with the most primitives, in nanoseconds.
     fn transform_ns(&self, load: &Load) -> f64 {
         let triangles = self.largest_share(load.triangles);
         let spheres = self.largest_share(load.spheres);
@@ -271,15 +263,15 @@ impl StereoModel {
         TransformCost { passes: 1.0, structures, sphere_views, triangles, spheres, clipped, entries }.ns(&self.gp)
     }
 
-    /// Returns the largest number of primitives that any slave holds: an equal share, rounded up.
+    /// Returns the largest number of primitives on a slave.
     fn largest_share(&self, primitives: f64) -> f64 {
         (primitives / self.slaves).ceil()
     }
 
     /// Computes RENDER and COPY of one eye.
     ///
-    /// Returns the time at which the master is notified that the last commands were accepted. Also returns the times of
-    /// the copies' first and last word.
+    /// Returns the time at which the master receives the report of the last accepted command. Also returns the times of
+    /// the first and the last copied word.
     fn render(
         &self,
         all: &mut Renderers,
@@ -328,14 +320,15 @@ impl StereoModel {
         (rendered_ns, copy)
     }
 
-    /// Returns the time that a region's token takes to visit all slaves, in nanoseconds.
+    /// Returns the time in which a region's token visits all slaves, in nanoseconds.
     fn walk_ns(&self, bin: &[f64; 2]) -> f64 {
         let senders = (bin[0] + bin[1]).min(self.slaves).max(2.0_f64.min(self.slaves));
         let handed_over_ns = self.gp.token_entry_ns as f64 * (bin[0] + bin[1]);
         self.slaves * (2.0 * self.message_ns + self.transit_ns()) + senders * self.message_ns + handed_over_ns
     }
 
-    /// Returns two times: when a region's last word was accepted, and when all commands of the region were executed.
+    /// Returns the time at which the renderer has accepted a region's last word, and the time at which it has executed
+    /// all commands.
     fn execute(&self, all: &mut Renderers, r: usize, token_ns: f64, arrived_ns: f64, bin: &[f64; 2]) -> (f64, f64) {
         let [triangles, spheres] = *bin;
         // Commands of the region: clear, draw, shade and copy.
@@ -356,10 +349,9 @@ impl StereoModel {
         (accepted_ns, executed_ns)
     }
 
-    /// Returns the time at which the FIFO has room for the last word sent.
+    /// Returns the time at which the FIFO has room for the last word.
     ///
-    /// The FIFO has room after the FIFO has released an earlier word: the word that is one FIFO depth before the last
-    /// word. The FIFO releases this word when the command that contains the word starts.
+    /// This is the start of the command whose words lie one FIFO depth before the last word.
     fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
         let word = all.words[r] - 1.0 - self.fifo_words;
         let started = &mut all.started[r];
@@ -375,7 +367,7 @@ fn earliest(times: &[f64]) -> usize {
     (1..times.len()).fold(0, |best, i| if times[i] < times[best] { i } else { best })
 }
 
-/// Returns the loads of both eyes, frame after frame. A new frame begins at every second field.
+/// Returns the work of a scene for both eyes, frame after frame. A new frame begins at every second field.
 ///
 /// # Errors
 ///
@@ -393,8 +385,6 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
     Ok(loads)
 }
 
-/// Closed form of Rendering Control. Its functions compute the summary of an experiment, and two estimates, without
-/// simulation.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 
@@ -407,7 +397,6 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     Ok(model.summary(&frames, experiment.length()))
 }
 
-/// Returns the number of fields until the first frame after the warm-up is shown.
 fn fields_needed(experiment: &Experiment) -> Option<u64> {
     let first_frames = experiment.clone().fields(2 * (WARM_UP_PICTURES as u64 + 1));
     let (model, frames) = frames_of(&first_frames).ok()?;
@@ -427,8 +416,7 @@ fn frames_of(experiment: &Experiment) -> Result<(StereoModel, Vec<StereoTimes>),
 }
 
 impl StereoModel {
-    /// Returns the summary of the frames that are shown within the first `fields` fields, except the frames of the
-    /// warm-up.
+    /// Returns the results for the frames that are shown in the first `fields` fields, without the warm-up.
     #[must_use]
     pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
         // Frames of the warm-up do not count.
@@ -452,19 +440,16 @@ impl StereoModel {
         }
     }
 
-    /// Returns the time from the start of TRANSFORM to the last word of COPY, for each eye, in milliseconds.
     fn eye_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
         (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Returns the time from the start of TRANSFORM to the retrace that first shows the frame, for each eye, in
-    /// milliseconds.
+    /// Returns the time from the start of TRANSFORM to the swap, for each eye, in milliseconds.
     fn eye_swap_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
         (0..self.eyes).map(|eye| (frame.shown_ns - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Counts the frames that are due, and the frames that were shown. The time of COPY for all eyes determines how
-    /// often a frame is due.
+    /// Counts the frames that are due and shown. A frame is due as often as the pixels of all eyes can be copied.
     fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);

@@ -29,29 +29,27 @@ use slats::CLUMP;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// A clump of one graphics processor (GP): up to [`CLUMP`] primitives, transformed and sent together.
+/// A group of up to [`CLUMP`] primitives that a graphics processor (GP) sends together.
 #[derive(Clone, Debug, PartialEq)]
 struct Clump {
-    /// TRANSFORM time of the clump (group of primitives) for both eyes.
+    /// Time of TRANSFORM for both eyes, in nanoseconds.
     transform_ns: f64,
-    /// Numbers of triangles and of spheres for each region, in the order in which regions are sent.
+    /// Numbers of triangles and of spheres in each region.
     bins: [[f64; 2]; REGIONS],
 }
 
-/// The clumps (groups of primitives) of every graphics processor (GP), and the number of words of the view that the
-/// first GP sends to the other GPs.
+/// The clumps of every graphics processor (GP), and the length of the message with the view for the other GPs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Clumps {
     of_gps: Vec<Vec<Clump>>,
     view_words: f64,
 }
 
-/// Number of words of a message with the view of two eyes without edits. The message has the number of the view, two
-/// counts, and three matrices for each eye.
+/// Number of words of a message with the view of two eyes: a number, two counts, and three matrices for each eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
-    /// Creates clumps (groups) of equal triangles, distributed evenly over the graphics processors and the regions.
+    /// Creates clumps of equal triangles that are distributed evenly over the GPs and the regions.
     pub(super) fn uniform(model: &SlatsModel, triangles: f64, each: PerTriangle) -> Self {
         let all = triangles.round() as usize;
         // Distribute the triangles evenly over the GPs.
@@ -70,7 +68,7 @@ impl Clumps {
         Self { of_gps: (0..model.gps).map(of_gp).collect(), view_words: VIEW_WORDS }
     }
 
-    /// Creates clumps (groups of primitives) from an experiment's scene, as seen in its first view.
+    /// Creates the clumps of an experiment's scene in its first view.
     ///
     /// # Errors
     ///
@@ -114,14 +112,13 @@ impl Clumps {
     }
 }
 
-/// Number of field regions of one eye that lie side by side.
+/// Number of regions in a row of one eye's picture.
 const COLUMNS: usize = REGIONS / 4;
 
-/// Sends all clumps (groups of primitives) to the renderers. `arrays` holds the state of the renderers, before and
-/// after the call.
+/// Sends all clumps (groups of primitives) to the renderers, and updates the state of the renderers in `arrays`.
 ///
-/// Returns two times. At the first time, the last clump is accepted. At the second time, the first graphics processor
-/// is free again, after all other graphics processors have reported the end of their last clumps.
+/// Returns two times: when the renderers had accepted all clumps, and when the first GP had received the reports of all
+/// other GPs.
 pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clumps) -> [f64; 2] {
     let mut ring = Ring::new(model, arrays);
     let mut senders = ring.begin(clumps);
@@ -138,8 +135,7 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
     [accepted_ns, ring.all_done_ns(&senders)]
 }
 
-/// Words of a command that have left a renderer's FIFO. Each word makes room for the word that follows one FIFO depth
-/// later.
+/// The words of a command that has left a renderer's FIFO, and so made room for words one FIFO depth later.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     first_word: f64,
@@ -147,7 +143,7 @@ struct Departure {
     at_ns: f64,
 }
 
-/// A renderer: its port, input FIFO and array of pixel processors.
+/// A renderer: port, input FIFO and array of pixel processors.
 #[derive(Clone, Debug, Default)]
 struct Renderer {
     free_ns: f64,
@@ -157,10 +153,10 @@ struct Renderer {
 }
 
 impl Renderer {
-    /// Receives a command whose words arrive without gaps, starting at the time `from_ns`. Returns the time at which
-    /// the last word has entered the FIFO.
+    /// Receives a command whose words arrive without gaps from `from_ns` on. Returns the time at which the last word
+    /// has entered the FIFO.
     ///
-    /// A word enters the FIFO when the word one FIFO depth before has left. The words of a command leave when the
+    /// A word enters the FIFO when the word one FIFO depth before it has left. The words of a command leave when the
     /// command starts. A command starts when all its words have arrived and the previous command has ended.
     fn take(&mut self, from_ns: f64, command: Cost, depth_words: f64, word_ns: f64) -> f64 {
         let first = self.words_in;
@@ -186,33 +182,28 @@ impl Renderer {
     }
 }
 
-/// A message to a renderer. For each kind of command, in the order of sending, `runs` holds the cost of one command and
-/// the number of commands.
+/// A message to a renderer. Each entry of `runs` is a kind of command: the cost of one command, and their number.
 #[derive(Clone, Copy, Debug)]
 struct Message {
     region: usize,
     runs: [(Cost, f64); 4],
 }
 
-/// A graphics processor that sends its clumps (groups of primitives). The messages of a clump are sent in order, one
-/// after the other.
+/// A graphics processor that sends the messages of its clumps one after the other.
 #[derive(Debug)]
 struct Sender<'a> {
     gp: usize,
     clumps: &'a [Clump],
-    /// Number of clumps (groups of primitives) whose sending has begun.
     begun: usize,
-    /// Messages of the current clump (group of primitives) to which the ring has not granted a channel yet. Empty after
-    /// the last clump.
+    /// Messages of the current clump that still wait for a channel of the ring.
     messages: VecDeque<Message>,
-    /// Time since which the next message of this sender is the first message in the queue.
+    /// Time since which the next message waits for a channel.
     since_ns: f64,
-    /// Time from which each channel of the port is free.
     channels_ns: Vec<f64>,
     cpu_ns: f64,
-    /// Time at which the last message of the current clump (group of primitives) was accepted.
+    /// Time at which the renderers had accepted all messages of the current clump.
     accepted_ns: f64,
-    /// Time by which every renderer has accepted its first message of the current clump.
+    /// Time at which every renderer had accepted its first message of the current clump.
     draining_ns: f64,
     served: [bool; MAX_RENDERERS],
 }
@@ -223,13 +214,11 @@ impl Sender<'_> {
     }
 }
 
-/// State of the ring and of the renderers, which all senders share.
+/// The channels of the ring and the renderers, which all senders share.
 struct Ring<'a> {
     model: &'a SlatsModel,
     renderers: Vec<Renderer>,
-    /// Time from which each channel for messages to renderers is free.
     channels_ns: Vec<f64>,
-    /// True if the first message to each region also clears the region.
     clears: bool,
 }
 
@@ -246,8 +235,8 @@ impl<'a> Ring<'a> {
 
     /// Returns the senders, each with the messages of its first clump.
     ///
-    /// A single graphics processor (GP) clears regions with its first clump. With several GPs, the first GP clears all
-    /// regions with separate messages, and then sends the view to the other GPs.
+    /// A single GP clears the regions with its first clump. With several GPs, the first GP sends separate messages that
+    /// clear all regions, and then sends the view to the other GPs.
     fn begin<'c>(&mut self, clumps: &'c Clumps) -> Vec<Sender<'c>> {
         let model = self.model;
         let mut begin_ns = vec![0.0; model.gps];
@@ -287,7 +276,6 @@ impl<'a> Ring<'a> {
         clumps.of_gps.iter().enumerate().map(sender).collect()
     }
 
-    /// Sends the messages that clear all regions. Returns the time at which the last message was accepted.
     fn clear_all(&mut self) -> f64 {
         // A clump without primitives produces only the messages that clear.
         let nothing = Clump { transform_ns: 0.0, bins: [[0.0; 2]; REGIONS] };
@@ -312,7 +300,7 @@ impl<'a> Ring<'a> {
         sender.accepted_ns
     }
 
-    /// Transforms clumps (groups of primitives) until a clump produces messages, or until no clump is left.
+    /// Transforms clumps until a clump has messages to send, or until no clump is left.
     fn next_clump(&self, sender: &mut Sender<'_>) {
         while let Some(clump) = sender.clumps.get(sender.begun) {
             // The single clump buffer can be reused after all renderers have started to receive its content.
@@ -330,8 +318,8 @@ impl<'a> Ring<'a> {
         }
     }
 
-    /// Returns the messages of a clump (group of primitives). Each message selects a region and holds as many
-    /// primitives as fit. If `clears` is true, the first message to a region also clears the region.
+    /// Returns the messages of a clump, with as many primitives in each message as fit. If `clears` is true, the first
+    /// message to a region also clears the region.
     fn messages_of(&self, clump: &Clump, clears: bool) -> VecDeque<Message> {
         let SlatsModel { select, clear, command, sphere, .. } = *self.model;
         let mut messages = VecDeque::new();
@@ -355,8 +343,7 @@ impl<'a> Ring<'a> {
         messages
     }
 
-    /// Returns two times for a sender's next message: the time from which the ring can grant channels to the message,
-    /// and the time since which the message has waited.
+    /// Returns the time at which a sender's next message can get channels, and the time since which the message waits.
     fn head(&self, sender: &Sender<'_>) -> (f64, f64) {
         let region = sender.messages.front().map_or(0, |message| message.region);
         let port = &self.renderers[region % self.renderers.len()];
@@ -374,8 +361,8 @@ impl<'a> Ring<'a> {
         heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
     }
 
-    /// Grants channels of the ring to the next message of a sender. The message occupies port and channels until its
-    /// last word is in the FIFO.
+    /// Sends a sender's next message. The message occupies the port of the renderer and channels until its last word is
+    /// in the FIFO.
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;
         let (granted, _) = self.head(sender);
@@ -420,10 +407,8 @@ impl<'a> Ring<'a> {
         entered
     }
 
-    /// Returns the time at which the first graphics processor (GP) has been notified that all clumps (groups of
-    /// primitives) were accepted.
-    ///
-    /// Each of the other GPs reports to the first GP by a message. Each message takes processor time of the first GP.
+    /// Returns the time at which the first GP has received the reports of all other GPs that their clumps were
+    /// accepted. Each report takes processor time of the first GP.
     fn all_done_ns(&self, senders: &[Sender<'_>]) -> f64 {
         let model = self.model;
         let (Some(first), others) = (senders.first(), senders.get(1..).unwrap_or_default()) else { return 0.0 };
@@ -442,10 +427,8 @@ impl<'a> Ring<'a> {
     }
 }
 
-/// Number of ports of the two frame buffers.
 const FRAME_BUFFERS: usize = 2;
 
-/// Returns the earliest of some times, and the index of this time.
 fn soonest(times: &[f64]) -> (usize, f64) {
     let all = times.iter().copied().enumerate();
     all.reduce(|first, time| if time.1 < first.1 { time } else { first }).unwrap_or((0, f64::MIN))

@@ -1,4 +1,4 @@
-//! Closed form of Slats: the times of one field, computed without simulation.
+//! Closed form of Slats, which computes the times of one field.
 
 use super::clumps;
 use super::copies::{self, CopyTimes, MAX_RENDERERS, Queue};
@@ -13,8 +13,8 @@ use pxpl5_run::{
 };
 
 impl SlatsModel {
-    /// Returns the times of a field in the steady state. If copies are split, renderers begin with the copies of the
-    /// previous field's bottom regions.
+    /// Returns the times of a field after many equal fields. With split copies, renderers first copy the lower half of
+    /// the previous field.
     #[must_use]
     pub fn field(&self, triangles: f64, each: PerTriangle) -> FieldTimes {
         if self.gps > 1 {
@@ -24,7 +24,6 @@ impl SlatsModel {
         times
     }
 
-    /// Returns the times of a field in the steady state, for the clumps (groups of primitives) `clumps`.
     fn field_of(&self, clumps: &Clumps) -> FieldTimes {
         let models = std::array::from_ref(self);
         let mut arrays = [Array::idle(); MAX_RENDERERS];
@@ -35,11 +34,10 @@ impl SlatsModel {
         times
     }
 
-    /// Returns the times of a field for many machines, in their order. The times are identical to the results of
-    /// [`field`](Self::field).
+    /// Returns the times of a field for each of many machines, identical to the results of [`field`](Self::field).
     ///
-    /// Sixteen consecutive machines are computed together, which is faster, if each machine has one graphics processor.
-    /// The machines must also have equal numbers of renderers and channels, and the same program.
+    /// For speed, sixteen successive machines are computed together if they have one graphics processor, equal numbers
+    /// of renderers and channels, and the same program.
     #[must_use]
     pub fn fields(models: &[Self], triangles: f64, each: PerTriangle) -> Vec<FieldTimes> {
         let mut all = Vec::with_capacity(models.len());
@@ -55,19 +53,18 @@ impl SlatsModel {
     }
 }
 
-/// Number of machine configurations computed together. The times of the configurations fill two registers of 512 bits,
-/// or four registers of 256 bits.
+/// Number of machines that are computed together. Their times fill two registers of 512 bits.
 ///
-/// Each computing step depends on the previous step. Two registers therefore take little more time than one register.
+/// Each step of the computation depends on the previous step, so two registers take little more time than one.
 const TOGETHER: usize = 16;
 
-/// Computes the times of a field for 16 machines, with the widest vector instructions of the host's processor.
+/// Computes `fields_at_once` with the widest vector instructions of the host.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn fields_together(models: &[SlatsModel; TOGETHER], triangles: f64, each: PerTriangle) -> [FieldTimes; TOGETHER] {
     fields_at_once(models, triangles, each)
 }
 
-/// Computes the times of a field on each of `N` machines. All machines have one graphics processor and equal values of
+/// Returns the times of a field on `N` machines, which have one graphics processor and equal values of
 /// [`SlatsModel::structure`].
 #[inline(always)]
 fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each: PerTriangle) -> [FieldTimes; N] {
@@ -78,8 +75,7 @@ fn fields_at_once<const N: usize>(models: &[SlatsModel; N], triangles: f64, each
     end(models, arrays, done)
 }
 
-/// Lets the renderers begin with the copies of the previous field's bottom regions, if copies are split into top and
-/// bottom regions.
+/// With split copies, makes the renderers first copy the lower half of the previous field.
 #[inline(always)]
 fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     if models[0].split {
@@ -88,8 +84,8 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     }
 }
 
-/// Computes the copies of a field. `rendered` is the time at which the last clump (group of triangles) was accepted,
-/// and `cpu` the time at which the first graphics processor is free.
+/// Computes the copies of a field. `rendered` is the time at which the renderers have accepted all triangles, and `cpu`
+/// the time at which the first graphics processor is free.
 #[inline(always)]
 fn end<const N: usize>(
     models: &[SlatsModel; N],
@@ -113,8 +109,7 @@ fn end<const N: usize>(
     std::array::from_fn(|i| models[i].times(rendered.0[i], top[i], bottom.map(|times| times[i])))
 }
 
-/// Computes the copies of all renderers to the frame buffers. From the time `from`, the renderers receive their copy
-/// commands one after the other.
+/// Copies regions to the frame buffers. From `from` on, the renderers receive their copy commands one after the other.
 #[inline(always)]
 fn copy<const N: usize>(
     models: &[SlatsModel; N],
@@ -131,7 +126,6 @@ fn copy<const N: usize>(
     copies::make(arrays, queues, Times::each(|i| models[i].region_ns))
 }
 
-/// Closed form of Slats. Its functions compute the summary of an experiment, and two estimates, without simulation.
 pub(super) const CLOSED_FORM: ClosedForm =
     ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
 
@@ -144,24 +138,22 @@ fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     Ok(summary(experiment.length(), &model, times))
 }
 
-/// Number of fields before the first picture that counts in the result.
-///
-/// These fields are the warm-up, the field in which the host's first view is sent, and the field in which this view is
+/// Number of fields before the first evaluated picture. In two of these fields, the host's first view is sent and
 /// drawn.
 const FIELDS_BEFORE: u64 = WARM_UP_PERIODS;
 const _: () = assert!(FIELDS_BEFORE >= WARM_UP_PICTURES as u64 + 2);
 
-/// Returns the number of fields that an experiment needs. Returns `None` if pictures are late, because in the steady
-/// state all pictures are equally late.
+/// Returns the number of fields that an experiment needs. Returns `None` if pictures are late: all fields are equal, so
+/// every picture would be late.
 fn fields_needed(experiment: &Experiment) -> Option<u64> {
     let (_, times) = steady_field(experiment).ok()?;
     times.in_time.then_some(FIELDS_BEFORE + 1)
 }
 
-/// Returns the model of an experiment and the times of a field in the steady state.
+/// Returns the model of an experiment, and the times of a field after many equal fields.
 ///
-/// If all clumps (groups of primitives) of a graphics processor are equal, the times of the field follow exactly from
-/// the mean clump. Otherwise each clump is computed for the first view.
+/// If all clumps (groups of primitives) are equal, the computation uses the mean clump. Otherwise the computation uses
+/// each clump of the first view.
 fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), ExperimentError> {
     let pipeline: Slats = pipeline_of(experiment)?;
     let scene = experiment.scene();

@@ -135,6 +135,7 @@ impl PictureRules for OneAtATime {
             copied_at: None,
             shown_at: record.tick(tick),
             end: PictureResult::Shown,
+            layer: 0,
         });
         times.filter(|times| times.shown_at < end).collect()
     }

@@ -15,8 +15,8 @@ use crate::settings::SettingArgs;
 use crate::terminal;
 use progress::CompareProgress;
 use pxpl5::compare::{
-    CONFIDENCE, CompareQuery, CompareStore, LEAST_SEEDS, MAX_SEEDS, Precision, ROWS_FOLDER, RecordedLength,
-    UntilPrecise, edge_pictures, usual_rows,
+    CONFIDENCE, CompareQuery, CompareStore, LEAST_SEEDS, MAX_SEEDS, Precision, ROWS_FOLDER, RecordedLength, RowChoice,
+    UntilPrecise, edge_pictures,
 };
 use pxpl5::views::png_bytes;
 use pxpl5::{ExperimentFile, MachineConfig};
@@ -118,7 +118,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let shared = with_defaults(args.settings.gather()?)?;
     let first = shared.seed()?;
     let seeds = (first..=first.saturating_add(args.seeds - 1)).collect();
-    let only = if args.all || !args.only.is_empty() { args.only } else { usual_rows(shared.registry()) };
+    let only = if args.all { RowChoice::All } else { args.only.into() };
     let (limits, pictures) = (args.limits, folder.is_some());
     let until = args.until_precision.map(|width| UntilPrecise { width, max_seeds: args.max_seeds as usize });
     let CompareArgs { causes, predictors, confidence, .. } = args;

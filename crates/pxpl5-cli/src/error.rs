@@ -76,15 +76,25 @@ impl From<SettingError> for CliError {
 
 impl From<FileError> for CliError {
     fn from(error: FileError) -> Self {
-        Self { code: code_of(error.kind), message: error.to_string() }
+        let message = match error.kind {
+            FileErrorKind::Unfinished => with_resume(&error),
+            _ => error.to_string(),
+        };
+        Self { code: code_of(error.kind), message }
     }
 }
 
+/// Returns the message of an error that a resume avoids, with the option of the command.
+fn with_resume(error: &impl Display) -> String {
+    format!("{error} (--resume)")
+}
+
+/// Returns the exit code for a file that cannot be used.
 const fn code_of(kind: FileErrorKind) -> u8 {
     match kind {
         FileErrorKind::Locked => BUSY,
         // The user can choose another folder.
-        FileErrorKind::Occupied => USAGE,
+        FileErrorKind::Occupied | FileErrorKind::Unfinished => USAGE,
         _ => FAILURE,
     }
 }
@@ -94,6 +104,7 @@ impl From<StudyError> for CliError {
         match error {
             StudyError::Setting(error) => error.into(),
             StudyError::File(error) => error.into(),
+            StudyError::Unfinished { .. } => Self::usage(with_resume(&error)),
             _ => Self::usage(error),
         }
     }

@@ -85,7 +85,7 @@ fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     let study = Study::Levels { experiments: args.experiments, measures_speeds: !args.errors_only };
     args.budget.admit_study(study, "take fewer --experiments")?;
     let bar = progress(0, "experiments and figures at all levels", false);
-    let query = LevelQuery { experiments: args.experiments, speeds: !args.errors_only };
+    let query = LevelQuery { experiments: args.experiments, speeds: !args.errors_only, ..LevelQuery::default() };
     let record = compare_with(query, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     // Speeds depend on the host, so the record describes the host.

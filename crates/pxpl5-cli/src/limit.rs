@@ -8,8 +8,8 @@ use crate::options::{PipelineOptions, option_of, registry};
 use crate::scenes;
 use crate::terminal::{advance, print, progress, warn};
 use clap::Args;
-use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery, Values};
-use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, Plan, TestScene};
+use pxpl5::limit::{CEILING, Limit, LimitQuery, Model, OverLimit, OverQuery, USUAL_SIZES, USUAL_VALUES};
+use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, Plan, StopFlag, TestScene};
 use serde_json::json;
 
 /// Find the largest number of triangles that a pipeline draws in time, or the values of a setting that reach a goal.
@@ -48,7 +48,8 @@ pub(crate) struct LimitArgs {
     /// typical for all others.
     #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
     scene: Option<String>,
-    /// Setting that is varied: triangles, or any numeric key of an experiment file, such as machine.n_gps; default triangles.
+    /// Setting that is varied: triangles, or any numeric key of an experiment file, such as machine.n_gps; default
+    /// triangles. The default pipeline is slats for triangles, and rendering-control for other settings.
     #[arg(long, value_name = "KEY")]
     over: Option<String>,
     /// Smallest value of --over that is tried; default: for numbers of boards 1, otherwise the smallest value that the
@@ -85,15 +86,15 @@ pub(crate) struct LimitArgs {
 }
 
 pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
-    if let Some(key) = args.over.as_deref().filter(|key| *key != "triangles") {
+    if let Some(key) = args.key() {
         return over(&args, key);
     }
     if args.from.or(args.to).is_some() {
         return Err(CliError::usage("--from and --to: expected a key with --over that is not triangles"));
     }
     let query = args.query()?;
-    let bar = progress(SIZES as u64, "sizes", args.quiet);
-    let limit = query.search_with(|tried| advance(&bar, tried, tried.max(SIZES as u64)))?;
+    let bar = progress(USUAL_SIZES, "sizes", args.quiet);
+    let limit = query.search_with(|tried, of| advance(&bar, tried, of))?;
     bar.finish_and_clear();
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
@@ -101,18 +102,11 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
 /// Searches for the values of one setting that reach a goal, and prints the result.
 fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     let (query, plan) = args.over_query(key)?;
-    let bar = progress(VALUES, "values", args.quiet);
-    let limit = query.search(|tried| advance(&bar, tried, tried.max(VALUES))).map_err(CliError::failure)?;
+    let bar = progress(USUAL_VALUES, "values", args.quiet);
+    let limit = query.search(|tried, of| advance(&bar, tried, of)).map_err(CliError::failure)?;
     bar.finish_and_clear();
     print(&if args.json { over_json(&query, &plan, &limit)? } else { over_text(&query, &plan, &limit) })
 }
-
-/// Estimated number of values that a search over a setting tries: five values, and the values of two bisections. For a
-/// setting with fractions, a bisection divides the range into 64 steps.
-const VALUES: u64 = 12;
-
-/// Estimated maximum number of scene sizes that a search simulates: twice the number of bisection steps over all sizes.
-const SIZES: usize = 40;
 
 /// Minimum number of simulated fields. Shorter runs end during the warm-up of every pipeline.
 const LEAST_FIELDS: u64 = 10;
@@ -138,9 +132,14 @@ impl LimitArgs {
         // Closed forms cost almost nothing, so only levels with events are checked against the budget.
         if query.level != Level::Analytic {
             let size = RunWork { fields, ..RunWork::of(&plan, &*scenes::load(&plan, false)?, false) };
-            self.budget.admit_all([size; SIZES], 1)?;
+            self.budget.admit_all([size; USUAL_SIZES as usize], 1)?;
         }
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
+    }
+
+    /// Returns the setting that is varied, or `None` for triangles.
+    fn key(&self) -> Option<&str> {
+        self.over.as_deref().filter(|key| *key != "triangles")
     }
 
     /// Returns the search over the values of a setting, and the checked experiment at the greatest value of the
@@ -159,33 +158,16 @@ impl LimitArgs {
         let fields = self.fields.unwrap_or(first.limit.fields).max(LEAST_FIELDS);
         file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "--fields")?;
         // A missing end of the range comes from the sources of the parameter.
-        let usual = || OverQuery::usual_values(&first, key);
-        let values = match (self.from, self.to) {
-            (None, None) => usual()?,
-            (from, to) => {
-                let (from, to) = match (from, to) {
-                    (Some(from), Some(to)) => (from, to),
-                    _ => (
-                        from.map_or_else(|| usual().map(|v| v.from), Ok)?,
-                        to.map_or_else(|| usual().map(|v| v.last()), Ok)?,
-                    ),
-                };
-                // Two whole numbers as ends mean that only whole numbers are tried. Numbers below 1e15 convert exactly.
-                let is_whole = from.fract() == 0.0 && to.fract() == 0.0 && from >= 0.0 && to < 1e15;
-                let values = if is_whole { Values::whole(from as u64, to as u64) } else { Values::real(from, to) };
-                let refused = || CliError::usage(format!("--from and --to: expected a range, found {from} to {to}"));
-                values.ok_or_else(refused)?
-            }
-        };
+        let values = OverQuery::values(&first, key, self.from, self.to).map_err(|e| e.at("--from and --to"))?;
         // The largest experiment must be valid and within the budget before the search starts.
         let mut last = file.clone();
         last.set_text(&format!("{key}={}", values.text(values.last())), "--over")?;
         let plan = last.resolve()?;
         warn(&first.warnings(), self.quiet);
         let size = RunWork { fields, ..RunWork::of(&plan, &*scenes::load(&plan, false)?, false) };
-        self.budget.admit_all([size; VALUES as usize], 1)?;
+        self.budget.admit_all([size; USUAL_VALUES as usize], 1)?;
         let goal = self.goal()?.unwrap_or(first.limit.goal);
-        Ok((OverQuery { file, key: key.to_owned(), values, goal }, plan))
+        Ok((OverQuery { file, key: key.to_owned(), values, goal, stop: StopFlag::default() }, plan))
     }
 
     /// Returns the papers' test scene that `--scene` names. `None` if the option names no test scene.
@@ -197,7 +179,9 @@ impl LimitArgs {
     /// unless `--scene` names a model.
     fn file(&self) -> Result<ExperimentFile, CliError> {
         let mut file = ExperimentFile::with(registry());
-        file.set("pipeline", "slats", "--pipeline")?;
+        // A search over triangles starts with the pipeline whose limit was published.
+        let pipeline = if self.key().is_some() { "rendering-control" } else { "slats" };
+        file.set("pipeline", pipeline, "--pipeline")?;
         // A test scene depends on the size, so a placeholder with one triangle stands for it.
         let model = self.scene.as_deref().filter(|_| self.test_scene().is_none());
         file.set("scene", model.unwrap_or("full-screen:1"), "--scene")?;
@@ -292,10 +276,9 @@ fn over_json(query: &OverQuery, plan: &Plan, limit: &OverLimit) -> Result<String
 }
 
 fn json_text(query: &LimitQuery, limit: Limit) -> String {
-    let has_limit = !is_without(limit);
     let object = json!({
         "schema": "pxpl5-limit/2",
-        "triangles": has_limit.then_some(limit.triangles),
+        "triangles": limit.has_limit().then_some(limit.triangles),
         "first_miss": limit.first_miss,
         "island": limit.island,
         "unbroken_from": limit.unbroken_from,
@@ -313,11 +296,6 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
     format!("{object:#}\n")
 }
 
-/// Returns true if every tried size up to the maximum reached the goal. The pipeline then has no limit.
-const fn is_without(limit: Limit) -> bool {
-    limit.first_miss.is_none() && limit.triangles == CEILING
-}
-
 /// Returns the name of the scene that the search draws with different numbers of triangles.
 fn scene(query: &LimitQuery) -> String {
     query.model.as_ref().map_or_else(|| query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned())
@@ -325,7 +303,7 @@ fn scene(query: &LimitQuery) -> String {
 
 fn text(query: &LimitQuery, limit: Limit) -> String {
     let goal = goal_text(query.criterion.goal);
-    if is_without(limit) {
+    if !limit.has_limit() {
         return format!(
             "{} on {} and {} has no limit: {CEILING} triangles of {} reach the goal as well\nGoal: {goal}.\n",
             query.pipeline.name(),

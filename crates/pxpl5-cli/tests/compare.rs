@@ -195,7 +195,7 @@ fn what_is_wrong_with_an_option_is_said_and_the_exit_code_is_2() {
         (["--fields", "3"], "found 3"),
         (["--seeds", "0"], "--seeds"),
         (["--pipeline", "slats"], "pxpl5 run --pipeline"),
-        (["--only", "slats,vdtr"], "found `vdtr`, did you mean `vdrt`?"),
+        (["--only", "slats,vdtr"], "there is no row `vdtr`; did you mean `vdrt`?"),
         (["--machine", "smal-hmd"], "small-hmd"),
     ] {
         let output = compare(&arguments);

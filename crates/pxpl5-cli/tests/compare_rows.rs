@@ -58,7 +58,7 @@ fn an_interrupted_comparison_goes_on_and_gives_the_same_files() {
     let refused = folder.run(&with(&["--out", "o"]));
     assert_eq!(refused.status.code(), Some(2));
     assert!(
-        err(&refused).contains("1 of 3 rows of an interrupted comparison are here; continue with --resume"),
+        err(&refused).contains("1 of 3 rows of an interrupted comparison are here; resume the comparison, or choose another folder (--resume)"),
         "{}",
         err(&refused)
     );

@@ -1,23 +1,22 @@
 //! Binning: finds the regions that a screen triangle touches.
 //!
-//! A region is *touched* when both of these conditions are true:
+//! Renderers evaluate a triangle at pixel centres. The *pixel-centre box* of a region is the smallest rectangle that
+//! contains the centres of the region's pixels. A region is *touched* if the triangle meets this box:
 //!
-//! - The bounding box of the triangle contains the centres of one of the region's pixel columns and of one of its pixel
-//!   rows.
-//! - For each edge, some point of the region's *pixel-centre box* is on the inner side, with the tie rule of the edge.
-//!   The box is the smallest rectangle that contains the centres of the region's pixels.
+//! - The triangle's bounding box contains the centre of a pixel column and the centre of a pixel row of the region.
+//! - For each edge of the triangle, some point of the pixel-centre box is on the inner side. Points on right and bottom
+//!   edges do not count.
 //!
-//! Together, the conditions test all sides of the Minkowski sum of triangle and box. Both conditions are therefore true
-//! exactly if the triangle, without its right and bottom edges, meets the pixel-centre box. Every region with a covered
-//! pixel is touched. A touched region can have no covered pixel, if the triangle passes between the pixel centres of
-//! the region. A triangle between two adjacent columns or rows of pixel centres touches no region.
+//! Together, the conditions test all sides of the Minkowski sum of triangle and box, so they are exact. Every region
+//! with a covered pixel is touched. A touched region can have no covered pixel, if the triangle passes between the
+//! pixel centres. A triangle between two adjacent columns or rows of pixel centres touches no region.
 
 use crate::outline::{Outline, extent};
 use crate::regions::RegionMask;
 use crate::view::Viewport;
 use pxpl5_wire::Linear;
 
-/// The first and the last pixel of an interval along x or y. If `first > last`, the interval is empty.
+/// The first and the last pixel along x or y. If `first > last`, the range is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Range {
     pub(crate) first: i32,
@@ -29,8 +28,8 @@ impl Range {
         self.first > self.last
     }
 
-    /// Returns the pixels whose centres lie in the interval [low, high), with both limits in subpixels. By the tie
-    /// rule, a pixel with its centre at `high` is not drawn.
+    /// Returns the pixels with centres from `low` to below `high`, both in subpixels. A pixel with its centre at `high`
+    /// is not drawn.
     #[inline(always)]
     pub(crate) const fn of_centres(low: i32, high: i32) -> Self {
         Self { first: (low + 7) >> 4, last: (high - 9) >> 4 }
@@ -42,8 +41,7 @@ impl Range {
     }
 }
 
-/// The division of a picture into regions. Reciprocals of the region's size make the search for the region of a pixel
-/// fast.
+/// The division of a picture into regions, with reciprocals that replace divisions by the region's size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binner {
     pub(crate) width: i32,
@@ -59,7 +57,7 @@ pub(crate) struct Binner {
 
 /// Returns a reciprocal such that `n / size == n * reciprocal(size) >> 20`, for n below 2^13 and sizes up to 128.
 ///
-/// The reciprocal divided by 2^20 exceeds `1 / size` by less than 2^-20. The excess times n stays below `1 / size`.
+/// The reciprocal divided by 2^20 exceeds `1 / size` by less than 2^-20, and n times this excess is below `1 / size`.
 const fn reciprocal(size: u32) -> u32 {
     (1_u32 << 20).div_ceil(size)
 }
@@ -89,7 +87,7 @@ impl Binner {
         self.columns
     }
 
-    /// Returns the rows of the picture that lie on the frame lines `lines`. A field has only every second line of its
+    /// Returns the pixel rows of the picture on the frame lines `lines`. A field has only every second line of its
     /// frame.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
@@ -100,8 +98,7 @@ impl Binner {
         }
     }
 
-    /// Returns the regions that meet a rectangle of pixels. The rectangle has the columns `x`, and rows on the frame
-    /// lines `lines`.
+    /// Returns the regions with pixels in the columns `x` and on the frame lines `lines`.
     pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
         let x = x.within(self.width);
         let y = self.rows_of_lines(lines).within(self.height);
@@ -111,7 +108,6 @@ impl Binner {
         self.cells(x, y, |_, _| true)
     }
 
-    /// Returns the regions that a triangle touches, as defined in the documentation of this module.
     #[inline(always)]
     pub(crate) fn triangle(&self, outline: &Outline) -> RegionMask {
         let [low_x, high_x] = extent(&outline.x);
@@ -136,8 +132,7 @@ impl Binner {
 
     /// Returns the regions that a triangle touches, among the regions with pixels in the columns `x` and rows `y`.
     ///
-    /// The function takes only the positions of the corners instead of an [`Outline`]. A search that needs no depths
-    /// can therefore save their computation.
+    /// The arguments have no depths, because a search for regions does not need them.
     #[inline(never)]
     pub(crate) fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
         let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
@@ -149,8 +144,8 @@ impl Binner {
         })
     }
 
-    /// Returns the regions for which `test` returns true, among the regions with pixels in the columns `x` and rows
-    /// `y`. The arguments of `test` are a region's column and row in the grid of regions.
+    /// Returns the regions with pixels in the columns `x` and rows `y` for which `test` returns true. The arguments of
+    /// `test` are the column and the row of a region.
     fn cells(&self, x: Range, y: Range, test: impl Fn(i32, i32) -> bool) -> RegionMask {
         let columns = [x.first, x.last].map(|n| quotient(n, self.column_reciprocal));
         let rows = [y.first, y.last].map(|n| quotient(n, self.row_reciprocal));
@@ -163,14 +158,14 @@ impl Binner {
         RegionMask::with_bits(mask)
     }
 
-    /// Returns the first and the last pixel column of a column of regions.
+    /// Returns the first and the last pixel column of the regions in a column.
     #[inline(always)]
     pub(crate) fn column_box(&self, column: i32) -> (i32, i32) {
         let left = column * self.region_width;
         (left, (left + self.region_width).min(self.width) - 1)
     }
 
-    /// Returns the first and the last frame line of a row of regions.
+    /// Returns the first and the last frame line of the regions in a row.
     #[inline(always)]
     pub(crate) fn row_box(&self, row: i32) -> (i32, i32) {
         let top = row * self.region_height;
@@ -178,7 +173,6 @@ impl Binner {
         (self.line_of_row(top), self.line_of_row(bottom))
     }
 
-    /// Returns the frame line on which a pixel row of the picture lies.
     #[inline(always)]
     const fn line_of_row(&self, row: i32) -> i32 {
         (row << self.line_shift) + self.first_line
@@ -186,10 +180,10 @@ impl Binner {
 }
 
 impl Outline {
-    /// Returns true if the triangle meets the box around the pixel centres of a rectangle.
+    /// Returns true if the triangle meets the box around the pixel centres of a rectangle, by the same rule as for
+    /// regions.
     ///
-    /// `across` has the first and the last pixel of the rectangle along x. `lines` has the first and the last frame
-    /// line of the rectangle. The conditions are the same as for regions.
+    /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last frame line.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         let x = pixels_between(&self.x);
@@ -201,15 +195,13 @@ impl Outline {
     }
 }
 
-/// Returns the pixels whose centres lie between the smallest and the largest of three coordinates, which are in
-/// subpixels.
 fn pixels_between(corners: &[i32; 3]) -> Range {
     let [low, high] = extent(corners);
     Range::of_centres(low, high)
 }
 
-/// Returns the largest value of an edge expression over a rectangle of pixels. The computation cannot overflow (see
-/// [`crate::GUARD_PIXELS`]).
+/// Returns the largest value of an edge expression over a rectangle of pixels. [`crate::GUARD_PIXELS`] prevents an
+/// overflow.
 fn greatest(edge: &Linear, (left, right): (i32, i32), (top, bottom): (i32, i32)) -> i32 {
     let x = if edge.a > 0 { right } else { left };
     let y = if edge.b > 0 { bottom } else { top };

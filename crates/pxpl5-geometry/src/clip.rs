@@ -1,57 +1,52 @@
-//! Clipping in homogeneous clip coordinates, before the division by w.
+//! Clipping in homogeneous coordinates, before the division by w.
 //!
 //! Triangles are clipped only as far as the number formats require. The clip planes are the near plane (z = 0), the far
-//! plane (z = w), and four planes of a guard band. The guard band extends about 4,000 px beyond the picture. A triangle
-//! outside the picture but inside the guard band is not clipped, because edge expressions can represent the triangle.
+//! plane (z = w), and the four planes of a guard band. The guard band extends about 4,000 px beyond the picture. A
+//! triangle outside the picture but inside the guard band needs no clipping.
 //!
-//! If two triangles share an edge, both are cut at exactly the same point, bit for bit. The two ends of an edge have a
-//! fixed order, which follows from their clip coordinates. The cut is computed from the first end to the second end.
-//! The winding of a triangle thus has no effect, and the cut opens no gap.
+//! If two triangles share an edge, both are cut at exactly the same point, bit for bit, and no gap opens. For this, the
+//! cut is always computed from the same end of the edge, independent of the winding of the triangle.
 //!
-//! Cuts are computed in double precision until they are on the screen. Close to the eye, the small coordinates of a
-//! long edge are differences of large numbers. If a cut had an error of several pixels, the pieces of a triangle could
-//! overlap.
+//! Cuts are computed in double precision. Close to the eye, the small coordinates of a long edge are differences of
+//! large numbers. An error of several pixels could make the pieces of a triangle overlap.
 
 use crate::newton;
 use std::cmp::Ordering;
 
-/// Largest allowed absolute value of a clip coordinate. Triangles with larger coordinates, infinities or NaN are not
-/// drawn, so no step overflows.
+/// Largest absolute value of a clip coordinate. Triangles with larger coordinates, infinities or NaN are not drawn, so
+/// that no computation overflows.
 pub const MAX_CLIP: f32 = 1e30;
 
-/// Smallest w for the division. With this limit, the product of a clip coordinate and the reciprocal of w is finite.
+/// Smallest w by which coordinates are divided, so that no quotient is infinite.
 pub(crate) const MIN_W: f32 = 1e-30;
 
 /// Largest number of corners of a triangle after clipping against six planes.
 const MAX_CORNERS: usize = 9;
 
-/// A triangle's vertex in clip coordinates, with `N` surface values (such as colours) that vary linearly over the
-/// triangle.
+/// A vertex in clip coordinates, with `N` values (such as colours) that vary linearly over the triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ClipVertex<const N: usize> {
     pub(crate) clip: [f32; 4],
     pub(crate) extra: [f32; N],
 }
 
-/// The guard band, the volume within which triangles are not clipped. The guard band holds the points with |x| at most
-/// `self.x * w` and |y| at most `self.y * w`.
+/// The volume within which triangles are not clipped: all points with |x| at most `self.x * w` and |y| at most `self.y
+/// * w`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Guard {
     pub(crate) x: f32,
     pub(crate) y: f32,
 }
 
-/// A corner of a clipped triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Corner<const N: usize> {
     pub(crate) clip: [f64; 4],
     pub(crate) extra: [f64; N],
-    /// True if a plane has cut an edge at this corner. False if the corner is a vertex of the original triangle.
+    /// True if clipping has made this corner. False if the corner is a vertex of the triangle.
     pub(crate) cut: bool,
 }
 
 impl<const N: usize> Corner<N> {
-    /// Makes a corner of a polygon from a vertex of the original triangle.
     fn at_vertex(vertex: &ClipVertex<N>) -> Self {
         Self { clip: vertex.clip.map(f64::from), extra: vertex.extra.map(f64::from), cut: false }
     }
@@ -74,8 +69,8 @@ impl<const N: usize> Polygon<N> {
         &self.corners[..self.len]
     }
 
-    /// Adds a corner. Because of rounding, a polygon can be slightly concave and then have more than nine corners.
-    /// Corners after the ninth are left out.
+    /// Adds a corner, up to nine. Because of rounding, a polygon can be slightly concave and have more corners, which
+    /// are left out.
     fn push(&mut self, corner: Corner<N>) {
         if let Some(slot) = self.corners.get_mut(self.len) {
             *slot = corner;
@@ -85,8 +80,7 @@ impl<const N: usize> Polygon<N> {
 }
 
 impl Guard {
-    /// Returns the signed distance of a point from one of the six planes. The distance is negative if the point is
-    /// outside this plane.
+    /// Returns a number that is negative if the point is outside the plane `plane`, one of the six clip planes.
     fn distance(self, plane: usize, [x, y, z, w]: [f64; 4]) -> f64 {
         let [right, top] = [self.x, self.y].map(f64::from);
         match plane {
@@ -99,8 +93,6 @@ impl Guard {
         }
     }
 
-    /// Returns true if a vertex needs no clipping. Returns false for NaN and for coordinates whose absolute value
-    /// exceeds [`MAX_CLIP`].
     #[inline(always)]
     pub(crate) fn contains(self, [x, y, z, w]: [f32; 4]) -> bool {
         let across = (x.abs() <= self.x * w) & (y.abs() <= self.y * w);
@@ -108,7 +100,6 @@ impl Guard {
         across & depth & (MIN_W..=MAX_CLIP).contains(&w)
     }
 
-    /// Clips a triangle by the near plane, the far plane and the four planes of the guard band.
     pub(crate) fn clip<const N: usize>(self, triangle: &[ClipVertex<N>; 3]) -> Polygon<N> {
         let mut polygon = Polygon::empty();
         triangle.iter().for_each(|v| polygon.push(Corner::at_vertex(v)));
@@ -137,8 +128,8 @@ impl Guard {
         out
     }
 
-    /// Returns the point where an edge crosses a plane. The function sorts the ends by their clip coordinates, so that
-    /// both triangles at a shared edge get the same point.
+    /// Returns the point where an edge crosses a plane. The ends are sorted first, so that both triangles at a shared
+    /// edge get the same point.
     fn crossing<const N: usize>(self, plane: usize, one: &Corner<N>, other: &Corner<N>) -> Corner<N> {
         let (from, to) = match order(&one.clip, &other.clip) {
             Ordering::Greater => (other, one),
@@ -155,18 +146,17 @@ impl Guard {
     }
 }
 
-/// Interpolates linearly between two numbers: `t` = 0 gives `from`, and `t` = 1 gives `to`.
 fn interpolate(from: f64, to: f64, t: f64) -> f64 {
     from + (to - from) * t
 }
 
-/// Compares two points by their clip coordinates. Any two different points have a fixed order.
+/// Compares two points by their clip coordinates, so that the ends of an edge have a fixed order.
 fn order(a: &[f64; 4], b: &[f64; 4]) -> Ordering {
     a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }
 
-/// Returns true if all three corners of a triangle are outside the same plane of the view volume. Such a triangle is
-/// not visible.
+/// Returns true if all three corners are beyond the same side of the visible volume, so that the triangle is not
+/// visible.
 pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     let beyond_a_side: [fn(&[f32; 4]) -> bool; 6] = [
         |[x, _, _, w]| x > w,
@@ -179,7 +169,7 @@ pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
     beyond_a_side.iter().any(|beyond| corners.iter().all(beyond))
 }
 
-/// Returns true if no coordinate of the corners exceeds [`MAX_CLIP`] in absolute value. Returns false for NaN.
+/// Returns true if no coordinate exceeds [`MAX_CLIP`] in absolute value. Returns false for NaN.
 pub(crate) fn representable(corners: &[[f32; 4]; 3]) -> bool {
     corners.iter().flatten().all(|v| v.abs() <= MAX_CLIP)
 }

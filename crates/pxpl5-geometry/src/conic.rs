@@ -1,28 +1,26 @@
-//! Conics on the screen: the images of spheres, in floating point and in the renderer's fixed-point format.
+//! The elliptic images of spheres on the screen, as quadratic expressions in floating point and in fixed point.
 
 use crate::newton::{reciprocal_double, reciprocal_root, root, whole};
 use pxpl5_wire::Quadratic;
 
-/// Largest number of bits of the absolute value of a sphere's silhouette expression. The expression is at least 0
-/// inside the sphere's image. The limit holds at all pixels of the regions that the sphere touches. With the sign, the
-/// value has 47 bits. The renderer evaluates 48 bits.
+/// Largest number of bits of a sphere's quadratic expression, without the sign, at any pixel of its regions. The
+/// renderer evaluates 48 bits.
 const VALUE_BITS: i32 = 46;
 
-/// Largest number of bits of a square root in the renderer.
 pub(crate) const ROOT_BITS: i32 = 12;
 
-/// Largest number of low bits that a square root can ignore. The renderer takes the root of a sphere's silhouette
-/// expression, which is at least 0 inside the sphere's image.
+/// Largest number of low bits that the renderer's square root can ignore.
 const MAX_ROOT_SHIFT: i32 = 24;
 
-/// Largest left shift of a square root in bits. The root is shifted before its subtraction from a depth.
+/// Largest number of bits by which the renderer can shift a square root to the left before it subtracts the root from a
+/// depth.
 const MAX_DEPTH_SHIFT: i32 = 20;
 
-/// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`. The offset (dx, dy) is in pixels from
-/// `origin`.
+/// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`, where (dx, dy) is the distance from `origin`
+/// in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Conic {
-    /// Origin of the offsets (dx, dy), in pixels of the frame. The centre of the top left pixel is (0, 0).
+    /// The point with dx = dy = 0, in pixels of the frame. The centre of the top left pixel is (0, 0).
     pub(crate) origin: [f64; 2],
     pub(crate) constant: f64,
     pub(crate) x: f64,
@@ -32,8 +30,10 @@ pub(crate) struct Conic {
     pub(crate) yy: f64,
 }
 
-/// A conic in fixed point. The value of the conic is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the
-/// depth of the plane through the sphere's silhouette minus the depth of the sphere (see [`crate::ScreenSphere`]).
+/// A conic in fixed point, with the shifts by which the renderer computes a depth from its square root.
+///
+/// The value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the depth by which the sphere's surface is
+/// nearer than the plane through its silhouette.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FixedConic {
     pub(crate) quadratic: Quadratic,
@@ -41,35 +41,33 @@ pub(crate) struct FixedConic {
     pub(crate) depth_shift: u8,
 }
 
-/// Returns 2 to the power `exponent`. The exponent is limited to the range from -1022 to 1023. The result is exact.
+/// Returns 2 to the power `exponent` exactly. Exponents outside -1022 to 1023 are limited to this range.
 pub(crate) fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52)
 }
 
-/// Returns the smallest n with `value < 2^n`, or -1022 if the value is 0.
+/// Returns the exponent of the smallest power of two above `value`, or -1022 if the value is 0.
 fn exponent_above(value: f64) -> i32 {
     ((value.to_bits() >> 52) & 0x7ff) as i32 - 1022
 }
 
-/// Position, value and size of an ellipse, which is a conic that is positive inside.
+/// Position, greatest value and size of a conic that is positive inside an ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ellipse {
-    /// Position of the conic's greatest value, in pixels of the frame.
+    /// The pixel position of the greatest value.
     pub(crate) peak: [f64; 2],
-    /// The greatest value of the conic.
     pub(crate) value: f64,
-    /// Squares of half the width and half the height of the ellipse, in pixels.
     half_squares: [f64; 2],
 }
 
 impl Ellipse {
-    /// Returns two reciprocals: 1 / (half the width) and 1 / (half the height) of the ellipse, per pixel.
+    /// Returns 1 / (half the width) and 1 / (half the height) of the ellipse.
     pub(crate) fn per_half_size(&self) -> [f64; 2] {
         self.half_squares.map(reciprocal_root)
     }
 
     /// Returns the smallest and the largest x and y of the ellipse, in pixels of the frame. Returns `None` if the conic
-    /// is not an ellipse, for example because of NaN, an overflow or a size of 0.
+    /// is not an ellipse, for example because of an overflow.
     pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let [x, y] = self.peak;
         let [half_x, half_y] = self.half_squares.map(root);
@@ -91,7 +89,6 @@ impl Conic {
         }
     }
 
-    /// Returns the same conic with offsets from another origin.
     pub(crate) fn around(&self, origin: [f64; 2]) -> Self {
         let dx = origin[0] - self.origin[0];
         let dy = origin[1] - self.origin[1];
@@ -104,18 +101,15 @@ impl Conic {
         }
     }
 
-    /// Returns the conic's value at the offset (dx, dy) from its origin.
     fn at(&self, dx: f64, dy: f64) -> f64 {
         let row = (self.xx * dx + self.xy * dy) + self.x;
         (row * dx + (self.yy * dy + self.y) * dy) + self.constant
     }
 
-    /// Returns the determinant `4 xx yy - xy^2`, which is positive for an ellipse.
     fn determinant(&self) -> f64 {
         4.0 * self.xx * self.yy - self.xy * self.xy
     }
 
-    /// Returns the position, value and size of the conic as an ellipse. For other conics, the result has no meaning.
     pub(crate) fn ellipse(&self) -> Ellipse {
         let inverse = reciprocal_double(self.determinant());
         let dx = (self.xy * self.y - 2.0 * self.yy * self.x) * inverse;
@@ -129,13 +123,11 @@ impl Conic {
         }
     }
 
-    /// Rounds the conic to fixed point, for evaluation at the frame's pixels in `rectangle`. `rectangle` has the first
-    /// and the last pixel along x, then along y.
+    /// Rounds the conic to fixed point, for the pixels of `rectangle` (first and last pixel along x, then along y).
     ///
-    /// The values are scaled by a power of two: the largest power with which the values fit into 46 bits on the whole
-    /// rectangle. The coefficients are rounded with pixel (px, py) as origin, then converted exactly to pixel (0, 0) as
-    /// origin. The rounding error is therefore smallest at (px, py) and grows with the distance from this pixel.
-    /// Callers pass the pixel at which the value is greatest (`peak`), so that even a small sphere covers a pixel.
+    /// The values are scaled by the largest power of two with which they fit into 46 bits on the rectangle. Rounding
+    /// errors are smallest at the pixel (px, py). Callers pass the pixel with the greatest value, `peak`, so that even
+    /// a small sphere covers a pixel.
     pub(crate) fn fixed(&self, peak: f64, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
         let local = self.around([f64::from(px), f64::from(py)]);
         let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);
@@ -150,20 +142,19 @@ impl Conic {
         }
     }
 
-    /// Returns the greatest absolute value at the corners of a rectangle. In the rectangle, the absolute value of a
-    /// concave conic is at most the larger of two values: the returned value and the conic's peak.
+    /// Returns the greatest absolute value at the corners of a rectangle. On a rectangle, the absolute value of a
+    /// concave conic is greatest at a corner or at the peak.
     fn greatest_on(&self, [across, down]: [[i32; 2]; 2]) -> f64 {
         let values = across.into_iter().flat_map(|x| down.map(|y| self.at_pixel(x, y).abs()));
         values.fold(0.0, f64::max)
     }
 
-    /// Returns the conic's value at a pixel of the frame.
     fn at_pixel(&self, x: i32, y: i32) -> f64 {
         self.at(f64::from(x) - self.origin[0], f64::from(y) - self.origin[1])
     }
 
-    /// Rounds the coefficients to integers with pixel (px, py) as origin, then converts them exactly to pixel (0, 0) as
-    /// origin.
+    /// Rounds the coefficients to integers with the origin at pixel (px, py), then moves the origin exactly to pixel
+    /// (0, 0).
     fn rounded(&self, px: i64, py: i64) -> Quadratic {
         let [xx, xy, yy] = [self.xx, self.xy, self.yy].map(whole);
         let [x, y] = [self.x, self.y].map(whole);
@@ -180,8 +171,8 @@ impl Conic {
     }
 }
 
-/// Converts a quadratic expression over frame lines to an expression over the rows of a picture. The rows are every
-/// `step`-th line from line `first` on. The values at the pixels stay exactly the same.
+/// Converts a quadratic over the lines of a frame to a quadratic over the rows of a picture. Row r is line `first + r *
+/// step`. The value at each pixel stays the same.
 pub(crate) fn for_rows(frame: Quadratic, step: i64, first: i64) -> Quadratic {
     Quadratic {
         xx: frame.xx,

@@ -1,10 +1,9 @@
 //! Set-up of triangles as code of the graphics processor: i860 assembly, and its memory layout.
 //!
-//! A [`Kernel`] reads Gouraud or Phong triangles from the display list. The kernel computes the words of the renderer
-//! commands and writes the commands into bins, one bin for each region. The steps are: transform, guard band test,
-//! light or normals, snapping to subpixels, planes, conversion of a frame's lines to a field's rows, and regions.
-//! Triangles that are not wholly inside the guard band go to the clipper, a separate program. The kernel replaces steep
-//! planes by planes with a constant value only for pieces of clipped triangles.
+//! A [`Kernel`] reads triangles from the display list and writes renderer commands into bins, one bin for each region.
+//! The steps are: transform, test against the guard band, light or normals, rounding to subpixels, planes, conversion
+//! of a frame's lines to a field's rows, and regions. The clipper, a separate program, handles triangles that are not
+//! wholly inside the guard band. The kernel makes steep planes constant only in pieces of clipped triangles.
 //!
 //! ```text
 //!   display list (96 bytes a triangle, --+
@@ -15,9 +14,9 @@
 //!                                             clipper -> the same for pieces
 //! ```
 //!
-//! The native code makes the same computation, so both give the same words, bit for bit. The reciprocal of w is
-//! computed from a first approximation by two Newton steps, in single precision. A matrix rotates the normals, which
-//! are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
+//! The Rust code of this crate makes the same computation, so both give the same words, bit for bit. The reciprocal of
+//! w is computed from a first approximation by two Newton steps, in single precision. A matrix rotates the normals,
+//! which are not normalized again. Light is computed in the coordinates of the normals. kernels/parameters.s defines
 //! registers and memory layouts. A [`Kernel`] concatenates source files, like a linker, and defines constants. The
 //! conditions in the files (`.if`) use these constants to select lines. This crate neither assembles nor runs the
 //! sources.
@@ -32,7 +31,7 @@ use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Tria
 use glam::Vec3;
 use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid, Word};
 
-/// Optimization level of the kernel's code.
+/// Version of the kernel's code, by its degree of optimization.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Schedule {
     /// Code like the output of a compiler without optimization. Every statement loads its operands from the stack frame
@@ -41,66 +40,66 @@ pub enum Schedule {
     /// Code like the output of a good compiler of about 1990. The code has functions, loops, local variables in
     /// registers, and scalar operations (kernels/compiled_rules.md).
     Compiled,
-    /// Hand-written code in dual-instruction mode. The code has two loops over batches of vertices or triangles. Each
-    /// loop fits the instruction cache.
+    /// Hand-written code, in which the i860 starts two instructions per clock. The code has two loops over batches of
+    /// vertices or triangles. Each loop fits the instruction cache.
     ///
-    /// Most of the source is linear code: single operations in order, without an assignment to clocks and pipelines.
-    /// The i860's assembler does not support linear code. This project's assembler first schedules the linear code.
+    /// Most of the source lists single operations in order, without clocks and pipelines. This project's assembler
+    /// assigns the operations to clocks. The i860's own assembler cannot do so.
     Dual,
 }
 
-/// Surface values of a triangle. Planes interpolate these values in addition to depth.
+/// The kind of values at the corners of a triangle, which planes interpolate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelSurface {
-    /// Colours, computed by lighting each corner.
+    /// Colours, which the kernel computes from light and normals.
     Gouraud,
-    /// Colours from the display list, without lighting.
+    /// Colours from the display list.
     Precomputed,
-    /// Normals in eye coordinates, for Phong shading.
+    /// Normals in eye coordinates, from which the renderers compute colours (Phong shading).
     Phong,
 }
 
-/// Arrangement of triangle corners in the display list.
+/// Arrangement of the triangles in the display list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelList {
-    /// Triangles with three corners each ([`display_list_words`]).
+    /// Separate triangles with three corners each ([`display_list_words`]).
     Triangles,
-    /// Strips. Each vertex makes a triangle with the two previous vertices ([`vertex_words`]).
+    /// Strips, in which each vertex makes a triangle with the two vertices before it ([`vertex_words`]).
     Strips,
 }
 
-/// Kind of picture that the code is written for.
+/// Size of the picture, and its division into regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelPicture {
     /// An NTSC frame: 640 x 480 pixels in regions of 128 x 128.
     Frame,
     /// An NTSC field: 640 x 240 pixels in regions of 128 x 120.
     Field,
-    /// A frame of another size in regions of 128 x 128, for example a face of a cube. The parameter block gives the
-    /// size of the frame.
+    /// A frame of another size in regions of 128 x 128, for example a face of a cube. The size is a parameter of the
+    /// code.
     Grid,
 }
 
-/// The choice of kernel code for one kind of triangle and picture.
+/// The choice of a kernel: its version, and the kinds of triangles and pictures that it handles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
-    /// Optimization level of the kernel's code: without optimization, compiled or hand-written.
+    /// Version of the code: without optimization, compiled or hand-written.
     pub schedule: Schedule,
-    /// Kind of triangle that the kernel sets up.
+    /// Values that the kernel interpolates.
     pub surface: KernelSurface,
-    /// Kind of display list that the kernel reads.
+    /// Arrangement of the triangles in the display list.
     pub list: KernelList,
-    /// Kind of picture that the kernel draws.
+    /// Size of the picture, and its division into regions.
     pub picture: KernelPicture,
-    /// True if the kernel puts commands into the bins of the touched regions. False if the kernel makes a single
-    /// list of commands, which every region receives.
+    /// True if the kernel sorts commands into the bins of the touched regions. False if every region receives the same
+    /// list of commands.
     pub binned: bool,
     /// True if the kernel leaves out back faces.
     pub culls: bool,
-    /// True if a kernel without bins also stores the bounding box of each command.
+    /// True if a kernel without bins also stores the bounding box of each command, for later searches.
     ///
-    /// The boxes are at the address that a kernel with bins uses for its table of bins. A box is: low x, high x, low y,
-    /// high y, in 1/16 px of the frame.
+    /// The boxes replace the table of bins. A box has four numbers in 1/16 px of the frame: low x, high x, low y, high
+    /// y.
     pub keeps_boxes: bool,
     /// True if one pass over the triangles makes the commands of both eyes (kernels/slats_rules.md).
     ///
@@ -109,29 +108,27 @@ pub struct Kernel {
     pub both_eyes: bool,
 }
 
-/// First words of the instructions in a triangle's renderer command, in the order of the kernel's parameter block.
+/// First words of the instructions in a triangle's renderer command.
 ///
 /// The order is: enable, edge, depth compare, depth load, three components, colour (Phong only).
 pub type Heads = [Word; 8];
 
-/// Number of words that a triangle takes in the display list.
+/// Number of words of a separate triangle in the display list.
 pub const TRIANGLE_WORDS: usize = 24;
 
-/// Number of words that a strip's vertex takes in the display list.
+/// Number of words of a vertex of a strip in the display list.
 pub const VERTEX_WORDS: usize = 8;
 
-/// Number of words of a kernel's parameter block.
+/// Number of words of a kernel's parameters.
 pub const PARAMETER_WORDS: usize = 128;
 
-/// Single-precision constant 1.5 * 2^23. If a number is added to this constant, the low bits of the sum hold the number
-/// rounded to an integer.
+/// The constant 1.5 * 2^23. The low bits of the sum of this constant and a number hold the number, rounded to an
+/// integer.
 const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
-/// 2^18: greater than any distance between two corners within the guard band, in subpixels.
 const TWO_18: f32 = 262_144.0;
 
-/// Constant that reverses the order of biased integers. The integers are subtracted from this constant, so the larger
-/// integer gives the smaller difference.
+/// Constant from which biased integers are subtracted to reverse their order.
 const FLIP: Word = 0x9700_0000;
 
 const PARAMETERS: &str = include_str!("../kernels/parameters.s");
@@ -143,11 +140,10 @@ const BINS: &str = include_str!("../kernels/bins.s");
 const VERTICES: &str = include_str!("../kernels/vertices.s");
 const VERTICES_END: &str = include_str!("../kernels/vertices_end.s");
 
-/// Source files of the kernel code in the style of a compiler's output. The functions that compute surface values come
-/// first.
+/// Sources of the compiled kernel. The functions that compute colours or normals come first.
 const COMPILED: [&str; 5] = [NEWTON, SCALAR, include_str!("../kernels/compiled.s"), SCALAR_FUNCTIONS, BINS];
 
-/// Source files of the kernel code in dual-instruction mode.
+/// Sources of the hand-written kernel.
 const DUAL: [&str; 7] = [
     include_str!("../kernels/dual.s"),
     VERTICES,
@@ -158,21 +154,20 @@ const DUAL: [&str; 7] = [
     include_str!("../kernels/dual_end.s"),
 ];
 
-/// Source files for the right eye, for kernels that serve both eyes. With this code, the first loop processes each
-/// batch of vertices twice, once for each eye. The right eye uses the colours that the loop has computed for the left
-/// eye.
+/// Sources for the right eye, if a kernel serves both eyes. The first loop then processes each batch of vertices twice.
+/// The right eye uses the colours of the left eye.
 const RIGHT_EYE: [&str; 3] = [VERTICES, VERTICES_END, include_str!("../kernels/right_eye.s")];
 
-/// Returns an assembly source that defines constants. A constant is 1 if its condition is true, and 0 otherwise.
+/// Returns an assembly source that defines each name as 1 or 0.
 pub(crate) fn choices(each: &[(&str, bool)]) -> String {
     each.iter().map(|(name, holds)| format!("{name} = {}\n", u8::from(*holds))).collect()
 }
 
 impl Kernel {
-    /// Returns the kernel for a picture of triangles with separate corners.
+    /// Returns the kernel for separate triangles and the picture of `viewport`.
     ///
-    /// Returns `None` if [`KernelPicture`] has no kind for the regions of `viewport`. A kernel without bins exists only
-    /// for NTSC frames and fields.
+    /// Returns `None` if no kernel has regions of this size. A kernel without bins exists only for NTSC frames and
+    /// fields.
     #[must_use]
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
@@ -180,7 +175,7 @@ impl Kernel {
         Some(Self { schedule, surface, list, picture, binned, culls: false, keeps_boxes: false, both_eyes: false })
     }
 
-    /// Returns true if a variant of this kernel makes the commands of both eyes in one pass over the triangles.
+    /// Returns true if this kernel can make the commands of both eyes in one pass over the triangles.
     #[must_use]
     pub fn can_serve_both_eyes(&self) -> bool {
         self.surface == KernelSurface::Precomputed
@@ -207,10 +202,9 @@ impl Kernel {
         [&common, own].concat().join("\n")
     }
 
-    /// Returns the source of the kernel's clipper. Execution begins at the label `clipper`.
+    /// Returns the source of the clipper, which is the same for all versions. Execution begins at the label `clipper`.
     ///
-    /// The address of the clipper goes into [the parameter block](Self::parameters). The source is the same for all
-    /// optimization levels.
+    /// [The parameters](Self::parameters) of the kernel contain the address of the clipper.
     #[must_use]
     pub fn clipper_source(&self) -> String {
         let choices = Self { schedule: Schedule::Compiled, ..*self }.choices(false);
@@ -218,8 +212,8 @@ impl Kernel {
         [&choices, PARAMETERS, PICTURE, NEWTON, SCALAR, clipper, SCALAR_FUNCTIONS, BINS].join("\n")
     }
 
-    /// Returns the constants that the conditions of the sources use. Each constant is 0 or 1. The constant `BETWEEN` is
-    /// 1 for [triangles between two views](Self::between_source).
+    /// Returns the constants, 0 or 1, by which the sources select lines. `between` is true for [triangles between two
+    /// views](Self::between_source).
     fn choices(&self, between: bool) -> String {
         let surface = |surface| self.surface == surface;
         choices(&[
@@ -247,7 +241,7 @@ impl Kernel {
         }
     }
 
-    /// Returns the parameter block of a view. `clipper` is the address at which the clipper's code begins.
+    /// Returns the kernel's parameters for a view. `clipper` is the address of the clipper's code.
     #[must_use]
     pub fn parameters(
         &self,
@@ -295,9 +289,10 @@ impl Kernel {
         words.0
     }
 
-    /// Returns the scale and the offset that convert a surface value to the units of plane expressions, for the front
-    /// and for the back of a triangle. The offset adds half a unit for rounding, and removes the constant
-    /// [`ROUND_SINGLE`] that an earlier step has added.
+    /// Returns the factor and the summand that convert a surface value to a plane's units, for the front and the back
+    /// of a triangle.
+    ///
+    /// The summand adds half a unit for rounding, and removes [`ROUND_SINGLE`], which an earlier step has added.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
@@ -333,7 +328,6 @@ impl Kernel {
 }
 
 impl KernelPicture {
-    /// Returns the kind of picture of `viewport`, or `None` if no kernel supports this viewport.
     pub(crate) fn of(viewport: &Viewport) -> Option<Self> {
         let grid = viewport.grid();
         match viewport.lines() {
@@ -346,25 +340,23 @@ impl KernelPicture {
     }
 }
 
-/// Returns three numbers: the last subpixel of a picture along x, its last subpixel along y in the frame, and its
-/// number of regions along x.
+/// Returns the last subpixel along x, the last subpixel along y in the frame, and the number of region columns.
 pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
     let grid = viewport.grid();
     [16 * grid.width - 1, 16 * viewport.frame_lines() - 1, grid.columns()]
 }
 
-/// Returns a distance from pixel (0, 0), in subpixels. Every point whose x and y are at most this far away is inside
-/// the guard band.
+/// Returns a distance from pixel (0, 0), in subpixels. A point within this distance along x and y is inside the guard
+/// band.
 ///
-/// The guard band ends one pixel before [`screen::GUARD_PIXELS`] on the right and at the bottom. The band is symmetric
-/// around the middle of the picture. The left and top ends of the band are therefore nearer to pixel (0, 0) by the
-/// picture's size. One pixel is reserved for rounding.
+/// The guard band is symmetric around the middle of the picture. On the left and at the top, its ends are nearer to
+/// pixel (0, 0). One pixel is reserved for rounding.
 fn safe_distance(viewport: &Viewport) -> Word {
     let size = viewport.grid().width.max(viewport.frame_lines());
     16 * (screen::GUARD_PIXELS as u32 - 2 - size)
 }
 
-/// A parameter block under construction. Positions in the block are in bytes, as in kernels/parameters.s.
+/// A kernel's parameters under construction. Addresses are in bytes, as in kernels/parameters.s.
 struct ParameterWords([Word; PARAMETER_WORDS]);
 
 impl ParameterWords {
@@ -381,8 +373,8 @@ impl ParameterWords {
     }
 }
 
-/// Returns a mask for XOR and a mask for AND, with which the kernel selects triangles to leave out. The kernel applies
-/// both masks to the high word of a triangle's area. A negative result means that the triangle is not drawn.
+/// Returns two masks, for XOR and AND, by which the kernel tests the winding. If the result for the high word of a
+/// triangle's area is negative, the triangle is not drawn.
 const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     const SIGN: Word = 1 << 31;
     match dropped {
@@ -393,8 +385,8 @@ const fn culled(dropped: Option<Turn>) -> [Word; 2] {
     }
 }
 
-/// Returns the source of the code that runs before the triangles of a pass over the display list. The labels of the
-/// source are `edit`, `reset` and `place` (kernels/place.s).
+/// Returns the source of the code that prepares a view (kernels/place.s). The labels of the source are `edit`, `reset`
+/// and `place`.
 ///
 /// The code at `place` writes all parameters that depend on a view or a light, for [`Kernel::parameters`] and for
 /// [`crate::sphere_kernel`].
@@ -404,18 +396,18 @@ pub fn place_source() -> String {
     [PARAMETERS, spheres, NEWTON, place].join("\n")
 }
 
-/// Returns a row of the matrix that rotates normals. The row is scaled to the units of normals in commands.
+/// Returns a row of the matrix that rotates normals, in the units of normals in commands.
 fn normal_row(row: [f32; 3]) -> [f32; 4] {
     let [x, y, z] = row.map(|v| v * f32::from(NORMAL_UNIT));
     [x, y, z, 0.0]
 }
 
-/// Returns the two words of a double-precision number in the memory order of the i860: the low half first.
+/// Returns the two words of a double in the memory order of the i860, low half first.
 pub(crate) const fn halves(value: f64) -> [Word; 2] {
     [value.to_bits() as Word, (value.to_bits() >> 32) as Word]
 }
 
-/// Returns the words of a triangle in the format of the display list, with normals of unit length.
+/// Returns the words of a separate triangle in the display list, with normals of unit length.
 #[must_use]
 pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     let mut words = [0; TRIANGLE_WORDS];
@@ -426,10 +418,10 @@ pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     words
 }
 
-/// Returns a strip's vertex in the format of the display list, with a normal of unit length.
+/// Returns the words of a strip's vertex in the display list, with a normal of unit length.
 ///
-/// `begins` is true for the first two vertices of a strip, which make no triangle. The corners of a triangle are the
-/// two previous vertices, in their order, and this vertex. The order is the same for both windings.
+/// `begins` is true for the first two vertices of a strip, which make no triangle. Every later vertex makes a triangle
+/// with the two vertices before it. The order of these corners is the same for both windings.
 #[must_use]
 pub fn vertex_words(position: Vec3, normal: Vec3, colour: [u8; 3], begins: bool) -> [Word; VERTEX_WORDS] {
     let [x, y, z] = position.to_array().map(f32::to_bits);

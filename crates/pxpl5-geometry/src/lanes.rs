@@ -1,9 +1,8 @@
-//! Set-up of several triangles together, each in one lane of a vector unit.
+//! Set-up of several triangles together, with one triangle in each lane of a vector register.
 //!
-//! Every lane computes the same bits as [`crate::ScreenTriangle`] and [`crate::plane`] compute for one triangle.
-//! Products of two differences of corner coordinates need up to 34 bits. The code computes such products in double
-//! precision, which represents them exactly. The loops are plain Rust, compiled once for each vector unit (see
-//! [`mod@multiversion`]). All operations in the loops give the same result on every unit.
+//! Every lane has the same bits as the computation for one triangle ([`crate::ScreenTriangle`], [`crate::plane`]).
+//! Products of two coordinate differences need up to 34 bits, and double precision represents them exactly. The loops
+//! are plain Rust, compiled once for each kind of vector unit (see [`mod@multiversion`]).
 
 use crate::newton;
 use crate::outline::SUBPIXELS;
@@ -15,18 +14,17 @@ use multiversion::multiversion;
 pub use pxpl5_wire::LANES;
 use pxpl5_wire::{Linear, LinearLanes, TriangleBatch, format};
 
-/// One value for each triangle.
 pub(crate) type EachLane<T> = [T; LANES];
 
-/// Up to [`LANES`] triangles that need no clipping, with the surface values at their corners.
+/// Up to [`LANES`] triangles that need no clipping, with colours or normals at their corners.
 #[derive(Clone, Debug)]
 pub struct TriangleLanes<'a> {
     len: usize,
-    /// Vertices of the triangles: first index is the corner, second index is the triangle.
+    /// Vertices by corner, then by triangle.
     corners: [EachLane<&'a SurfaceVertex>; 3],
 }
 
-/// Placeholder for the corners of an invisible triangle, which no pixel shows.
+/// The corner of a triangle without area, for unused lanes.
 static NOWHERE: SurfaceVertex = SurfaceVertex::NOWHERE;
 
 impl Default for TriangleLanes<'_> {
@@ -72,7 +70,7 @@ impl<'a> TriangleLanes<'a> {
         inside
     }
 
-    /// Adds a placeholder for an invisible triangle.
+    /// Adds a triangle without area, which covers no pixel.
     ///
     /// # Panics
     /// Panics if [`LANES`] triangles have already been added.
@@ -84,14 +82,13 @@ impl<'a> TriangleLanes<'a> {
     }
 }
 
-/// Values at the corners of several triangles. First index is the corner, second index is the triangle.
+/// Values at the corners of several triangles, by corner, then by triangle.
 struct CornerValues {
-    /// Distance of each corner from the picture's left border, in 1/16 px.
     x: [EachLane<i32>; 3],
     y: [EachLane<i32>; 3],
     z: [EachLane<f64>; 3],
     facing: [EachLane<f32>; 3],
-    /// Components of the colours or normals at the corners. First index is the component, then corner and triangle.
+    /// Components of the colours or normals, by component, corner and triangle.
     surface: [[EachLane<f32>; 3]; 3],
 }
 
@@ -118,8 +115,8 @@ impl CornerValues {
     }
 }
 
-/// Replaces the expressions of some triangles by `constant`. Each lane holds the expression of one triangle, and is
-/// replaced if its element of `there` is 0. In all other lanes, `there` must have all bits set.
+/// Replaces each expression whose element of `there` is 0 by `constant`. All other elements of `there` must have all
+/// bits set.
 #[inline(always)]
 fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> LinearLanes {
     for (i, there) in there.iter().enumerate() {
@@ -130,18 +127,16 @@ fn or_constant(mut all: LinearLanes, constant: i32, there: &EachLane<i32>) -> Li
     all
 }
 
-/// Linear expressions of up to [`LANES`] triangles: edges, depth, and colour or normal.
 #[derive(Clone, Debug)]
 struct Expressions {
     edges: [LinearLanes; 3],
-    /// Linear expressions of depth and of three components of colour or normal, in this order.
+    /// Planes of depth and of three components of colour or normal, in this order.
     planes: [LinearLanes; 4],
-    /// For each triangle, the number of planes that were steeper than `MAX_SLOPE` and were replaced by planes with a
-    /// constant value.
+    /// Number of planes of each triangle that were too steep for the format and were made constant.
     flattened: EachLane<u8>,
 }
 
-/// Linear expressions of one triangle: three edges, depth, and three components of colour or normal.
+/// Three edges, depth, and three components of colour or normal.
 type OneTriangle = ([Linear; 3], Linear, [Linear; 3]);
 
 impl Expressions {
@@ -154,13 +149,13 @@ impl Expressions {
     }
 }
 
-/// Expressions of up to [`LANES`] Gouraud triangles. If a triangle has no area, its edge expressions exclude every
+/// Expressions of up to [`LANES`] Gouraud triangles. The edge expressions of a triangle without area exclude every
 /// pixel.
 #[derive(Clone, Debug)]
 pub struct GouraudLanes(Expressions);
 
 impl GouraudLanes {
-    /// Returns the expressions of the first `len` triangles as a batch.
+    /// Returns the first `len` triangles in the form that renderers evaluate.
     #[must_use]
     pub const fn batch(&self, len: usize) -> TriangleBatch<'_> {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: None }
@@ -178,12 +173,12 @@ impl GouraudLanes {
     }
 }
 
-/// Expressions of up to [`LANES`] Phong triangles. If a triangle has no area, its edge expressions exclude every pixel.
+/// Expressions of up to [`LANES`] Phong triangles. The edge expressions of a triangle without area exclude every pixel.
 #[derive(Clone, Debug)]
 pub struct PhongLanes(Expressions);
 
 impl PhongLanes {
-    /// Returns the expressions of the first `len` triangles as a batch, with their colours, 0x00RRGGBB.
+    /// Returns the first `len` triangles in the form that renderers evaluate, with their colours, 0x00RRGGBB.
     #[must_use]
     pub const fn batch(&self, len: usize, colours: [u32; LANES]) -> TriangleBatch<'_> {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: Some(colours) }
@@ -202,13 +197,13 @@ impl PhongLanes {
 }
 
 impl Transform {
-    /// Computes edges and planes of each triangle like [`Self::gouraud`], but without a search for touched regions.
+    /// Computes edges and planes like [`Self::gouraud`], but for several triangles and without touched regions.
     #[must_use]
     pub fn gouraud_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> GouraudLanes {
         GouraudLanes(self.set_up_lanes(triangles, 0.0, stats))
     }
 
-    /// Computes edges and planes of each triangle like [`Self::phong`], but without a search for touched regions.
+    /// Computes edges and planes like [`Self::phong`], but for several triangles and without touched regions.
     #[must_use]
     pub fn phong_lanes(&self, triangles: &TriangleLanes<'_>, stats: &mut SetupStats) -> PhongLanes {
         PhongLanes(self.set_up_lanes(triangles, screen::NORMAL_HALF, stats))
@@ -227,12 +222,12 @@ const fn last_subpixel(pixels: u32) -> i32 {
     pixels as i32 * SUBPIXELS - 1
 }
 
-/// Relation between a picture's rows and the lines of the frame: row r is frame line `first_line + r * line_step`.
+/// The rows of a picture: row r is line `first_line + r * line_step` of the frame.
 #[derive(Clone, Copy)]
 struct PictureRows {
     line_step: i32,
     first_line: i32,
-    /// Index of the last subpixel of the frame along x, and along y.
+    /// The last subpixel of the frame along x and along y.
     last: [i32; 2],
 }
 
@@ -245,8 +240,8 @@ impl PictureRows {
         }
     }
 
-    /// Converts expressions over frame lines to expressions over picture rows, like [`screen::for_rows`]. A field has
-    /// every second line of the frame.
+    /// Converts expressions over the lines of a frame to expressions over the rows of a picture, like
+    /// [`screen::for_rows`].
     #[inline(always)]
     fn restate(&self, frame: LinearLanes) -> LinearLanes {
         let mut all = frame;
@@ -289,8 +284,7 @@ fn set_up(triangles: &TriangleLanes<'_>, half: f32, rows: PictureRows) -> Expres
     Expressions { edges, planes: planes_through, flattened }
 }
 
-/// Returns true for each triangle whose three normals, on average, face away from the eye. The rule is the same as in
-/// [`crate::light::turned`].
+/// Returns true for each triangle whose normals face away from the eye on average, as in [`crate::light::turned`].
 #[inline(always)]
 fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     let mut away = [false; LANES];
@@ -300,8 +294,8 @@ fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     away
 }
 
-/// Returns one component of the normals at the three corners, plus `half` for rounding. The component is negated for
-/// triangles that face away from the eye.
+/// Returns one component of the normals at the corners, plus `half` for rounding. The normals of triangles that face
+/// away from the eye are reversed.
 #[inline(always)]
 fn component([p, q, r]: &[EachLane<f32>; 3], away: &EachLane<bool>, half: f32) -> [EachLane<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]
@@ -317,7 +311,7 @@ fn values(corner: &EachLane<f32>, away: &EachLane<bool>, half: f32) -> EachLane<
     out
 }
 
-/// Returns a mask for each triangle: all ones if it has an area, else 0.
+/// Returns all ones for each triangle with an area, otherwise 0.
 #[inline(always)]
 fn with_area(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -327,7 +321,7 @@ fn with_area(twice_area: &EachLane<f64>) -> EachLane<i32> {
     out
 }
 
-/// Returns a mask for each triangle: all ones if its corners run counterclockwise, else 0.
+/// Returns all ones for each triangle whose corners run counterclockwise, otherwise 0.
 #[inline(always)]
 fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -337,10 +331,9 @@ fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
     out
 }
 
-/// Returns the corners in clockwise order. In the lanes where `swapped` is all ones, two corners are exchanged.
+/// Returns the corners in clockwise order. Where `swapped` is all ones, two corners are exchanged.
 ///
-/// The code exchanges the values with masks. Masks are faster than a conditional expression, for which compilers select
-/// between two addresses.
+/// The exchange uses masks, which are faster than a conditional expression.
 #[inline(always)]
 fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLane<i32>; 3] {
     let mut second = [0; LANES];
@@ -353,7 +346,7 @@ fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLa
     [*p, second, third]
 }
 
-/// Returns the expression of the edge between two corners, over the pixels of the frame, as in [`crate::Outline`].
+/// Returns the expression of the edge from one corner to another, as in [`crate::Outline`].
 #[inline(always)]
 fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> LinearLanes {
     let mut out = LinearLanes::default();
@@ -371,15 +364,15 @@ fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> Linea
     out
 }
 
-/// Divides an integer below 2^34 by 16 and rounds down. For this, the function subtracts 15/32 from the quotient and
-/// rounds the difference to the nearest integer.
+/// Divides an integer below 2^34 by 16 and rounds down. To round down, the function subtracts 15/32 from the quotient
+/// and rounds to the nearest integer.
 #[inline(always)]
 fn sixteenth(k: f64) -> i32 {
     const _: () = assert!(1 << format::SUBPIXEL_BITS == 16);
     plane::rounded(k * (1.0 / 16.0) - 15.0 / 32.0)
 }
 
-/// Values that all planes of a triangle have in common, for each triangle (see [`plane::Planes`]).
+/// The values that all planes of a triangle share, for each triangle (see [`plane::Planes`]).
 struct LanePlanes {
     twice_area: EachLane<f64>,
     x: [EachLane<f64>; 2],
@@ -390,8 +383,8 @@ struct LanePlanes {
 }
 
 impl LanePlanes {
-    /// Computes the values that all planes of a triangle have in common. Both windings give the same planes, because
-    /// the other winding changes the signs of both the cross products and the area.
+    /// Computes the values that all planes of a triangle share. Both windings have the same result, because the other
+    /// winding changes the signs of the cross products and of the area.
     #[inline(always)]
     fn through_corners(corners: &CornerValues, rows: PictureRows) -> Self {
         let [p, q, r] = &corners.x;
@@ -409,8 +402,8 @@ impl LanePlanes {
         Self { twice_area, x, y, per_pixel, to_reference, reference }
     }
 
-    /// Returns, for each triangle, the plane through one value at each corner, over the frame's pixels. Planes with a
-    /// slope above `MAX_SLOPE` are replaced by planes with a constant value, and counted in `flattened`.
+    /// Returns the planes through the values at the corners. Planes that are steeper than `MAX_SLOPE` are made
+    /// constant, and counted in `flattened`.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> LinearLanes {
         let mut out = LinearLanes::default();
@@ -450,7 +443,7 @@ fn flatten(v: [&EachLane<f64>; 3], flat: &EachLane<bool>, out: &mut LinearLanes,
     }
 }
 
-/// Returns the distance along one axis from the corner `from` to the corner `to`, in subpixels.
+/// Returns the distance between two corners along one axis, in subpixels.
 #[inline(always)]
 fn side(from: &EachLane<i32>, to: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];
@@ -460,8 +453,7 @@ fn side(from: &EachLane<i32>, to: &EachLane<i32>) -> EachLane<f64> {
     out
 }
 
-/// Returns the pixel in the middle of the triangle's extent along one axis, limited to the picture, as in
-/// [`crate::Outline`].
+/// Returns the pixel in the middle of the triangle's visible part along one axis.
 #[inline(always)]
 fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -473,7 +465,7 @@ fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     out
 }
 
-/// Returns the distance along one axis from the corner `from` to the centre of `pixel`, in pixels.
+/// Returns the distance from the corner `from` to the centre of `pixel` along one axis, in pixels.
 #[inline(always)]
 fn pixels(from: &EachLane<i32>, pixel: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];

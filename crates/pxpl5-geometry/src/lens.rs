@@ -1,55 +1,52 @@
-//! The projection of spheres: the part of a projection matrix that spheres need.
+//! The part of a projection matrix that spheres need.
 
 use crate::newton::reciprocal_double;
 use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
 use crate::view::Columns;
 
-/// Mapping from eye coordinates to pixels and depths, as needed for spheres.
+/// The projection of eye coordinates to pixels and depths, for spheres.
 ///
-/// Depth is `constant + slope u`, between 0 and 1. Let t be the distance along -Z. With a perspective projection, u is
-/// 1/t. With a parallel projection, u is -t.
+/// A depth from 0 to 1 is `constant + slope u`. Let t be the distance from the eye along -Z. Then u is 1/t with
+/// perspective, and -t with a parallel projection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
-    /// True if the projection is parallel, so that distance does not change sizes.
     pub(crate) parallel: bool,
-    /// Width and height of a pixel in units of eye coordinates. Under perspective, the values hold at distance 1 from
-    /// the eye. The height is negative, because y increases downwards for pixels and upwards for the eye.
+    /// Width and height of a pixel in eye coordinates, at distance 1 if there is perspective. The height is negative,
+    /// because pixels count downwards.
     pub(crate) step: [f64; 2],
-    /// Number of pixels per unit of eye coordinates, along x and y. Under perspective, the numbers hold at distance 1
-    /// from the eye.
+    /// Number of pixels per unit of eye coordinates along x and y, at distance 1 if there is perspective.
     pub(crate) rate: [f64; 2],
-    /// Eye x and y of the centre of the frame's pixel (0, 0), at distance 1 for a perspective projection.
+    /// x and y of the centre of pixel (0, 0) in eye coordinates, at distance 1 if there is perspective.
     pub(crate) corner: [f64; 2],
-    /// Coefficients of t and 1 in a linear expression of the distance t. The expression `near` is negative before the
-    /// near plane, and the expression `far` is positive behind the far plane.
+    /// Coefficients of t and 1 in two expressions of the distance t. The expression `near` is negative before the near
+    /// plane, and the expression `far` is positive behind the far plane.
     ///
-    /// With a parallel projection, the expressions are depth and depth - 1. With perspective, the expressions are these
-    /// values times t.
+    /// With a parallel projection, the expressions are depth and depth - 1. With perspective, they are these values
+    /// times t.
     pub(crate) near: [f64; 2],
     pub(crate) far: [f64; 2],
-    /// Largest distance t along -Z at which a point still counts as behind the eye.
+    /// Largest distance t at which a point still counts as behind the eye.
     pub(crate) least: f64,
-    /// Coefficients of the depth `base + reach u`, in units of the depth expression. [`Lens`] defines u.
+    /// Coefficients of the depth `base + reach u` in fixed point.
     pub(crate) base: f64,
     pub(crate) reach: f64,
 }
 
-/// Distance from the near to the far plane, in units of the depth expression.
+/// Distance from the near to the far plane, in the fixed-point units of depth.
 pub(crate) const DEPTH_RANGE: f64 = (DEPTH_FAR - DEPTH_NEAR) as f64;
 
-/// Returns the centre of the frame's pixel (0, 0) in normalized device coordinates.
+/// Returns the centre of pixel (0, 0) in normalized device coordinates.
 pub(crate) fn first_pixel(width: u32, lines: u32) -> [f64; 2] {
     [1.0 / f64::from(width) - 1.0, 1.0 - 1.0 / f64::from(lines)]
 }
 
-/// Returns two factors from normalized device coordinates to pixels: half the frame's width, and minus half its height.
+/// Returns the factors from normalized device coordinates to pixels: half the width, and minus half the height.
 pub(crate) fn half_frame(width: u32, lines: u32) -> [f64; 2] {
     [f64::from(width) * 0.5, f64::from(lines) * -0.5]
 }
 
 impl Lens {
-    /// Creates a lens from a perspective or parallel projection along -Z. The projection may be off centre. Returns
-    /// `None` for other matrices.
+    /// Creates a lens from a perspective or parallel projection along -Z, or returns `None` for other matrices.
     pub(crate) fn from_projection(projection: &Columns, width: u32, lines: u32) -> Option<Self> {
         // Only matrices without rotation and shear are supported.
         if !projection.is_zero_at(&[(0, 1), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1)]) {
@@ -85,24 +82,23 @@ impl Lens {
         (scale.iter().all(|scale| *scale > 0.0) && slope < 0.0).then_some(lens)
     }
 
-    /// Returns true if a point at distance t along -Z is between the eye and the near plane, or behind the eye.
+    /// Returns true if a point at distance t along -Z is nearer than the near plane, or behind the eye.
     pub(crate) fn is_before_near(&self, t: f64) -> bool {
         t <= self.least || self.near[0] * t + self.near[1] < 0.0
     }
 
-    /// Returns true if a point at distance t along -Z is behind the far plane. Under perspective, t must be positive.
     pub(crate) fn is_beyond_far(&self, t: f64) -> bool {
         self.far[0] * t + self.far[1] > 0.0
     }
 
-    /// Returns the depth at distance t along -Z, in units of the depth expression.
+    /// Returns the fixed-point depth at distance t along -Z.
     pub(crate) fn depth(&self, t: f64) -> f64 {
         let u = if self.parallel { -t } else { reciprocal_double(t) };
         self.base + self.reach * u
     }
 
-    /// Returns the pixel coordinates of a point (x, y) of the plane t = 1 in eye coordinates. Under a parallel
-    /// projection, the point can be in any plane.
+    /// Returns the pixel at which a point (x, y) of the plane t = 1 appears. With a parallel projection, the plane may
+    /// be at any distance.
     pub(crate) fn pixel(&self, x: f64, y: f64) -> [f64; 2] {
         [(x - self.corner[0]) * self.rate[0], (y - self.corner[1]) * self.rate[1]]
     }

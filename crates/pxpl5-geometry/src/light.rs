@@ -1,25 +1,23 @@
-//! Lighting of vertices, and transform of normals for shading at the end of the frame.
+//! Lighting of vertices, and rotation of normals for Phong shading.
 
 use crate::view::{self, FromWorld};
 use crate::{Light, Triangle};
 use glam::Vec3;
 
-/// A light whose direction is converted to world coordinates, in which the display list stores normals.
+/// A light with its direction in world coordinates, in which the display list stores normals.
 pub(crate) struct ModelLight<'a> {
     normals: &'a NormalRows,
     direction: [f32; 3],
     light: &'a Light,
 }
 
-/// A matrix that rotates unit normals from world to eye coordinates. The results are not normalized again.
+/// A matrix that rotates unit normals from world to eye coordinates.
 ///
-/// The matrix is the matrix for points, divided by the length of its longest row. With any uniform scale, rotated
-/// normals therefore keep unit length. With any matrix, no component exceeds 1. The renderer normalizes the normal at
-/// each pixel.
+/// The matrix for points is divided by the length of its longest row. With a uniform scale, normals keep unit length.
+/// With any other matrix, no component exceeds 1. The renderer normalizes the normal at each pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalRows {
     pub(crate) rows: [[f32; 3]; 3],
-    /// Position of the eye in the world.
     origin: Vec3,
 }
 
@@ -32,7 +30,7 @@ impl NormalRows {
         Self { rows: [x, y, z].map(|row| row.map(|v| (v * scale) as f32)), origin: to_eye.origin() }
     }
 
-    /// Converts a direction from eye coordinates to world coordinates, in which the display list stores normals.
+    /// Rotates a direction from eye to world coordinates.
     pub(crate) fn to_world(self, direction: [f32; 3]) -> [f32; 3] {
         let rows = self.rows.map(|row| row.map(f64::from));
         let [x, y, z] = direction.map(f64::from);
@@ -45,8 +43,7 @@ impl NormalRows {
         [dot(x, normal), dot(y, normal), dot(z, normal)]
     }
 
-    /// Returns the cosine between a unit normal at `position` and the direction to the eye, times the distance to the
-    /// eye. The result is negative if the normal faces away from the eye.
+    /// Returns a number that is negative if the unit normal at `position` faces away from the eye.
     #[inline(always)]
     fn towards_eye(&self, position: Vec3, normal: [f32; 3]) -> f32 {
         let relative = [position.x - self.origin.x, position.y - self.origin.y, position.z - self.origin.z];
@@ -59,7 +56,7 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
-/// Returns a normal scaled to unit length, as the display list stores it. Returns +Z for a normal of length zero.
+/// Returns a normal scaled to unit length, or +Z for a zero normal.
 #[inline(always)]
 pub(crate) fn unit_normal(normal: Vec3) -> [f32; 3] {
     let [x, y, z] = [f64::from(normal.x), f64::from(normal.y), f64::from(normal.z)];
@@ -75,8 +72,7 @@ impl<'a> ModelLight<'a> {
         Self { normals, direction: normals.to_world(light.direction), light }
     }
 
-    /// Returns the lit colour in 1/256 of a colour unit, 0 to 255 * 256. Lighting is two-sided: a normal that faces
-    /// away from the eye is reversed.
+    /// Returns the lit colour, 0 to 255 * 256. A normal that faces away from the eye is reversed first.
     #[inline(always)]
     pub(crate) fn colour(&self, position: Vec3, normal: Vec3, colour: [u8; 3]) -> [f32; 3] {
         let n = unit_normal(normal);
@@ -88,13 +84,11 @@ impl<'a> ModelLight<'a> {
         [f32::from(red) * 256.0 * intensity, f32::from(green) * 256.0 * intensity, f32::from(blue) * 256.0 * intensity]
     }
 
-    /// Returns the [lit colour](Self::colour) of a triangle at one of its corners.
     #[inline(always)]
     pub(crate) fn corner_colour(&self, triangle: &Triangle, corner: usize) -> [f32; 3] {
         self.colour(triangle.positions[corner], triangle.normals[corner], triangle.colours[corner])
     }
 
-    /// Returns the fraction of a surface's colour that is visible, 0 to 1. NaN gives 0.
     #[inline(always)]
     fn intensity(&self, cosine: f32) -> f32 {
         let sum = self.light.ambient + self.light.diffuse * cosine.max(0.0);
@@ -102,21 +96,21 @@ impl<'a> ModelLight<'a> {
     }
 }
 
-/// Returns three normals in eye coordinates. If the surface faces away from the eye, all three are negated.
+/// Returns the normals at the corners in eye coordinates. If the surface faces away from the eye, the normals are
+/// reversed.
 pub(crate) fn facing_normals(rows: &NormalRows, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
     let [a, b, c] = [0, 1, 2].map(|i| normal_and_facing(rows, positions[i], normals[i]));
     turned([a.0, b.0, c.0], [a.1, b.1, c.1])
 }
 
-/// Returns a normal in eye coordinates, and a number for its direction: positive if the normal faces the eye, negative
-/// if it faces away.
+/// Returns a normal in eye coordinates, and a number that is positive if the normal faces the eye.
 #[inline(always)]
 pub(crate) fn normal_and_facing(rows: &NormalRows, position: Vec3, normal: Vec3) -> ([f32; 3], f32) {
     let n = unit_normal(normal);
     (rows.apply(n), rows.towards_eye(position, n))
 }
 
-/// Returns the normals of three corners. If the normals face away from the eye on average, all three are negated.
+/// Returns the normals of three corners, reversed if they face away from the eye on average.
 #[inline(always)]
 pub(crate) fn turned([a, b, c]: [[f32; 3]; 3], facing: [f32; 3]) -> [[f32; 3]; 3] {
     let away = (facing[0] + facing[1]) + facing[2] < 0.0;

@@ -1,14 +1,13 @@
-//! Quotients, square roots and rounding, computed as on the i860, which has no instruction for division or square root.
+//! Division, square roots and rounding as on the i860, which has no instructions for division and square root.
 //!
-//! The instructions `frcp` and `frsqr` give a first approximation (seed) with 8 bits of fraction. Newton steps refine
-//! the approximation. To round a number, the code adds a large constant and subtracts the constant again. The native
-//! code performs the same steps as the i860 kernels, so both give the same words.
+//! The i860 has the instructions `frcp` and `frsqr`, which give a first approximation with 8 bits of fraction. Newton
+//! steps refine the approximation. To round a number, the code adds a large constant and subtracts the constant again.
+//! The Rust code of this crate performs the same steps as the i860 kernels, so both give the same words.
 
-/// Mask of the bits of a double that a seed (first approximation) keeps: sign, exponent and 8 bits of fraction.
+/// The bits of a double that a first approximation has: sign, exponent and 8 bits of fraction.
 const SEED: u64 = !((1 << (52 - 8)) - 1);
 
-/// The constant 1.5 * 2^52. If a double below 2^51 in absolute value is added to this constant, the double is rounded
-/// to an integer, ties to even.
+/// The constant 1.5 * 2^52. The addition of this constant rounds a double below 2^51 to an integer, ties to even.
 pub(crate) const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 fn seed(exact: f64) -> f64 {
@@ -44,7 +43,7 @@ pub(crate) fn root(value: f64) -> f64 {
 }
 
 /// Returns the integer nearest to a number below 2^51 in absolute value, ties to even. For larger numbers, the result
-/// has no meaning, but is the same on every host.
+/// is meaningless, but the same on every host.
 pub(crate) fn whole(value: f64) -> i64 {
     ((value + ROUND_DOUBLE).to_bits() as i64).wrapping_sub(ROUND_DOUBLE.to_bits() as i64)
 }

@@ -6,15 +6,14 @@ use pxpl5_wire::{Linear, format};
 /// Number of subpixels along one side of a pixel.
 pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
 
-/// Corners and depths of a triangle on the screen, and the regions that the triangle touches.
+/// The corners of a triangle on the screen, and the regions that the triangle touches.
 ///
 /// The corners run clockwise on the screen (y increases downwards), for both windings of the input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outline {
     /// Distance of each corner from the picture's left border, in 1/16 px.
     pub x: [i32; 3],
-    /// Distance of each corner from the frame's top border, in 1/16 px. The distance refers to the whole frame, also
-    /// for a field.
+    /// Distance of each corner from the top of the whole frame, in 1/16 px, also if the picture is a field.
     pub y: [i32; 3],
     /// Depth of each corner, from [`crate::DEPTH_NEAR`] to [`crate::DEPTH_FAR`].
     pub z: [u32; 3],
@@ -23,8 +22,7 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Returns twice the area of the triangle, in 1/256 square px. The result is positive unless the corners are on one
-    /// line.
+    /// Returns twice the area, in 1/256 square px. The result is 0 if the corners lie on one line.
     #[inline(always)]
     pub(crate) fn twice_area(&self) -> i64 {
         let x = &self.x;
@@ -32,19 +30,18 @@ impl Outline {
         i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
     }
 
-    /// Returns the edges from corner 0 to 1, from 1 to 2 and from 2 to 0, as expressions over the pixels of the
-    /// *frame*.
+    /// Returns the edge expressions from corner 0 to 1, 1 to 2 and 2 to 0, over the lines of the frame.
     #[inline(always)]
     pub(crate) fn edges(&self) -> [Linear; 3] {
         [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]
     }
 
-    /// Returns the edge between two corners. The value of the edge at a pixel is twice the area of the triangle (from,
-    /// to, pixel centre), in 1/16 square px, rounded down.
+    /// Returns the expression of an edge. The value of the expression at a pixel is twice the area of the triangle
+    /// (from, to, pixel centre), in 1/16 square px, rounded down.
     ///
     /// In 1/256 square px, the value at pixel (x, y) is `16 (dx y - dy x) + k`. This value is at least 0 exactly if `dx
-    /// y - dy x + floor(k / 16)` is at least 0, so rounding changes no covered pixel. A pixel whose centre is on the
-    /// line belongs to the triangle only if the edge is a top or left edge. For other edges, k is reduced by one.
+    /// y - dy x + floor(k / 16)` is at least 0, so rounding changes no covered pixel. If a pixel's centre is on the
+    /// edge, the triangle covers the pixel only for top and left edges. For other edges, k is reduced by one.
     #[inline(always)]
     fn edge(&self, from: usize, to: usize) -> Linear {
         let dx = self.x[to] - self.x[from];

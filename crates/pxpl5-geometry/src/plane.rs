@@ -1,35 +1,33 @@
-//! Planes: linear expressions that pass through one value at each of three corners.
+//! Planes: linear expressions of the pixel position that pass through one value at each of the three corners of a
+//! triangle.
 //!
-//! Slopes are rounded to integers. Let (dx, dy) be the distance of a pixel from the reference pixel. The error of a
-//! plane's value is at most `(|dx| + |dy|) (1/2 + 2^-15) + 1`, in units of the expression's last bit. Rounding the
-//! slopes adds 1/2 for each pixel of distance. Rounding the constant adds 1/2. The 64-bit floating-point steps add 1/2,
-//! and 2^-15 for each pixel (see [`MAX_SLOPE`]). The reference pixel is in the middle of the visible part of the
-//! triangle's bounding box. The sum |dx| + |dy| is therefore at most half the sum of the picture's width and height. On
-//! the largest picture, the error is below 1,026.
+//! Slopes are rounded to integers, so the error grows with the distance (dx, dy) from a reference pixel. The error is
+//! at most `(|dx| + |dy|) (1/2 + 2^-15) + 1` in the last bit. Rounding the slopes adds 1/2 per pixel of distance.
+//! Rounding the constant adds 1/2. The floating-point steps add 1/2, and 2^-15 per pixel (see [`MAX_SLOPE`]). The
+//! reference pixel is in the middle of the visible part of the triangle's bounding box. The sum |dx| + |dy| is
+//! therefore at most half of width plus height. On the largest picture, the error is below 1,026.
 //!
-//! A depth slope can need more than 32 bits. For example, the depth of a wall seen edge-on can change by the whole
-//! range, 2^32, within a pixel. Expressions are evaluated modulo 2^32 at integer pixel positions. Coefficients modulo
-//! 2^32 therefore give the right value at every pixel whose true value fits 32 bits. Such pixels include all covered
-//! pixels.
+//! A depth slope can need more than 32 bits: the depth of a wall seen edge-on can change by the whole range within a
+//! pixel. Expressions are therefore evaluated modulo 2^32. The result is right at every pixel whose true value fits 32
+//! bits, which includes all covered pixels.
 
 use crate::newton::reciprocal_double;
 use crate::outline::Outline;
 use crate::stats::SetupStats;
 use pxpl5_wire::Linear;
 
-/// Steepest slope of a plane, in units of the expression's last bit per pixel. With this slope, the value changes by
-/// the whole range of 32 bits within one subpixel.
+/// Steepest slope of a plane, in units of the last bit per pixel: the value changes by the range of 32 bits within one
+/// subpixel.
 ///
-/// Only a triangle thinner than a subpixel can have a steeper plane. Such a plane is replaced by a *flat* plane, whose
-/// value at every pixel is the mean of the values at the corners. [`SetupStats::flattened_planes`] counts such planes.
+/// Only a triangle thinner than a subpixel can have a steeper plane. Such a plane gets the mean of the corners' values
+/// at every pixel. [`SetupStats::flattened_planes`] counts such planes.
 ///
 /// The relative error of a slope is 2^-51, because Newton steps compute the reciprocal of the area. For slopes up to
 /// this limit, the absolute error is 2^-15. A corner is at most 2^13 px away from the reference pixel. Over this
 /// distance, no intermediate result exceeds 2^50, and the error of all steps together is less than 1/2.
 pub const MAX_SLOPE: f64 = 68_719_476_736.0;
 
-/// The constant 1.5 * 2^52. If a number below 2^51 in absolute value is added to this constant, the number is rounded
-/// to an integer, ties to even.
+/// The constant 1.5 * 2^52. The addition of this constant rounds a number below 2^51 to an integer, ties to even.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Returns the integer nearest to a number below 2^51 in absolute value, modulo 2^32.
@@ -38,19 +36,18 @@ pub(crate) fn rounded(value: f64) -> i32 {
     (value + ROUND).to_bits() as i32
 }
 
-/// Returns the constant plane that replaces a plane with a slope above [`MAX_SLOPE`]. The value of the constant plane
-/// is the mean of the values `v` at the corners.
+/// Returns the constant plane that replaces a plane with a slope above [`MAX_SLOPE`]: the mean of the corners' values.
 pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
-/// Returns the distance along one axis from a corner to the centre of a pixel, in pixels. `corner` is in subpixels.
+/// Returns the distance from a corner to the centre of a pixel along one axis, in pixels. `corner` is in subpixels.
 #[inline(always)]
 fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
 }
 
-/// Values that depth, colour and normal planes of one triangle have in common.
+/// The values that all planes of one triangle share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
     /// Distances from corner 0 to corners 1 and 2 along x, in subpixels.
@@ -58,14 +55,12 @@ pub(crate) struct Planes {
     y: [f64; 2],
     /// Factor from cross products to slopes per pixel: 16 divided by twice the area.
     per_pixel: f64,
-    /// Distance from corner 0 to the centre of the reference pixel, in pixels.
     to_reference: [f64; 2],
     reference: [i32; 2],
 }
 
 impl Planes {
-    /// Computes the values that all planes of `outline` have in common. Planes are most exact at `reference`, a pixel
-    /// of the frame.
+    /// Computes the values that all planes of `outline` share. Planes are most exact at the pixel `reference`.
     #[inline(always)]
     pub(crate) fn for_outline(outline: &Outline, reference: [i32; 2]) -> Self {
         let x = &outline.x;
@@ -79,8 +74,7 @@ impl Planes {
         }
     }
 
-    /// Returns the plane through the values `v` at the corners, over the frame's pixels. The values must be integers
-    /// below 2^32 in absolute value.
+    /// Returns the plane through the values `v` at the corners, which must be integers below 2^32 in absolute value.
     ///
     /// A cross product is a sum of two products below 2^32 * 2^17, so it is exact.
     #[inline(always)]

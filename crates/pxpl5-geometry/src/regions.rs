@@ -44,7 +44,6 @@ impl RegionMask {
         Self(self.0 | other.0)
     }
 
-    /// Creates a set from its bits. Bit n is set if region n is in the set.
     pub(crate) const fn with_bits(bits: u128) -> Self {
         Self(bits)
     }

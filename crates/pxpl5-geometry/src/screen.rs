@@ -1,4 +1,4 @@
-//! Triangles on the screen, which are the result of the transform and the input of the set-up.
+//! Triangles on the screen: the result of the transform, from which linear expressions are computed.
 
 use crate::newton::ROUND_DOUBLE;
 use crate::outline::{Outline, SUBPIXELS, extent};
@@ -14,37 +14,32 @@ use pxpl5_wire::{Linear, format};
 /// square are therefore at most 2^30, and no sum exceeds 32 bits.
 pub const GUARD_PIXELS: i32 = 4096;
 
-/// Depth of the near plane: 8 units of pixel depth, with [`format::Z_FRACTION_BITS`] fraction bits.
+/// Depth of the near plane, with [`format::Z_FRACTION_BITS`] fraction bits: 8 units of the pixels' 24-bit depth.
 ///
-/// At both ends of the range, 8 units of pixel depth (2,048 units of the expression) are unused. This margin is larger
-/// than the rounding error of a plane on a picture of [`crate::MAX_PICTURE`] (below 1,026 units of the expression). A
-/// depth therefore never wraps around from near to far.
+/// At both ends of the range, 8 units are unused. This margin is larger than the rounding error of a plane on a picture
+/// of [`crate::MAX_PICTURE`]. A depth therefore never wraps around from near to far.
 pub const DEPTH_NEAR: u32 = 8 * DEPTH_ONE;
 
 /// Depth of the far plane, in the units of [`DEPTH_NEAR`].
 pub const DEPTH_FAR: u32 = u32::MAX - 8 * DEPTH_ONE;
 
-/// One unit of the pixels' 24-bit depth, in the units of [`DEPTH_NEAR`].
 pub(crate) const DEPTH_ONE: u32 = 1 << format::Z_FRACTION_BITS;
 
-/// The constant 1.5 * 2^23. If a number below 2^22 in absolute value is added to this constant, the number is rounded
-/// to an integer, ties to even.
+/// The constant 1.5 * 2^23. The addition of this constant rounds a number below 2^22 to an integer, ties to even.
 const ROUND: f32 = 12_582_912.0;
 
-/// Returns the integer nearest to a number below 2^22 in absolute value.
 #[inline(always)]
 pub(crate) fn rounded(value: f32) -> i32 {
     ((value + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
 }
 
-/// Returns the integer nearest to `value` plus the integer `whole`, which must be below 2^20. The result is rounded
-/// only once.
+/// Returns the integer nearest to `value + whole`, with only one rounding. `whole` must be an integer below 2^20.
 #[inline(always)]
 pub(crate) fn rounded_sum(value: f32, whole: f32) -> i32 {
     ((value + (whole + ROUND)).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
 }
 
-/// Rounds a component of a lit colour (0 to 255 * 256) to an integer, in 1/256 of a colour unit.
+/// Rounds a component of a lit colour, 0 to 255 * 256, to an integer.
 #[inline(always)]
 pub(crate) fn colour_fixed(colour: f32) -> u16 {
     rounded(colour) as u16
@@ -56,11 +51,10 @@ pub(crate) fn normal_fixed(component: f32) -> i16 {
     rounded(component * f32::from(NORMAL_UNIT)) as i16
 }
 
-/// Factor from normalized depth, 0 to 1, to fixed point: the range of depths, rounded to single precision.
+/// Factor from depths between 0 and 1 to fixed point.
 pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
 
-/// Converts a depth to fixed point. `beyond_near` is the distance of the depth from the near plane, in units of fixed
-/// point.
+/// Converts a depth to fixed point. `beyond_near` is the distance from the near plane in fixed-point units.
 ///
 /// The depth is rounded to the nearest unit, ties to even, and limited to the range from near to far. NaN gives the
 /// near plane.
@@ -72,7 +66,7 @@ pub(crate) fn depth_fixed(beyond_near: f64) -> u32 {
     (scaled + (ROUND_DOUBLE + DEPTH_NEAR as f64)).to_bits() as u32
 }
 
-/// A triangle on the screen, with surface values of type `A` (colours or normals) for its corners.
+/// A triangle on the screen, with colours or normals of type `A` for its corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScreenTriangle<A> {
     /// Corners and depths of the triangle, and the regions that the triangle touches.
@@ -81,23 +75,23 @@ pub struct ScreenTriangle<A> {
     pub surface: A,
 }
 
-/// Lit colours of the corners for Gouraud shading: red, green, blue in 1/256 of a colour unit, 0 to 255 * 256.
+/// Lit colours of three corners for Gouraud shading: red, green and blue, 0 to 255 * 256 each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VertexColours(pub [[u16; 3]; 3]);
 
-/// Normals of the corners in eye coordinates, for Phong shading.
+/// Normals of three corners in eye coordinates, for Phong shading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SurfaceNormals {
     /// x, y and z of each corner's normal, in units of 1/2^14.
     pub normals: [[i16; 3]; 3],
-    /// Red, green and blue of the whole triangle, which are the colour of its first corner.
+    /// Red, green and blue of the whole triangle, from its first corner.
     pub colour: [u8; 3],
 }
 
 /// The length 1.0 in the units of [`SurfaceNormals::normals`].
 pub const NORMAL_UNIT: i16 = 1 << 14;
 
-/// The linear expressions of a Gouraud triangle over the picture's pixels.
+/// The linear expressions of a Gouraud triangle, over the columns and rows of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GouraudTriangle {
     /// Edge expressions. A pixel is covered if all three values are at least 0.
@@ -108,23 +102,21 @@ pub struct GouraudTriangle {
     pub rgb: [Linear; 3],
 }
 
-/// The linear expressions of a Phong triangle over the picture's pixels.
+/// The linear expressions of a Phong triangle, over the columns and rows of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhongTriangle {
     /// Edge expressions. A pixel is covered if all three values are at least 0.
     pub edges: [Linear; 3],
     /// Depth with [`format::Z_FRACTION_BITS`] fraction bits.
     pub z: Linear,
-    /// x, y and z of the normal in eye coordinates, with [`format::NORMAL_FRACTION_BITS`] fraction bits. The integer
-    /// part of an expression is the component in units of 1/2^[`format::NORMAL_ONE_BITS`].
+    /// x, y and z of the normal in eye coordinates, with [`format::NORMAL_FRACTION_BITS`] fraction bits. The length 1
+    /// is 2^[`format::NORMAL_ONE_BITS`] before the fraction.
     pub normal: [Linear; 3],
     /// Red, green and blue of the whole triangle, 0 to 255 each.
     pub colour: [u8; 3],
 }
 
 impl Outline {
-    /// Returns the expressions of a triangle. `colours` are the colours at its corners, in the units of the
-    /// expressions.
     #[inline(always)]
     pub(crate) fn gouraud(
         &self,
@@ -136,8 +128,6 @@ impl Outline {
         GouraudTriangle { edges: self.picture_edges(viewport), z, rgb: [red, green, blue] }
     }
 
-    /// Returns the expressions of a triangle. `normals` are the normals at its corners, in the units of the
-    /// expressions.
     #[inline(always)]
     pub(crate) fn phong(
         &self,
@@ -150,15 +140,14 @@ impl Outline {
         PhongTriangle { edges: self.picture_edges(viewport), z, normal: [nx, ny, nz], colour }
     }
 
-    /// Returns the edge expressions of the triangle over the pixels of the picture.
+    /// Returns the edge expressions over the columns and rows of the picture.
     #[inline(always)]
     fn picture_edges(&self, viewport: &Viewport) -> [Linear; 3] {
         let [a, b, c] = self.edges();
         [for_rows(a, viewport), for_rows(b, viewport), for_rows(c, viewport)]
     }
 
-    /// Returns four planes over the picture's pixels. The planes pass through the depths and through three surface
-    /// values of the corners.
+    /// Returns the planes through the depths and through three components of the colours or normals.
     #[inline(always)]
     fn planes(&self, corners: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
         let planes = Planes::for_outline(self, self.middle(viewport));
@@ -172,22 +161,20 @@ impl Outline {
         ]
     }
 
-    /// Returns the picture's pixel nearest to the middle of the triangle's bounding box, with y in frame lines. Planes
-    /// are most exact at this pixel.
+    /// Returns the pixel in the middle of the visible part of the triangle, at which planes are most exact. The y of
+    /// this pixel counts frame lines.
     #[inline(always)]
     fn middle(&self, viewport: &Viewport) -> [i32; 2] {
         [middle_pixel(&self.x, viewport.grid().width), middle_pixel(&self.y, viewport.frame_lines())]
     }
 }
 
-/// Returns component `number` of the surface values, for each of three corners.
 #[inline(always)]
 fn component([a, b, c]: &[[f32; 3]; 3], number: usize) -> [f64; 3] {
     [f64::from(a[number]), f64::from(b[number]), f64::from(c[number])]
 }
 
-/// Returns the middle pixel of the corners' range along one axis. The range is first limited to a picture of `size`
-/// pixels.
+/// Returns the middle pixel of the triangle's visible part along one axis, in a picture of `size` pixels.
 #[inline(always)]
 fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {
     let [low, high] = extent(corners);
@@ -195,8 +182,8 @@ fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {
     (low.clamp(0, last) + high.clamp(0, last)) / (2 * SUBPIXELS)
 }
 
-/// Converts an expression over frame lines to an expression over the rows of the picture. The value at each pixel stays
-/// exactly the same.
+/// Converts an expression over the lines of the frame to an expression over the rows of the picture. The value at each
+/// pixel stays the same.
 #[inline(always)]
 pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
     Linear {
@@ -207,7 +194,7 @@ pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
 }
 
 impl<A> ScreenTriangle<A> {
-    /// Returns the edge expressions of the triangle over the pixels of the picture.
+    /// Returns the edge expressions over the columns and rows of the picture.
     #[must_use]
     pub fn edges(&self, viewport: &Viewport) -> [Linear; 3] {
         self.outline.picture_edges(viewport)
@@ -215,8 +202,8 @@ impl<A> ScreenTriangle<A> {
 }
 
 impl ScreenTriangle<VertexColours> {
-    /// Computes the linear expressions of the triangle over the pixels of `viewport`. This picture must be the picture
-    /// of the [`Transform`](crate::Transform) that made the triangle.
+    /// Computes the linear expressions of the triangle. `viewport` must be the viewport of the
+    /// [`Transform`](crate::Transform) that made the triangle.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, stats: &mut SetupStats) -> GouraudTriangle {
         let [a, b, c] = &self.surface.0;
@@ -226,8 +213,8 @@ impl ScreenTriangle<VertexColours> {
 }
 
 impl ScreenTriangle<SurfaceNormals> {
-    /// Computes the linear expressions of the triangle over the pixels of `viewport`. This picture must be the picture
-    /// of the [`Transform`](crate::Transform) that made the triangle.
+    /// Computes the linear expressions of the triangle. `viewport` must be the viewport of the
+    /// [`Transform`](crate::Transform) that made the triangle.
     #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongTriangle {
         let [a, b, c] = &self.surface.normals;
@@ -236,17 +223,16 @@ impl ScreenTriangle<SurfaceNormals> {
     }
 }
 
-/// Applies `value` to three numbers. The three calls are written out, because compilers do not always inline a closure
-/// over an array.
+/// Applies `value` to three numbers by three calls, because compilers do not always inline a closure over an array.
 #[inline(always)]
 fn values<T: Copy>([a, b, c]: &[T; 3], value: impl Fn(T) -> f32) -> [f32; 3] {
     [value(*a), value(*b), value(*c)]
 }
 
-/// Converts a colour exactly to the units of plane expressions.
+/// Converts a component of a colour to the fixed-point units of its plane.
 ///
-/// The function adds half a unit, so that the renderer's truncation rounds to the nearest value. The values of 0 and
-/// 255 are then half a unit away from an overflow. This distance is much larger than a plane's rounding error.
+/// The function adds half a unit, because the renderer truncates. The values of 0 and 255 are then half a unit away
+/// from an overflow. The rounding error of a plane is much smaller.
 #[inline(always)]
 pub(crate) fn colour_value(colour: u16) -> f32 {
     const SCALE: u32 = 1 << (format::COLOUR_FRACTION_BITS - 8);
@@ -254,12 +240,12 @@ pub(crate) fn colour_value(colour: u16) -> f32 {
     (u32::from(colour) * SCALE + HALF) as f32
 }
 
-/// Converts a component of a normal exactly to the units of plane expressions, with half a unit added for rounding.
+/// Converts a component of a normal to the fixed-point units of its plane, with half a unit added for rounding.
 #[inline(always)]
 pub(crate) fn normal_value(component: i16) -> f32 {
     const SCALE: i32 = (1 << (format::NORMAL_ONE_BITS + format::NORMAL_FRACTION_BITS)) / NORMAL_UNIT as i32;
     (i32::from(component) * SCALE) as f32 + NORMAL_HALF
 }
 
-/// Half a unit of a normal's component, in units of the expression. The addition of this number makes truncation round.
+/// Half a unit of a normal's component. Truncation after the addition of this number rounds to the nearest unit.
 pub(crate) const NORMAL_HALF: f32 = (1 << (format::NORMAL_FRACTION_BITS - 1)) as f32;

@@ -26,36 +26,32 @@ use crate::transform::Transform;
 use crate::view::{FromWorld, dot};
 use crate::{RegionMask, SetupStats, WorldSphere};
 
-/// Largest allowed absolute value of a sphere's eye coordinates and radius. The squares of larger numbers could
-/// overflow.
+/// Largest absolute value of a sphere's eye coordinates and radius, so that squares cannot overflow.
 pub(crate) const MAX_COORDINATE: f64 = 1e30;
 
 /// A sphere on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenSphere {
-    /// Regions that meet the bounding box of the sphere's image. The set includes all regions that the image touches.
-    /// Near the corners of the box, the set can include other regions.
+    /// Regions that meet the bounding box of the sphere's image. Near the corners of the box, the image itself may not
+    /// touch a region.
     pub regions: RegionMask,
     /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
-    /// The sphere's image as a conic `Q = bulge^2`. The bulge at a pixel is the depth of the plane `depth` minus the
-    /// depth of the sphere's surface, in units of the depth expression.
+    /// The sphere's image as a conic `Q = bulge^2`. The bulge is the depth by which the sphere's surface is nearer than
+    /// the plane `depth`, in fixed-point units.
     pub(crate) conic: Conic,
-    /// Position, value and size of the conic around its maximum.
     pub(crate) ellipse: Ellipse,
-    /// Plane of depth at the silhouette: its value at the conic's centre, and its slopes per pixel along x and y.
+    /// Plane of depth through the silhouette: its value at the conic's centre, and its slopes per pixel along x and y.
     pub(crate) depth: [f64; 3],
-    /// Depth of the sphere's nearest point, in units of the depth expression.
     pub(crate) front: f64,
-    /// Unit vectors at the sphere's centre: to the right, up, and towards the eye.
+    /// Directions at the sphere's centre, as unit vectors: right, up, and towards the eye.
     pub(crate) axes: [[f64; 3]; 3],
 }
 
 impl ScreenSphere {
     /// Returns true if the bounding box of the sphere's image meets a rectangle.
     ///
-    /// `across` has the first and the last pixel of the rectangle along x. `lines` has the first and the last frame
-    /// line of the rectangle.
+    /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last frame line.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         self.ellipse.bounds().is_some_and(|[x, y]| overlaps(pixels(x), across) && overlaps(pixels(y), lines))
@@ -71,7 +67,7 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
     v.map(|c| c * inverse)
 }
 
-/// Returns the part of `v` that is perpendicular to the unit vector `axis`, scaled to length 1.
+/// Returns a unit vector that is perpendicular to `axis` and lies in the plane of `axis` and `v`.
 fn across(v: [f64; 3], axis: [f64; 3]) -> [f64; 3] {
     let along = dot(v, axis);
     unit(std::array::from_fn(|i| v[i] - along * axis[i]))
@@ -85,8 +81,7 @@ struct EyeSphere {
 }
 
 impl EyeSphere {
-    /// Creates a sphere in eye coordinates. Returns `None` if a number is NaN or too large, or if the radius is
-    /// negative.
+    /// Returns the sphere in eye coordinates, or `None` if a number is NaN or too large, or if the radius is negative.
     fn new(to_eye: &FromWorld, sphere: &WorldSphere) -> Option<Self> {
         let [x, y, z, _] = to_eye.point(sphere.centre).map(f64::from);
         let radius = f64::from(sphere.radius) * to_eye.scale();
@@ -94,8 +89,7 @@ impl EyeSphere {
         (radius >= 0.0 && fits).then_some(Self { centre: [x, y, z], radius })
     }
 
-    /// Returns the greatest distance along -Z of a point on the silhouette, under perspective. At these points, the
-    /// eye's rays touch the sphere.
+    /// Returns the greatest distance along -Z at which a ray from the eye touches the sphere, under perspective.
     fn farthest_tangent(&self) -> f64 {
         let inverse = reciprocal_double(dot(self.centre, self.centre));
         let shrink = 1.0 - (self.radius * self.radius) * inverse;
@@ -130,13 +124,11 @@ impl Lens {
         Sight::Visible
     }
 
-    /// Returns the greatest distance along -Z of a point on the silhouette.
     fn deepest(&self, sphere: &EyeSphere) -> f64 {
         if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
     }
 
-    /// Returns the sphere's image as a conic `Q = bulge^2`, and the plane of depth at the silhouette. The bulge is the
-    /// depth of this plane minus the depth of the sphere.
+    /// Returns the sphere's image as a conic, and the plane of depth through the silhouette.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
         let [cx, cy, cz] = sphere.centre;
         let r = sphere.radius;
@@ -181,7 +173,7 @@ impl Lens {
 }
 
 impl Transform {
-    /// Transforms a sphere. If the sphere is not drawn, returns `None` and counts the reason.
+    /// Projects a sphere to the screen. If the sphere is not drawn, returns `None` and counts the reason.
     ///
     /// The model-view matrix must consist of a rotation, a translation and a uniform scale. The projection must be
     /// along -Z. For other projections, the sphere counts in [`SetupStats::spheres_unprojectable`].
@@ -230,16 +222,16 @@ impl Transform {
     }
 }
 
-/// Margin around a bounding box, in pixels. The rounding of a sphere's quadratic expression moves the silhouette by
-/// less than this margin.
+/// Margin around a bounding box, in pixels. Rounding of the quadratic expression moves the silhouette by less than
+/// this.
 pub(crate) const SLACK: f64 = 1.0 / 64.0;
 
-/// Returns the pixels whose centres are in the interval from `low` to `high`. Coordinate 0 is the centre of pixel 0.
+/// Returns the pixels with centres from `low` to `high`. The centre of pixel 0 is at 0.
 fn pixels([low, high]: [f64; 2]) -> Range {
     Range { first: near_screen((low - SLACK).ceil()) as i32, last: near_screen((high + SLACK).floor()) as i32 }
 }
 
-/// Limits a pixel coordinate to a range in which all later steps fit 32 bits.
+/// Limits a pixel coordinate, so that all later steps fit 32 bits.
 fn near_screen(pixel: f64) -> f64 {
     pixel.clamp(-4096.0, 4096.0)
 }

@@ -1,11 +1,12 @@
 //! Set-up of spheres as code of the graphics processor: i860 assembly, and its memory layout. [`crate::kernel`] is the
 //! corresponding code for triangles.
 //!
-//! A [`SphereKernel`] reads the spheres of the display list, computes the words of the renderer commands and puts
-//! the commands into bins. The steps are: centre and radius in eye coordinates, tests against the near and far plane,
+//! A [`SphereKernel`] reads the spheres of the display list, computes the words of the renderer commands and puts the
+//! commands into bins. The steps are: centre and radius in eye coordinates, tests against the near and far plane,
 //! conic, bounding box, regions, conic in fixed point, and planes of depth and surface. There is only one version of
 //! the sphere code, in the style of the compiled triangle kernels. This version is used with every optimization level
-//! of the triangle kernels. The native code makes the same computation, so both give the same words, bit for bit.
+//! of the triangle kernels. The Rust code of this crate makes the same computation, so both give the same words, bit
+//! for bit.
 //!
 //! kernels/sphere_parameters.s defines the parameter block. On the processor, the code at the label `place` writes the
 //! parameters that depend on the view ([`crate::kernel::place_source`]).
@@ -17,35 +18,34 @@ use crate::sphere::{MAX_COORDINATE, SLACK};
 use crate::{DEPTH_NEAR, Light, Transform, Viewport, WorldSphere, sphere_setup};
 use pxpl5_wire::{Word, format};
 
-/// The choice of sphere code for one kind of surface and picture.
+/// The choice of sphere code for a kind of shading and a kind of picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SphereKernel {
-    /// Kind of surface: interpolated colour, or normals.
+    /// Values that the kernel computes: colours, or normals for Phong shading.
     pub surface: KernelSurface,
-    /// Kind of picture that the kernel draws.
+    /// Size of the picture, and its division into regions.
     pub picture: KernelPicture,
-    /// True if the kernel has no bins and stores the bounding box of each command.
+    /// True if the kernel makes no bins, but stores the bounding box of each command for later searches.
     pub keeps_boxes: bool,
 }
 
-/// Number of words that a sphere takes in the display list.
+/// Number of words of a sphere in the display list.
 pub const SPHERE_WORDS: usize = 8;
 
-/// Number of words of a sphere kernel's parameter block.
+/// Number of words of a sphere kernel's parameters.
 pub const SPHERE_PARAMETER_WORDS: usize = SIZE + 3;
 
-/// Position, in words of the parameter block, of the blank command into which the kernel writes operands.
+/// Index of the first word of the blank command in the parameters. The kernel fills the operands of this command.
 const TEMPLATE: usize = 110;
 
-/// Position of the picture's size in the parameter block, in words. This position follows the space for the longest
-/// blank command.
+/// Index of the picture's size in the parameters, after the longest blank command.
 const SIZE: usize = TEMPLATE + 53;
 
-/// Number of words at the start of the parameter block that depend on a view and a light.
+/// Number of words at the start of the parameters that depend on a view and a light.
 pub const SPHERE_VIEW_WORDS: usize = 55;
 
 impl SphereKernel {
-    /// Returns the kernel for a picture, or `None` if [`KernelPicture`] has no kind for this picture.
+    /// Returns the kernel for the picture of `viewport`, or `None` if no kernel has regions of this size.
     #[must_use]
     pub fn for_picture(surface: KernelSurface, viewport: &Viewport) -> Option<Self> {
         KernelPicture::of(viewport).map(|picture| Self { surface, picture, keeps_boxes: false })
@@ -74,10 +74,10 @@ impl SphereKernel {
         }
     }
 
-    /// Returns the parameter block of a view. Returns `None` if the projection cannot show spheres.
+    /// Returns the kernel's parameters for a view, or `None` if the projection cannot show spheres.
     ///
-    /// `command` is a blank command with zeros as operands. For each sphere, the kernel copies this command and fills
-    /// in the operands.
+    /// `command` is a renderer command with zeros as operands. For each sphere, the kernel copies this command and
+    /// fills in the operands.
     #[must_use]
     pub fn parameters(
         &self,
@@ -107,7 +107,7 @@ impl SphereKernel {
         Some(words)
     }
 
-    /// Returns the constants for the kernel's parameter block. Some of these constants depend on the picture.
+    /// Returns the constants among the kernel's parameters, some of which depend on the picture.
     fn constants(&self, viewport: &Viewport) -> [f64; 27] {
         let [width, lines] = [viewport.grid().width, viewport.frame_lines()];
         let half = lens::half_frame(width, lines);
@@ -150,7 +150,6 @@ impl SphereKernel {
     }
 }
 
-/// Stores doubles as two words each, the low half first.
 fn doubles(words: &mut [Word], values: &[f64]) {
     for (pair, value) in words.chunks_exact_mut(2).zip(values) {
         pair.copy_from_slice(&kernel::halves(*value));

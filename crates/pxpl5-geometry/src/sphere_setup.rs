@@ -1,4 +1,4 @@
-//! Set-up of spheres. From a conic and a plane, this module computes the operands of the renderer's commands.
+//! The operands of the renderer's commands for spheres, computed from a conic and a plane.
 
 use crate::conic::{self, FixedConic};
 use crate::newton::{reciprocal_root, root, whole};
@@ -15,36 +15,34 @@ use pxpl5_wire::{Linear, Quadratic, REGION_SIZE, format};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SphereSetup {
-    /// Silhouette expression. A pixel is inside the sphere if the expression is at least 0 at this pixel. Within the
-    /// sphere's regions, the value fits 48 bits.
+    /// Silhouette expression, which is at least 0 at the pixels inside the sphere. Within the sphere's regions, the
+    /// value fits 48 bits.
     ///
-    /// The unit of the expression differs from the unit of [`format::QUADRATIC_FRACTION_BITS`]. The unit is chosen so
-    /// that the root needs no factor.
+    /// The unit of the expression differs from sphere to sphere. With the chosen unit, the square root needs no factor.
     pub silhouette: Quadratic,
     /// Number of low bits of the silhouette expression that the square root ignores, 0 to 24.
     pub root_shift: u8,
     /// Depth of the plane through the silhouette, with [`format::Z_FRACTION_BITS`] fraction bits. The plane includes a
     /// correction for the rounding of the root.
     pub depth: Linear,
-    /// Left shift of the square root, in bits, before the subtraction of the root from the depth: 0 to 20.
+    /// Number of bits by which the square root is shifted to the left before its subtraction from the depth: 0 to 20.
     pub depth_shift: u8,
 }
 
-/// A sphere with interpolated colour.
+/// A sphere for Gouraud shading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GouraudSphere {
     /// Silhouette and depth of the sphere.
     pub setup: SphereSetup,
-    /// Linear part of red, green and blue, with [`format::COLOUR_FRACTION_BITS`] fraction bits. A multiple of the
-    /// square root is added to this part.
+    /// Linear parts of red, green and blue, to which a multiple of the square root is added, with
+    /// [`format::COLOUR_FRACTION_BITS`] fraction bits.
     pub rgb: [Linear; 3],
-    /// Factors of the square root, 0 to 511, one for each colour component: component = limit(linear + ((root >> 4) *
-    /// factor >> 8)).
+    /// Factors of the square root, 0 to 511, for red, green and blue: component = limit(linear + ((root >> 4) * factor
+    /// >> 8)).
     pub root_factor: [u16; 3],
 }
 
-/// A sphere whose pixels are shaded at the end of the frame. The z component of a pixel's normal is `root >> 2`. The x
-/// and y components have the same scale.
+/// A sphere for Phong shading. The z component of a pixel's normal is `root >> 2`, in the same scale as x and y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhongSphere {
     /// Silhouette and depth of the sphere.
@@ -55,10 +53,10 @@ pub struct PhongSphere {
     pub colour: [u8; 3],
 }
 
-/// Steepest slope of a plane, in units of its expression per pixel. Steeper slopes do not fit 32 bits.
+/// Steepest slope of a plane per pixel. Steeper slopes do not fit 32 bits.
 pub(crate) const MAX_SLOPE: f64 = 2_147_483_648.0;
 
-/// A plane, as its value at one point of the frame and its slopes along x and y.
+/// A plane: its value at the point `origin`, and its slopes along x and y.
 struct Slope {
     origin: [f64; 2],
     value: f64,
@@ -66,11 +64,9 @@ struct Slope {
 }
 
 impl Slope {
-    /// Converts the plane to fixed point, modulo 2^32, like every linear expression. The result is most exact at the
-    /// pixel `pixel`.
+    /// Converts the plane to fixed point, modulo 2^32. The result is most exact at the pixel `pixel`.
     ///
-    /// If the absolute value of a slope exceeds 2^31, the plane is replaced by a constant plane and counted in
-    /// [`SetupStats::flattened_planes`].
+    /// A plane with a slope above 2^31 is made constant and counted in [`SetupStats::flattened_planes`].
     fn fixed(&self, pixel: [i32; 2], stats: &mut SetupStats) -> Linear {
         if !self.slope.iter().all(|s| s.abs() < MAX_SLOPE) {
             stats.flattened_planes += 1;
@@ -84,12 +80,11 @@ impl Slope {
     }
 }
 
-/// Returns the low 32 bits of the integer nearest to `value`.
 fn modulo_2_32(value: f64) -> i32 {
     whole(value) as i32
 }
 
-/// Limits a factor of the square root to the range of the sphere command, 0 to 511. NaN becomes 0.
+/// Limits a factor to 0 to 511, the range of the sphere command. NaN becomes 0.
 #[allow(clippy::manual_clamp, reason = "`clamp` would leave a NaN")]
 fn limited(factor: f64) -> i64 {
     whole(factor.max(0.0).min(511.0))
@@ -99,14 +94,12 @@ fn rows(linear: Linear, viewport: &Viewport) -> Linear {
     crate::screen::for_rows(linear, viewport)
 }
 
-/// Returns the frame line of a row of the picture.
 fn frame_line(viewport: &Viewport, row: u32) -> i32 {
     (row * viewport.line_step() + viewport.first_line()) as i32
 }
 
 impl ScreenSphere {
-    /// Returns the frame's pixels for which the renderers of the touched regions evaluate expressions. The rectangle of
-    /// these pixels can extend beyond the picture.
+    /// Returns the pixels of all regions that the sphere touches, as a rectangle that may extend beyond the picture.
     fn rectangle(&self, viewport: &Viewport) -> [[i32; 2]; 2] {
         let grid = viewport.grid();
         let corners = self.regions.iter().map(|r| grid.rectangle(r));
@@ -149,18 +142,18 @@ impl ScreenSphere {
         (setup, conic)
     }
 
-    /// Returns the plane `scale[0] * x + scale[1] * y + value`. Here x and y are components of the sphere's unit
-    /// normal, along the sphere's axes.
+    /// Returns the plane `scale[0] * x + scale[1] * y + value`, where x and y are components of the sphere's unit
+    /// normal.
     fn tilt(&self, scale: [f64; 2], value: f64) -> Slope {
         let [per_x, per_y] = self.ellipse.per_half_size();
         Slope { origin: self.ellipse.peak, value, slope: [scale[0] * per_x, -scale[1] * per_y] }
     }
 
-    /// Computes the operands for interpolated colour.
+    /// Computes the operands for Gouraud shading.
     ///
-    /// The square root gives the component of the normal towards the eye. The other components are approximated by
-    /// linear expressions on the screen. Because of this approximation, a pixel that faces away from the light is
-    /// darker than ambient light. Light from behind the sphere adds nothing.
+    /// The square root gives the component of the normal towards the eye. Linear expressions approximate the other
+    /// components, so a pixel that faces away from the light is darker than ambient light. Light from behind the sphere
+    /// adds nothing.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, light: &Light, stats: &mut SetupStats) -> GouraudSphere {
         let (setup, conic) = self.common(viewport, stats);
@@ -186,7 +179,7 @@ impl ScreenSphere {
         GouraudSphere { setup, rgb, root_factor }
     }
 
-    /// Computes the operands of a command whose pixels are shaded at the end of the frame.
+    /// Computes the operands for Phong shading.
     #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongSphere {
         let (setup, conic) = self.common(viewport, stats);

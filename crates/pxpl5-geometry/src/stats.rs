@@ -2,19 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Counts of primitives, and of all cases in which the set-up dropped, cut or limited a primitive.
+/// Counts of primitives, and of all cases in which a primitive was dropped, cut or limited.
 ///
 /// All counts start at zero. Callers can add the counts of several graphics processors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetupStats {
-    /// Number of triangles passed to the set-up, visible or not.
+    /// Number of triangles in the input, visible or not.
     pub triangles: u64,
-    /// Number of screen triangles produced. Clipping can turn a triangle into several screen triangles or into none.
+    /// Number of triangles on the screen. Clipping can turn an input triangle into several screen triangles or into
+    /// none.
     pub screen_triangles: u64,
-    /// Number of triangles, or pieces of clipped triangles, dropped for unusable coordinates. In such a triangle, a
-    /// clip coordinate is NaN, infinite or beyond [`crate::MAX_CLIP`], or w is nearly 0.
+    /// Number of triangles, or pieces of clipped triangles, dropped because a clip coordinate is NaN, infinite or
+    /// beyond [`crate::MAX_CLIP`], or because w is nearly 0.
     pub not_finite: u64,
-    /// Number of triangles dropped because all their corners are outside the same plane of the view volume.
+    /// Number of triangles dropped because all corners are beyond the same side of the visible volume.
     pub outside: u64,
     /// Number of triangles cut by the near plane, the far plane or the guard band.
     pub clipped: u64,
@@ -22,15 +23,13 @@ pub struct SetupStats {
     pub back_facing: u64,
     /// Number of screen triangles dropped because their area is zero after rounding to subpixels.
     pub degenerate: u64,
-    /// Number of screen triangles dropped because they touch no region. Such triangles are off the screen or between
-    /// pixel centres.
+    /// Number of screen triangles dropped because they are off the screen or lie between pixel centres.
     pub untouched: u64,
-    /// Number of planes of depth, colour or normal that were steeper than [`crate::MAX_SLOPE`] and were replaced by
-    /// planes with a constant value.
+    /// Number of planes of depth, colour or normal that were too steep for the format and were made constant.
     pub flattened_planes: u64,
-    /// Number of spheres passed to the set-up, visible or not.
+    /// Number of spheres in the input, visible or not.
     pub spheres: u64,
-    /// Number of spheres that passed all tests and are drawn.
+    /// Number of spheres that are drawn.
     pub screen_spheres: u64,
     /// Number of spheres dropped because the near plane cuts the sphere or the eye is inside the sphere.
     pub spheres_across_near: u64,

@@ -1,4 +1,4 @@
-//! Results of binning: the regions that a triangle touches, or the reason why it is not drawn.
+//! Results of binning: the regions that a triangle touches, or the reason why the triangle is not drawn.
 
 use crate::regions::RegionMask;
 use crate::stats::SetupStats;
@@ -11,13 +11,13 @@ pub enum Touch {
     NeedsClipping,
     /// The triangle has no area after rounding to subpixels.
     Degenerate,
-    /// The triangle is a back face, and the culling mode excludes back faces.
+    /// The triangle is a back face and must not be drawn ([`crate::Culling::Back`]).
     BackFacing,
     /// The triangle touches no region, because it is off the screen or between pixel centres.
     Untouched,
     /// The triangle touches only this region.
     Region(RegionId),
-    /// The triangle touches all these regions, which are at least two.
+    /// The triangle touches these regions, at least two.
     Regions(RegionMask),
 }
 

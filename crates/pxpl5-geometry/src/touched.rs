@@ -1,5 +1,4 @@
-//! The regions that the triangles of a mesh touch. The regions are computed once for all processors that hold a part of
-//! the mesh.
+//! The regions that the triangles of a mesh touch, computed once for all processors that hold a part of the mesh.
 
 use crate::bin::{Binner, Range, quotient};
 use crate::lanes::{EachLane, LANES};
@@ -13,8 +12,8 @@ use pxpl5_wire::RegionId;
 /// The regions of all triangles of a mesh, four bytes for each triangle.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
-    /// A code for each triangle. The code is the index of the triangle's only region, or [`SEVERAL`] plus an index into
-    /// `several`. Other codes state why the triangle has no known region.
+    /// The index of the triangle's only region, or [`SEVERAL`] plus an index into `several`, or a code for the reason
+    /// why there is no region.
     codes: Vec<u32>,
     several: Vec<RegionMask>,
 }
@@ -43,7 +42,7 @@ impl Touched {
         }
     }
 
-    /// Returns the region of triangle `i` if the triangle touches exactly one region.
+    /// Returns the region of triangle `i` if the triangle touches exactly one region, otherwise `None`.
     ///
     /// # Panics
     /// Panics if there is no triangle `i`.
@@ -70,7 +69,7 @@ impl Touched {
 }
 
 impl Transform {
-    /// Finds the regions that each triangle of a list touches. The results equal the results of [`Self::bin`].
+    /// Finds the regions that each triangle touches, with the same results as [`Self::bin`].
     ///
     /// `triangles` has the indices of the corners of each triangle. `vertices` begins with the vertex of index `first`.
     /// The vertices must come from this view.
@@ -105,7 +104,7 @@ impl Transform {
         all.codes.extend_from_slice(&found.codes[..len]);
     }
 
-    /// Returns the regions that a triangle touches. The bounding box of the triangle must meet more than one region.
+    /// Tests the edges of a triangle whose bounding box meets more than one region.
     fn touch_several(&self, corners: &CornerLanes, found: &LaneTouches, lane: usize) -> Touch {
         let [x, y] = corners.clockwise(lane);
         Touch::from_mask(self.binner.test_edges(x, y, range_in(lane, &found.x), range_in(lane, &found.y)))
@@ -116,12 +115,11 @@ fn range_in(lane: usize, [first, last]: &[EachLane<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
-/// x and y of the corners of several triangles. The first index is the corner, and the second index is the triangle.
+/// x and y of the corners of several triangles, by corner, then by triangle.
 #[derive(Debug)]
 struct CornerLanes([EachLane<[i32; 2]>; 3]);
 
 impl CornerLanes {
-    /// Collects the corners of triangles from `vertices`, which begins with the vertex of index `first`.
     #[inline(always)]
     fn of(vertices: &[ScreenVertex], first: u32, triangles: &EachLane<[u32; 3]>) -> Self {
         let mut all = [[[0; 2]; LANES]; 3];
@@ -134,7 +132,6 @@ impl CornerLanes {
         Self(all)
     }
 
-    /// Returns the corners' x coordinates (axis 0) or y coordinates (axis 1).
     #[inline(always)]
     fn coordinate(&self, axis: usize) -> [EachLane<i32>; 3] {
         let mut all = [[0; LANES]; 3];
@@ -146,7 +143,6 @@ impl CornerLanes {
         all
     }
 
-    /// Returns x and y of a triangle's corners in clockwise order.
     fn clockwise(&self, lane: usize) -> [[i32; 3]; 2] {
         let [[a, d], [b, e], [c, f]] = [self.0[0][lane], self.0[1][lane], self.0[2][lane]];
         let counterclockwise = i64::from(b - a) * i64::from(f - d) < i64::from(e - d) * i64::from(c - a);
@@ -154,13 +150,12 @@ impl CornerLanes {
     }
 }
 
-/// Results of a first search for the regions of several triangles, by the bounding boxes of the triangles.
+/// Results of a first search by the bounding boxes of triangles.
 struct LaneTouches {
-    /// Codes in the format of [`Touched`]. The code [`SEVERAL`] without an index marks a triangle whose bounding box
-    /// meets several regions. A test of the triangle's edges must then find the touched regions.
+    /// Codes as in [`Touched`]. The code [`SEVERAL`] without an index marks a triangle whose bounding box meets several
+    /// regions, so that its edges must be tested.
     codes: EachLane<u32>,
     any_several: bool,
-    /// First and last column of pixels in each triangle's bounding box.
     x: [EachLane<i32>; 2],
     y: [EachLane<i32>; 2],
 }
@@ -203,8 +198,7 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) ->
     LaneTouches { codes, any_several: n_several > 0, x: columns, y: rows }
 }
 
-/// Returns twice the area of each triangle, in 1/256 square px. Products of two differences of coordinates need 35
-/// bits, so double precision is exact.
+/// Returns twice the area of each triangle, in 1/256 square px, exactly.
 #[inline(always)]
 fn areas([[a, b, c], [d, e, f]]: &[[EachLane<i32>; 3]; 2]) -> EachLane<f64> {
     let mut out = [0.0; LANES];
@@ -215,7 +209,6 @@ fn areas([[a, b, c], [d, e, f]]: &[[EachLane<i32>; 3]; 2]) -> EachLane<f64> {
     out
 }
 
-/// Returns the smallest and the largest coordinate of the three corners, for each triangle.
 #[inline(always)]
 fn extent([p, q, r]: &[EachLane<i32>; 3]) -> [EachLane<i32>; 2] {
     let mut low = [0; LANES];
@@ -227,8 +220,8 @@ fn extent([p, q, r]: &[EachLane<i32>; 3]) -> [EachLane<i32>; 2] {
     [low, high]
 }
 
-/// Returns the first and last pixel whose centres lie between the smallest and largest corner. `within` limits the
-/// pixels to the picture.
+/// Returns the first and the last pixel whose centres lie between the corners. `within` limits the pixels to the
+/// picture.
 #[inline(always)]
 fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> [EachLane<i32>; 2] {
     let mut first = [0; LANES];
@@ -241,11 +234,9 @@ fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> 
     [first, last]
 }
 
-/// Returns, for each triangle, the column or row of regions that contains all corners. Returns -1 if no column or row
-/// contains all corners. The corners must lie between the centres of the first and the last pixel of the column or row.
+/// Returns for each triangle the column (or row) of regions that contains all corners, or -1 if there is none.
 ///
-/// The argument of `of` is a pixel. `of` returns the pixel's column or row of regions, and the first and last pixel or
-/// line of this column or row.
+/// `of` returns the column (or row) of regions that contains a pixel, with its first and last pixel.
 #[inline(always)]
 fn cells(
     [low, high]: &[EachLane<i32>; 2],

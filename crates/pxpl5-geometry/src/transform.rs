@@ -14,56 +14,55 @@ use glam::Vec3;
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
-/// Culling mode, which selects triangles by their winding. Selected triangles are not drawn.
+/// Choice of the triangles that are not drawn because of their winding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Culling {
-    /// Both windings: all triangles are drawn.
+    /// All triangles are drawn.
     #[default]
     None,
     /// Back faces are not drawn. A back face is a triangle whose corners run clockwise in model coordinates, seen from
-    /// the eye. A mirroring matrix does not change the selection of triangles.
+    /// the eye, even if a matrix mirrors the triangle.
     Back,
 }
 
 impl Culling {
-    /// Both culling modes with their names.
+    /// Both choices with their names.
     pub const ALL: [(&str, Self); 2] = [("none", Self::None), ("back", Self::Back)];
 }
 
 pxpl5_sim::parameters::named!(Culling, "culling", Culling::ALL);
 
-/// A view of the world for one picture, with the matrices that transform primitives.
+/// The transform of primitives for one view and one picture.
 #[derive(Clone, Debug)]
 pub struct Transform {
     pub(crate) viewport: Viewport,
     pub(crate) to_eye: FromWorld,
     pub(crate) normals: NormalRows,
-    /// Projection of spheres. `None` if the view's projection cannot show spheres.
+    /// Projection of spheres, or `None` if the projection cannot show spheres.
     pub(crate) lens: Option<Lens>,
     pub(crate) to_clip: FromWorld,
     pub(crate) to_screen: ToScreen,
     pub(crate) guard: Guard,
     pub(crate) binner: Binner,
-    /// Winding on the screen of the triangles that are not drawn. `None` if triangles of both windings are drawn.
+    /// Winding on the screen of the triangles that are not drawn. `None` if all triangles are drawn.
     pub(crate) dropped: Option<Turn>,
 }
 
-/// Winding of a triangle's corners on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Turn {
     Clockwise,
     Counterclockwise,
 }
 
-/// Mapping of a normalized device coordinate `v` to subpixels of the frame: `scale * v + centre`.
+/// Map from a normalized device coordinate `v` to subpixels: `scale * v + centre`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ToScreen {
     pub(crate) scale: [f32; 2],
     pub(crate) centre: [f32; 2],
 }
 
-/// A vertex on the screen: x and y in 1/16 px of the frame, z in units of the depth expression.
+/// A vertex on the screen: x and y in 1/16 px of the frame, z as fixed-point depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Snapped {
     pub(crate) x: i32,
@@ -79,8 +78,8 @@ pub struct TriangleEnds {
 }
 
 impl TriangleEnds {
-    /// Returns the corners of the triangle, interpolated between the two views, in whole subpixels. `s` is 0 in the
-    /// first view and 1 in the second.
+    /// Returns the corners at an instant between the two views, in whole subpixels. `s` is 0 in the first view and 1 in
+    /// the second view.
     fn at(&self, s: f64) -> [Snapped; 3] {
         std::array::from_fn(|i| Snapped {
             x: whole_between(self.from[i].x.into(), self.to[i].x.into(), s) as i32,
@@ -89,7 +88,7 @@ impl TriangleEnds {
         })
     }
 
-    /// Returns the smallest and largest distance of a corner from the frame's top border, over both views, in 1/16 px.
+    /// Returns the smallest and largest distance of a corner from the top of the frame, over both views, in 1/16 px.
     #[must_use]
     pub fn y_range(&self) -> [i32; 2] {
         let ys = self.from.iter().chain(&self.to).map(|corner| corner.y);
@@ -97,12 +96,10 @@ impl TriangleEnds {
     }
 }
 
-/// Returns the integer nearest to the linear interpolation between `from` (at `s` = 0) and `to` (at `s` = 1).
 fn whole_between(from: f64, to: f64, s: f64) -> f64 {
     (from + (to - from) * s + 0.5).floor()
 }
 
-/// Returns half of `pixels`, in subpixels.
 fn half_in_subpixels(pixels: u32) -> f32 {
     (pixels * SUBPIXELS as u32) as f32 * 0.5
 }
@@ -114,14 +111,13 @@ impl ToScreen {
         Self { scale: [x, -y], centre: [x, y] }
     }
 
-    /// Returns the guard band. The limits of the guard band are one pixel inside [`screen::GUARD_PIXELS`], so that
-    /// rounded positions stay within [`screen::GUARD_PIXELS`].
+    /// Returns the guard band, which ends one pixel before [`screen::GUARD_PIXELS`] to allow for rounding.
     fn guard(&self) -> Guard {
         let limit = ((screen::GUARD_PIXELS - 1) * SUBPIXELS) as f32;
         Guard { x: (limit - self.centre[0]) / self.centre[0], y: (limit - self.centre[1]) / self.centre[1] }
     }
 
-    /// Divides clip coordinates by w and rounds the results to subpixels. The vertex must be inside the guard band.
+    /// Divides by w and rounds to subpixels. The vertex must be inside the guard band.
     #[inline(always)]
     pub(crate) fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
         let inverse = newton::reciprocal(w);
@@ -132,11 +128,11 @@ impl ToScreen {
         }
     }
 
-    /// Divides a corner of a clipped triangle by w and rounds the result to subpixels. Returns `None` if the corner is
-    /// still outside the guard band because w is near 0.
+    /// Divides a corner of a clipped triangle by w and rounds it to subpixels. Returns `None` if w is so near 0 that
+    /// the corner is still outside the guard band.
     ///
-    /// An original vertex is computed like the vertices of unclipped triangles. A corner that results from clipping is
-    /// computed in double precision.
+    /// An original vertex gets the same result as in an unclipped triangle. A corner that clipping has made is computed
+    /// in double precision.
     fn snap_corner<const N: usize>(&self, Corner { clip, cut, .. }: &Corner<N>) -> Option<Snapped> {
         let limit = f64::from(screen::GUARD_PIXELS * SUBPIXELS);
         if clip[3] < f64::from(clip::MIN_W) {
@@ -156,17 +152,15 @@ impl ToScreen {
     }
 }
 
-/// Outline of a screen triangle. The struct also states how the outline's order of corners differs from the order in
-/// the display list.
+/// A screen triangle with clockwise corners.
 pub(crate) struct Assembled {
     pub(crate) outline: Outline,
-    /// True if corners 1 and 2 were exchanged, so that the corners run clockwise.
+    /// True if corners 1 and 2 of the input were exchanged.
     swapped: bool,
 }
 
 impl Assembled {
-    /// Arranges corners in clockwise order. The regions of the result are not set yet. Returns `None` if the triangle
-    /// has no area.
+    /// Arranges corners in clockwise order, or returns `None` if the triangle has no area. The regions are not set.
     #[inline(always)]
     pub(crate) fn clockwise([p, q, r]: [Snapped; 3]) -> Option<Self> {
         let mut outline =
@@ -181,18 +175,17 @@ impl Assembled {
         (twice_area != 0).then_some(Self { outline, swapped })
     }
 
-    /// Rearranges three values, one for each corner, from the input order of the corners to the outline's order.
+    /// Rearranges the values of three corners in the same way as the corners.
     #[inline(always)]
     pub(crate) fn order<T>(&self, [p, q, r]: [T; 3]) -> [T; 3] {
         if self.swapped { [p, r, q] } else { [p, q, r] }
     }
 }
 
-/// Returns true if a view reverses the winding of corners.
+/// Returns true if a view mirrors triangles, so that their winding changes.
 ///
-/// The function computes the determinant of the map from model coordinates to x, y and w of the screen. If w is
-/// constant, depth replaces w. For a view along -Z without mirroring, the determinant is negative. For a reversing
-/// view, the determinant is positive.
+/// The test is the sign of the determinant of the map from model coordinates to x, y and w. With a parallel projection,
+/// w is constant, and depth replaces w. A view along -Z without mirroring has a negative determinant.
 fn is_mirrored(view: &ViewTransform) -> bool {
     let matrix = view.projection * view.model_view;
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| matrix.row(row).truncate().as_dvec3());
@@ -202,7 +195,7 @@ fn is_mirrored(view: &ViewTransform) -> bool {
 }
 
 impl Transform {
-    /// Prepares a view of the world for one picture.
+    /// Prepares the transform for a view and a picture.
     ///
     /// # Errors
     /// Returns a [`SettingError`] if a matrix contains NaN or an infinity.
@@ -236,16 +229,17 @@ impl Transform {
         })
     }
 
-    /// Returns the picture for which this view was prepared.
+    /// Returns the picture to which primitives are transformed.
     #[must_use]
     pub const fn viewport(&self) -> &Viewport {
         &self.viewport
     }
 
-    /// Bins one triangle. Calls `sink` once for each resulting screen triangle that touches a region, with all touched
-    /// regions.
+    /// Finds the regions that a triangle touches. Calls `sink` with these regions, once for each resulting screen
+    /// triangle.
     ///
-    /// [`Self::gouraud`] and [`Self::phong`] give the same screen triangles in the same order.
+    /// Clipping can make several screen triangles. [`Self::gouraud`] and [`Self::phong`] give the same triangles in the
+    /// same order.
     #[inline]
     pub fn bin(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(RegionMask)) {
         stats.triangles += 1;
@@ -261,14 +255,13 @@ impl Transform {
         self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
-    /// Transforms one triangle like [`Self::bin`], but calls `sink` with outlines. With an outline, `sink` can find the
-    /// touched regions of another grid of regions.
+    /// Transforms a triangle like [`Self::bin`], but calls `sink` with the corners on the screen.
     #[inline]
     pub fn outlines(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         self.triangle(positions, |_| [0.0; 3], stats, |outline, _| sink(&outline));
     }
 
-    /// Transforms and lights one triangle. Calls `sink` for each resulting screen triangle that touches a region.
+    /// Transforms and lights a triangle. Calls `sink` for each resulting screen triangle that touches a region.
     #[inline]
     pub fn gouraud(
         &self,
@@ -288,7 +281,7 @@ impl Transform {
         );
     }
 
-    /// Transforms one triangle with its normals. Calls `sink` for each resulting screen triangle that touches a region.
+    /// Transforms a triangle and its normals. Calls `sink` for each resulting screen triangle that touches a region.
     #[inline]
     pub fn phong(
         &self,
@@ -308,8 +301,7 @@ impl Transform {
         );
     }
 
-    /// Transforms one triangle. `extra` returns three surface values of a corner. The function calls `extra` only for
-    /// visible triangles.
+    /// Transforms a triangle. `extra` returns a corner's colour or normal, and is called only for visible triangles.
     #[inline(always)]
     fn triangle(
         &self,
@@ -335,20 +327,20 @@ impl Transform {
     /// Returns the corners of a triangle on the screen in two views: this view and the view `end`. Both views must have
     /// the same viewport.
     ///
-    /// Returns `None` if a corner is outside the guard band of either view.
+    /// Returns `None` if a corner is outside the guard band in one of the views.
     #[must_use]
     pub fn ends(&self, end: &Self, positions: &[Vec3; 3]) -> Option<TriangleEnds> {
         Some(TriangleEnds { from: self.snap_unclipped(positions)?, to: end.snap_unclipped(positions)? })
     }
 
-    /// Returns the corners of a triangle on the screen. Returns `None` if a corner is outside the guard band.
+    /// Returns the corners of a triangle on the screen, or `None` if a corner is outside the guard band.
     fn snap_unclipped(&self, positions: &[Vec3; 3]) -> Option<[Snapped; 3]> {
         let clip = positions.map(|p| self.to_clip.point(p));
         clip.iter().all(|c| self.guard.contains(*c)).then(|| clip.map(|c| self.to_screen.snap(c)))
     }
 
-    /// Sets up a triangle whose corners are interpolated between two views, with the light of this view. `s` is 0 in
-    /// the first view and 1 in the second.
+    /// Lights a triangle whose corners are interpolated between two views, with the light of this view. `s` is 0 in the
+    /// first view and 1 in the second view.
     pub fn gouraud_between(
         &self,
         ends: &TriangleEnds,
@@ -366,8 +358,8 @@ impl Transform {
         }
     }
 
-    /// Calls `sink` with the outline of a triangle whose corners are interpolated between two views. The outline equals
-    /// the outline of [`Self::gouraud_between`]; no colours are computed.
+    /// Calls `sink` with the corners of a triangle that are interpolated between two views, as in
+    /// [`Self::gouraud_between`] but without colours.
     pub fn outline_between(&self, ends: &TriangleEnds, s: f64, stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
@@ -375,7 +367,7 @@ impl Transform {
         }
     }
 
-    /// Returns the corners in clockwise order, with the touched regions. If the triangle is not drawn, returns `None`
+    /// Returns the corners in clockwise order with the touched regions. If the triangle is not drawn, returns `None`
     /// and counts the reason.
     #[inline(always)]
     fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
@@ -386,8 +378,8 @@ impl Transform {
         Some(whole)
     }
 
-    /// Returns the regions that a triangle touches, or the reason why the triangle is not drawn. The corners must be
-    /// inside the guard band. `whole` is `None` for a triangle without area.
+    /// Returns the regions that a triangle touches. The triangle must be inside the guard band. `whole` is `None` if
+    /// the triangle has no area.
     #[inline(always)]
     fn touch(&self, whole: Option<&Assembled>) -> Touch {
         let Some(whole) = whole else { return Touch::Degenerate };
@@ -398,8 +390,8 @@ impl Transform {
         Touch::from_mask(self.binner.triangle(&whole.outline))
     }
 
-    /// Clips a triangle, and splits the resulting polygon into a fan of triangles. Calls `sink` for each triangle of
-    /// the fan that touches a region.
+    /// Clips a triangle and splits the resulting polygon into triangles. Calls `sink` for each of these triangles that
+    /// touches a region.
     #[inline(never)]
     fn clipped<const N: usize>(
         &self,

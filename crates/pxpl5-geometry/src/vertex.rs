@@ -1,8 +1,8 @@
-//! Vertices that many triangles share, each transformed only once.
+//! Vertices that several triangles share, each transformed only once.
 //!
-//! From these vertices, triangles that need no clipping are [binned](Transform::touched) and set up in
-//! [groups](crate::TriangleLanes). The results equal the results of [`Transform::bin`], [`Transform::gouraud`] and
-//! [`Transform::phong`]. These three functions handle the triangles that need clipping.
+//! Triangles of such vertices are [binned](Transform::touched), and set up in [groups](crate::TriangleLanes), if they
+//! need no clipping. The results equal those of [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`].
+//! These three functions also handle triangles that need clipping.
 
 use crate::clip::Guard;
 use crate::light::{self, ModelLight, NormalRows};
@@ -15,12 +15,12 @@ use glam::Vec3;
 use multiversion::multiversion;
 use pxpl5_wire::LANES;
 
-/// A vertex on the screen in one view. All triangles that meet at this point use the same vertex.
+/// A vertex on the screen in one view, which several triangles can share.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex(pub(crate) Snapped);
 
-/// The x that marks a vertex outside the guard band. This x is greater than any x inside the band, and its differences
-/// from other coordinates are still exact.
+/// The x of a vertex outside the guard band. This x is greater than any x inside the band, and its differences from
+/// other coordinates are still exact.
 pub(crate) const OUTSIDE: i32 = 2 * screen::GUARD_PIXELS * SUBPIXELS;
 
 const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
@@ -32,11 +32,11 @@ const NOT_INSIDE: Snapped = Snapped { x: OUTSIDE, y: 0, z: 0 };
 #[repr(align(32))]
 pub struct SurfaceVertex {
     pub(crate) screen: ScreenVertex,
-    /// Number whose sign shows the side that the normal faces: positive towards the eye, negative away from the eye.
-    /// The number is 0 for vertices with colours.
+    /// A number that is positive if the normal faces the eye, negative if it faces away, and 0 for vertices with
+    /// colours.
     pub(crate) facing: f32,
-    /// Colour or normal, in the units of the plane expressions. Colours include half a unit for rounding, and normals
-    /// do not.
+    /// Colour or normal, in the fixed-point units of planes. Colours include half a unit for rounding, and normals do
+    /// not.
     pub(crate) values: [f32; 3],
 }
 
@@ -46,21 +46,20 @@ impl SurfaceVertex {
 }
 
 impl ScreenVertex {
-    /// Returns true if the vertex is inside the guard band, so that it needs no clipping.
     #[inline(always)]
     pub(crate) const fn is_inside(&self) -> bool {
         self.0.x != OUTSIDE
     }
 }
 
-/// Rounds a component of a normal like [`screen::normal_fixed`]. Returns the result in the units of plane expressions.
+/// Rounds a component of a normal like [`screen::normal_fixed`], and converts it to the fixed-point units of planes.
 #[inline(always)]
 fn snapped_component(component: f32) -> f32 {
     screen::normal_value(screen::normal_fixed(component)) - screen::NORMAL_HALF
 }
 
-/// Rounds a component of a lit colour like [`screen::colour_fixed`]. Returns the result in the units of plane
-/// expressions.
+/// Rounds a component of a lit colour like [`screen::colour_fixed`], and converts it to the fixed-point units of
+/// planes.
 #[inline(always)]
 fn snapped_colour(component: f32) -> f32 {
     screen::colour_value(screen::colour_fixed(component))
@@ -127,8 +126,8 @@ fn without_surface(on_screen: &[ScreenVertex]) -> Vec<SurfaceVertex> {
     on_screen.iter().map(|screen| SurfaceVertex { screen: *screen, ..SurfaceVertex::NOWHERE }).collect()
 }
 
-/// Transforms vertices and appends the results to `out`. The results equal the results of [`Transform::screen_vertex`].
-/// The loops are plain Rust and are compiled once for each vector unit (see [`crate::lanes`]).
+/// Transforms vertices like [`Transform::screen_vertex`] and appends them to `out`. The loops are plain Rust, compiled
+/// once for each kind of vector unit (see [`crate::lanes`]).
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn append_lanes(
     positions: &[[Vec3; LANES]],
@@ -168,7 +167,6 @@ fn append_lanes(
     }
 }
 
-/// Sets the normals of vertices, several at a time.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mut [SurfaceVertex]) {
     let (chunks, rest) = out.as_chunks_mut::<LANES>();
@@ -197,7 +195,6 @@ fn set_normals(rows: &NormalRows, positions: &[Vec3], normals: &[Vec3], out: &mu
     }
 }
 
-/// Sets the lit colours of vertices, several at a time.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn set_colours(
     light: &ModelLight<'_>,

@@ -1,4 +1,4 @@
-//! View of an eye: the matrices from world to clip coordinates, and the picture.
+//! The view of an eye: the matrices from world to clip coordinates, and the picture.
 
 use crate::newton;
 use crate::regions::RegionMask;
@@ -18,14 +18,14 @@ pub const MAX_PICTURE: u32 = 2048;
 /// as in `Mat4::perspective_rh` and `Mat4::orthographic_rh`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewTransform {
-    /// Matrix from world (or model) coordinates to eye coordinates. For lighting and spheres, the matrix must consist
-    /// of a rotation, a translation and a uniform scale.
+    /// Matrix from world coordinates to eye coordinates. For lighting and spheres, the matrix must consist of a
+    /// rotation, a translation and a uniform scale.
     pub model_view: Mat4,
     /// Matrix from eye coordinates to clip coordinates.
     pub projection: Mat4,
 }
 
-/// A picture: its division into regions, and its selection of the frame's lines (all, even or odd).
+/// A picture: its division into regions, and its lines of the frame (all, even or odd).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "PictureFields", into = "PictureFields")]
 pub struct Viewport {
@@ -51,11 +51,11 @@ impl Viewport {
         Self { grid: RegionGrid::FIELD, lines: Lines::Field(parity) }
     }
 
-    /// Creates a picture with any size and any division into regions.
+    /// Creates a picture with any size and any regions.
     ///
     /// # Errors
-    /// Returns a [`SettingError`] if a size is zero or too large, or if there are more regions than a [`RegionMask`] can
-    /// hold.
+    /// Returns a [`SettingError`] if a size is zero or too large, or if there are more regions than a [`RegionMask`]
+    /// can hold.
     pub fn new(grid: RegionGrid, lines: Lines) -> Result<Self, SettingError> {
         let step = Self { grid, lines }.line_step();
         let frame_lines = grid.height.saturating_mul(step);
@@ -82,7 +82,7 @@ impl Viewport {
         self.grid
     }
 
-    /// Returns the selection of the frame's lines that the picture contains.
+    /// Returns the frame lines that the picture contains: all, even or odd.
     #[must_use]
     pub const fn lines(&self) -> Lines {
         self.lines
@@ -131,9 +131,10 @@ impl From<Viewport> for PictureFields {
     }
 }
 
-/// Columns of a 4 x 4 matrix. Products are computed in one fixed order on every host.
+/// The columns of a 4 x 4 matrix.
 ///
-/// The library glam uses the host's vector unit for products, with another order of additions than in scalar code.
+/// Products are computed in the same order on every host. The library glam uses another order with vector units than in
+/// scalar code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Columns(pub(crate) [[f32; 4]; 4]);
 
@@ -142,13 +143,11 @@ impl Columns {
         Self(matrix.to_cols_array_2d())
     }
 
-    /// Returns the matrix element at `row` and `column`.
     pub(crate) fn cell(&self, row: usize, column: usize) -> f64 {
         f64::from(self.0[column][row])
     }
 
-    /// Returns true if all of the elements in `cells` are zero. Each element of `cells` is a row and a column of the
-    /// matrix.
+    /// Returns true if all elements in `cells` are zero. Each entry of `cells` is a row and a column.
     pub(crate) fn is_zero_at(&self, cells: &[(usize, usize)]) -> bool {
         cells.iter().all(|&(row, column)| self.cell(row, column) == 0.0)
     }
@@ -157,7 +156,6 @@ impl Columns {
         self.0.iter().flatten().all(|v| v.is_finite())
     }
 
-    /// Returns the product `self * v`, computed in double precision.
     fn times(&self, v: [f64; 4]) -> [f64; 4] {
         std::array::from_fn(|row| {
             let terms: [f64; 4] = std::array::from_fn(|column| self.cell(row, column) * v[column]);
@@ -165,7 +163,7 @@ impl Columns {
         })
     }
 
-    /// Returns the point that an affine matrix maps to the origin. Returns the origin if no such point exists.
+    /// Returns the point that an affine matrix maps to the origin, or the origin if no such point exists.
     fn origin(&self) -> Vec3 {
         let [x, y, z, t] = self.0.map(|c| [c[0], c[1], c[2]].map(f64::from));
         let determinant = dot(x, cross(y, z));
@@ -175,7 +173,7 @@ impl Columns {
     }
 }
 
-/// Map from points of the world to eye or clip coordinates, computed relative to the eye.
+/// A map from points of the world to eye or clip coordinates, computed relative to the eye.
 ///
 /// For a point p far from the world's origin, `A p + t` loses precision, because the sum is a difference of two large
 /// numbers. The code computes `A (p - o) + t'` instead. Here o is the eye's position, and `t' = A o + t` is computed in
@@ -187,13 +185,11 @@ pub(crate) struct FromWorld {
 }
 
 impl FromWorld {
-    /// Creates the map from world to eye coordinates.
     pub(crate) fn to_eye(model_view: &Columns) -> Self {
         let identity = Columns::from_matrix(&Mat4::IDENTITY);
         Self::to_clip(&identity, model_view)
     }
 
-    /// Creates the map from world to clip coordinates.
     pub(crate) fn to_clip(projection: &Columns, model_view: &Columns) -> Self {
         let origin = model_view.origin();
         let [x, y, z] = origin.to_array().map(f64::from);
@@ -202,17 +198,15 @@ impl FromWorld {
         Self { columns, origin }
     }
 
-    /// Returns the rows x, y, z and w of the matrix. The matrix applies to points relative to [`Self::origin`].
+    /// Returns the rows x, y, z and w of the matrix, for points relative to [`Self::origin`].
     pub(crate) fn rows(&self) -> [[f32; 4]; 4] {
         std::array::from_fn(|row| self.columns.map(|column| column[row]))
     }
 
-    /// Returns the position of the eye in the world.
     pub(crate) const fn origin(&self) -> Vec3 {
         self.origin
     }
 
-    /// Maps a point of the world to four homogeneous coordinates.
     #[inline(always)]
     pub(crate) fn point(&self, p: Vec3) -> [f32; 4] {
         let [x, y, z] = [p.x - self.origin.x, p.y - self.origin.y, p.z - self.origin.z];

@@ -24,7 +24,7 @@ pub use crate::head_names::{
     MOTIONS, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by, walk,
 };
 pub use bootstrap::{BlockBootstrap, BootstrapSize, MIN_BOOTSTRAP_VALUES, RESAMPLES};
-pub use contender::usual_rows;
+pub use contender::RowChoice;
 pub use gallery::LastPicture;
 pub use interval::{CONFIDENCE, IntervalMethod, MeanInterval};
 pub use length::RecordedLength;

@@ -17,7 +17,7 @@ pub enum StudyError {
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
     /// The number of display fields of a run is too small or too large.
-    #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
+    #[error("fields: expected {} to {}, found {found}", expected.0, expected.1)]
     Fields {
         /// Minimum and maximum number of display fields of a run.
         expected: (u64, u64),
@@ -25,21 +25,11 @@ pub enum StudyError {
         found: u64,
     },
     /// The comparison has no seeds.
-    #[error("expected at least one seed, found none")]
+    #[error("seeds: expected at least one, found none")]
     NoSeed,
     /// The registry has no pipeline that takes part in comparisons.
     #[error("expected a registry with a pipeline that is compared, found none")]
     NoPipeline,
-    /// The query names a row of the comparison that does not exist.
-    #[error("expected one of {expected}; found `{found}`, did you mean `{nearest}`?")]
-    Row {
-        /// Names of all rows of the comparison, separated by commas.
-        expected: String,
-        /// Name of the row in the query.
-        found: String,
-        /// Name of the existing row that is most similar to the name in the query.
-        nearest: String,
-    },
     /// The settings have no head motion, so there is no error to compare.
     #[error("expected a head.motion, found none: without a head there is no error to compare")]
     NoHead,
@@ -50,7 +40,7 @@ pub enum StudyError {
     )]
     OneMotion,
     /// The seeds of a comparison are not usable.
-    #[error("expected {expected}, found {found}")]
+    #[error("seeds: expected {expected}, found {found}")]
     Seeds {
         /// The expected seeds, in words.
         expected: String,
@@ -65,7 +55,7 @@ pub enum StudyError {
     OtherSettings {
         /// Path of the file of finished rows.
         path: String,
-        /// First key or option that differs.
+        /// First key, or setting of the comparison, that differs.
         key: String,
         /// Value of the differing key in this comparison.
         expected: String,
@@ -74,7 +64,7 @@ pub enum StudyError {
     },
     /// The folder holds rows of an interrupted comparison, and the user did not allow a resume.
     #[error(
-        "{path}: {rows} of {of} rows of an interrupted comparison are here; continue with --resume, or choose another folder"
+        "{path}: {rows} of {of} rows of an interrupted comparison are here; resume the comparison, or choose another folder"
     )]
     Unfinished {
         /// Path of the file of finished rows.
@@ -122,7 +112,7 @@ pub enum StudyError {
         definition: &'static str,
     },
     /// The line of the photodiode lies below the screen.
-    #[error("photodiode: expected one of the {lines} lines that are lit in a period, from 0; found {found}")]
+    #[error("line of the photodiode: expected a line from 0 to {}, found {found}", lines.saturating_sub(1))]
     Photodiode {
         /// Number of lines on the screen.
         lines: u32,

@@ -65,6 +65,17 @@ pub(crate) struct Setting {
     pub(crate) folder: PathBuf,
 }
 
+impl Setting {
+    /// Returns the place of the setting with its key. An option such as `--level` names its key already.
+    fn place_of(&self, key: &str) -> String {
+        match self.place.as_str() {
+            "" => key.to_owned(),
+            place if place.strip_prefix("--") == Some(key) => place.to_owned(),
+            place => format!("{place}: {key}"),
+        }
+    }
+}
+
 /// Name of the head motion whose seed is the seed of the run.
 const SYNTHETIC: &str = "synthetic";
 

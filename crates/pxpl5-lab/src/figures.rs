@@ -43,6 +43,7 @@ use crate::application_time::{ApplicationTime, application_times};
 use crate::intervals::{Interval, fill, intervals};
 use crate::parallel;
 use crate::readings::{self, Readings};
+use pxpl5_run::ExperimentError;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
@@ -57,19 +58,24 @@ pub struct FigureError {
     pub reason: String,
 }
 
-/// All published figures with the model's values and intervals, and further comparisons.
+/// All published figures with the model's values and intervals.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
     /// Table rows of the published figures, in the order of [`FIGURES`].
     pub rows: Vec<FigureRow>,
-    /// Rows of the main table, measured with the times of executed i860 code, without intervals.
-    pub of_code: Vec<FigureRow>,
     /// Interval of each figure while the unpublished parameters vary. Figures that depend only on scenes are left out.
     pub intervals: Vec<Interval>,
     /// Figures of papers about other systems than Pixel-Planes 5.
     pub families: Vec<FigureFamily>,
     /// Further figures of Pixel-Planes 5 by topic: peak rates, just-in-time pixels, trackers.
     pub groups: Vec<FigureGroup>,
+}
+
+/// Published figures under other assumptions than those of [`Figures`]. Only the document ACCURACY.md needs them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Alternatives {
+    /// Rows of the main table, measured with the times of executed i860 code, without intervals.
+    pub of_code: Vec<FigureRow>,
     /// Agreement of the model with the published figures of Rendering Control, for each interpretation of the papers at
     /// the analytic level.
     pub readings: Readings,
@@ -99,57 +105,55 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
 ///
 /// Fails in the same cases as [`run_all`].
 pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
-    let steps = FIGURES.len() as u64 + 6;
+    let steps = FIGURES.len() as u64 + 3;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
-    let with_step = |figure: &Figure| {
-        let row = row_of(bench, figure);
-        step();
-        row
-    };
+    let with_step = |figure: &Figure| stepped(&step, || row_of(bench, figure));
+    // The parts are closures, so that they can run in parallel.
     let rows = || parallel::map(&FIGURES, with_step).into_iter().collect::<Result<Vec<_>, _>>();
-    // The parts below are closures, so that they can run in parallel.
+    let groups = || stepped(&step, || figure_groups(bench));
+    let intervals = || stepped(&step, || intervals(bench));
+    let families = || stepped(&step, || FigureFamily::address_recalculation(bench));
+    let ((rows, groups), (intervals, families)) =
+        parallel::both(|| parallel::both(rows, groups), || parallel::both(intervals, families));
+    // Report the first error in the order of the parts.
+    let (mut rows, groups, families) = (rows?, groups?, vec![families?]);
+    fill(&mut rows, &intervals);
+    Ok(Figures { rows, intervals, families, groups })
+}
+
+/// Measures the figures under other assumptions in parallel: the times of executed code, the other interpretations of
+/// the papers, and other times of the host's application. `finished` is called with the number of finished parts and
+/// the number of all parts.
+///
+/// # Errors
+///
+/// Returns the first [`FigureError`].
+pub fn alternatives_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Alternatives, FigureError> {
+    let done = AtomicU64::new(0);
+    let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, 3);
+    let of_fly_through = |error: ExperimentError| FigureError { id: "7".to_owned(), reason: error.to_string() };
+    let by_code = bench.clone().with_times_of_code();
+    let ranked = bench.clone().with_mig(SEEDS, FRAMES);
     let of_code = || {
-        let by_code = bench.clone().with_times_of_code();
-        let rows = parallel::map(&FIGURES, |figure| row_of(&by_code, figure));
-        step();
+        let rows = stepped(&step, || parallel::map(&FIGURES, |figure| row_of(&by_code, figure)));
         rows.into_iter().collect::<Result<Vec<_>, _>>()
     };
-    let intervals = || {
-        let intervals = intervals(bench);
-        step();
-        intervals
-    };
-    let readings = || {
-        let readings = readings::run(&bench.clone().with_mig(SEEDS, FRAMES), 0, |_, _| {});
-        step();
-        readings.map_err(|error| FigureError { id: "7".to_owned(), reason: error.to_string() })
-    };
-    let families = || {
-        let families = FigureFamily::address_recalculation(bench);
-        step();
-        families
-    };
-    let groups = || {
-        let groups = figure_groups(bench);
-        step();
-        groups
-    };
-    let of_application = || {
-        let times = application_times(&bench.clone().with_mig(SEEDS, FRAMES));
-        step();
-        times.map_err(|error| FigureError { id: "7".to_owned(), reason: error.to_string() })
-    };
-    // All parts run in parallel. The intervals then go into the rows of the main table.
-    let of_machine = || parallel::both(|| parallel::both(rows, groups), of_code);
-    let of_models =
-        || parallel::both(|| parallel::both(readings, intervals), || parallel::both(families, of_application));
-    let (((rows, groups), of_code), ((readings, intervals), (families, application_times))) =
-        parallel::both(of_machine, of_models);
-    // Report the first error in the order of the parts.
-    let (mut rows, groups, of_code, readings, families) = (rows?, groups?, of_code?, readings?, vec![families?]);
-    fill(&mut rows, &intervals);
-    Ok(Figures { rows, of_code, intervals, families, groups, readings, application_times: application_times? })
+    let readings = || stepped(&step, || readings::run(&ranked, 0, |_, _| {}));
+    let of_application = || stepped(&step, || application_times(&ranked));
+    let (of_code, (readings, times)) = parallel::both(of_code, || parallel::both(readings, of_application));
+    Ok(Alternatives {
+        of_code: of_code?,
+        readings: readings.map_err(of_fly_through)?,
+        application_times: times.map_err(of_fly_through)?,
+    })
+}
+
+/// Runs `part`, calls `step`, and returns the part's result.
+fn stepped<T>(step: &impl Fn(), part: impl FnOnce() -> T) -> T {
+    let result = part();
+    step();
+    result
 }
 
 fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, FigureError> {

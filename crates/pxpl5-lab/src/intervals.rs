@@ -140,7 +140,7 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
 }
 
 /// Computes the intervals of all figures at the analytic level, around the figures' values for `bench`, the common
-/// settings of all measurements.
+/// settings of all measurements. The list is empty if another thread sets the flag of `bench`.
 #[must_use]
 pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
@@ -155,6 +155,10 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     let neighbours = bench.reading.neighbours();
     // Interpretations: one question answered otherwise.
     let read = crate::parallel::map(&neighbours, |reading| measure(&bench.with(*reading), Vec::new()));
+    // After a stop, values are missing.
+    if bench.stop.is_stopped() {
+        return Vec::new();
+    }
     // Collect the designs for each figure. A missing value counts as the value for the presets.
     let mut intervals = Vec::new();
     for (index, figure) in FIGURES.iter().enumerate().filter(|(_, figure)| !WITHOUT_CLOSED_FORM.contains(&figure.id)) {

@@ -44,6 +44,7 @@ pub mod pipeline_figures;
 pub mod readings;
 pub mod rig;
 mod snapshot;
+mod stop;
 mod suitability;
 pub mod sweep;
 mod what_if;
@@ -57,6 +58,7 @@ pub use head_names::{PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
 pub use parallel::map as in_parallel;
 pub use snapshot::Snapshot;
+pub use stop::StopFlag;
 pub use suitability::{Suitability, suitability};
 pub use what_if::{WhatIf, what_if};
 

@@ -16,15 +16,16 @@
 mod over;
 mod search;
 
-pub use over::{OverLimit, OverQuery, STEPS, Values};
+pub use over::{OverLimit, OverQuery, STEPS, USUAL_VALUES, Values};
 pub use search::{Hints, Limit, about, most, most_triangles};
 
+use crate::StopFlag;
 use crate::experiment_file::{Plan, SceneChoice};
 use crate::levels::summarise;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{
-    Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry, Summary,
-    TestScene,
+    Coverage, Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry,
+    Summary, TestScene,
 };
 use pxpl5_scene::{Decimation, Scene, builtin};
 use pxpl5_sim::parameters::SettingError;
@@ -45,6 +46,8 @@ pub struct LimitQuery {
     pub model: Option<Model>,
     /// Level of modelling at which every number of triangles is tried.
     pub level: Level,
+    /// Flag by which another thread stops the search.
+    pub stop: StopFlag,
 }
 
 /// A scene whose triangles are reduced evenly to each number that a search tries. The largest number is the scene's own
@@ -96,6 +99,9 @@ const MARGINS: u32 = 1_000;
 /// Maximum number of scene sizes that a search tries because formulas predict a small margin to the goal.
 const DOUBTFUL: usize = 8;
 
+/// Estimated maximum number of scene sizes that a search simulates: twice the number of bisection steps over all sizes.
+pub const USUAL_SIZES: u64 = 40;
+
 /// Minimum number of pictures after the warm-up. With fewer pictures the update rate is unknown, and the goal counts as
 /// missed.
 const PICTURES: usize = 4;
@@ -111,6 +117,7 @@ impl LimitQuery {
             criterion: plan.limit,
             model: None,
             level: plan.level,
+            stop: StopFlag::default(),
         }
     }
 
@@ -123,7 +130,8 @@ impl LimitQuery {
         let registry = crate::registry();
         let unknown = |_| SettingError::combination(format_args!("no pipeline {} is known", pipeline.name()));
         let criterion = (registry.pipeline(pipeline.name()).map_err(unknown)?.limit)(&PipelineSettings::default());
-        Ok(Self { registry, config, pipeline: Arc::new(pipeline), criterion, model: None, level: Level::Transaction })
+        let (pipeline, level) = (Arc::new(pipeline), Level::Transaction);
+        Ok(Self { registry, config, pipeline, criterion, model: None, level, stop: StopFlag::default() })
     }
 
     /// Searches for the limit.
@@ -131,21 +139,23 @@ impl LimitQuery {
     /// # Errors
     ///
     /// Returns [`ExperimentError`] if the machine cannot be built or the pipeline cannot run on the machine. A scene
-    /// that does not fit into a board's memory, or is never shown, misses the goal.
+    /// that does not fit into a board's memory, or is never shown, misses the goal. Returns
+    /// [`ExperimentError::Stopped`] if another thread sets the query's flag.
     pub fn search(&self) -> Result<Limit, ExperimentError> {
-        self.search_with(|_| {})
+        self.search_with(|_, _| {})
     }
 
-    /// Searches for the limit. `progress` is called with the number of scenes that were simulated so far.
+    /// Searches for the limit. `progress` is called with the number of scenes that were simulated so far, and with an
+    /// estimate of the number of all scenes.
     ///
     /// # Errors
     ///
     /// Fails in the same cases as [`search`](Self::search).
-    pub fn search_with(&self, mut progress: impl FnMut(u64)) -> Result<Limit, ExperimentError> {
+    pub fn search_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Limit, ExperimentError> {
         let mut tried = 0;
         let limit = most(self.ceiling(), &self.hints(), |triangles| {
             tried += 1;
-            progress(tried);
+            progress(tried, tried.max(USUAL_SIZES));
             self.reached(triangles)
         })?;
         self.check_limit(limit.triangles)?;
@@ -169,10 +179,12 @@ impl LimitQuery {
         if triangles == 0 { self.check_rate() } else { Ok(()) }
     }
 
-    /// Returns an error if the goal is an update rate and the scene has no measurable update rate. A display with cube
-    /// faces redraws so little of some scenes that fewer than two updates occur.
+    /// Returns an error if the goal is an update rate and the scene has no measurable update rate. A
+    /// pipeline that draws all directions redraws so little of some scenes that fewer than two updates occur.
     fn check_rate(&self) -> Result<(), ExperimentError> {
-        let (Goal::RateHz(hz), true) = (self.criterion.goal, self.pipeline.draws_faces()) else { return Ok(()) };
+        let (Goal::RateHz(hz), true) = (self.criterion.goal, self.pipeline.coverage() == Coverage::Surroundings) else {
+            return Ok(());
+        };
         let outcome = self.experiment(1)?.run()?;
         if outcome.shown() == 0 || outcome.updates_hz().is_some() {
             return Ok(());
@@ -249,11 +261,13 @@ impl LimitQuery {
     }
 
     fn experiment(&self, triangles: u32) -> Result<Experiment, ExperimentError> {
+        self.stop.check()?;
         let scene = self.scene(triangles)?;
         Ok(Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
             .fields(self.criterion.fields)
             .pixels(Pixels::Off)
-            .level(self.level))
+            .level(self.level)
+            .host(self.stop.clone()))
     }
 
     fn summary(&self, triangles: u32) -> Result<Summary, ExperimentError> {

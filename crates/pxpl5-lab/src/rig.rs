@@ -12,14 +12,14 @@
 //! from the pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from
 //! the board that starts the frame. The pipeline's records give the system's own time stamps.
 
-use crate::Workstation;
+use crate::StopFlag;
 use crate::error::StudyError;
 use core::f64::consts::FRAC_PI_2;
 use glam::{DVec3, Vec3};
 use image::RgbImage;
 use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, MachineConfig, Record};
-use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
+use pxpl5_run::{Coverage, Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_sim::Time;
 use pxpl5_wire::display::Display;
@@ -44,6 +44,8 @@ pub struct Rig {
     pub seed: u64,
     /// Number of measured passes of the pendulum through its low point, at least 2.
     pub passes: usize,
+    /// Flag by which another thread stops the measurement.
+    pub stop: StopFlag,
 }
 
 /// Default number of low points to measure. Low points occur at any time within a field. With this number, the mean
@@ -54,7 +56,7 @@ impl Rig {
     /// Creates a rig with `tracker` on the pendulum, and with the assumed pendulum, detection and photodiodes.
     #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
-        Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES }
+        Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES, stop: StopFlag::default() }
     }
 
     /// Measures the latency of a pipeline on a machine.
@@ -145,7 +147,7 @@ impl Rig {
             .head(head)
             .on_demand()
             .pixels(Pixels::Lazy)
-            .host(Workstation::with_threads(1));
+            .host(self.stop.clone());
         let last_ps = sightings.last().map_or(0, |last| last.arrives_ps);
         // The run ends half a period of the pendulum after the last sighting.
         let end = Time(last_ps + nearest_ps(self.rig.pendulum.period_s() / 2.0));
@@ -160,7 +162,7 @@ fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), 
         let definition = pipeline.due_definition();
         Err(StudyError::NoFrames { pipeline: pipeline.name(), reason, definition })
     };
-    if pipeline.draws_faces() {
+    if pipeline.coverage() == Coverage::Surroundings {
         return refused("its display turns with the head, so the light changes before any frame is drawn");
     }
     let machine =

@@ -127,7 +127,7 @@ fn where_nothing_was_complete_in_time_there_is_no_latency_no_update_and_no_error
 fn a_pipeline_without_a_closed_form_says_how_its_limit_is_found() {
     let heavy = run("jitp-field", 3_000, 60).expect("fields are begun").report().too_heavy.expect("far too many");
     assert_eq!(heavy.triangles_in_time, None);
-    assert!(heavy.advice.contains("pxpl5 limit --pipeline jitp-field"), "{heavy}");
+    assert!(heavy.advice.contains("`limit` finds the number of test triangles that jitp-field draws"), "{heavy}");
 }
 
 /// Tests a load that is never drawn in time: three processors cannot draw 500 triangles in a field. For any length of

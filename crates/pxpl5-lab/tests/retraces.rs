@@ -115,5 +115,5 @@ fn slats_that_is_always_late_has_shown_nothing_and_says_what_would_do() {
     // TR94: 140 triangles with the COPY optimisation.
     let would_do = heavy.triangles_in_time.expect("Slats has a closed form");
     assert!((136..=150).contains(&would_do), "{heavy}");
-    assert!(heavy.to_string().contains(&format!("--triangles {would_do}")), "{heavy}");
+    assert!(heavy.to_string().contains(&format!("triangles = {would_do}")), "{heavy}");
 }

@@ -1,10 +1,9 @@
-//! Moves the outputs of boards into the event queue.
+//! Moves events and outputs of boards into the machine's event queue.
 
 use crate::event::Event;
 use pxpl5_ring::{RingEvent, RingOutput};
 use pxpl5_sim::{Context, EventQueue, Phase};
 
-/// Schedules the future events that a board has requested for itself.
 pub(crate) fn schedule_own<E, O>(
     queue: &mut EventQueue<Event>,
     context: &mut Context<E, O>,
@@ -13,7 +12,6 @@ pub(crate) fn schedule_own<E, O>(
     context.each_event(|time, phase, event| queue.schedule(time, phase, event_of(event)));
 }
 
-/// Schedules each output of the ring as an event of the receiving board.
 pub(crate) fn schedule_outputs(queue: &mut EventQueue<Event>, context: &mut Context<RingEvent, RingOutput>) {
     for (time, output) in context.drain_outputs() {
         queue.schedule(time, Phase::Arrive, Event::FromRing(output));

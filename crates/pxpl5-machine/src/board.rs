@@ -5,7 +5,7 @@ use pxpl5_sim::parameters::SettingError;
 use std::fmt;
 use std::str::FromStr;
 
-/// One board of a machine, or the ring.
+/// A board of a machine, or the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Board {
     /// The host workstation.
@@ -14,9 +14,9 @@ pub enum Board {
     Gp(usize),
     /// A renderer, counted from 0.
     Renderer(usize),
-    /// A display with all its ring ports. Displays are counted from 0.
+    /// A display. Displays are counted from 0.
     Display(usize),
-    /// The ring with its arbiter.
+    /// The ring with its arbiter, which assigns channels to messages.
     Ring,
 }
 
@@ -32,8 +32,7 @@ pub struct EventDescription {
 }
 
 impl Board {
-    /// Returns the board at a port of the host or of a graphics processor: the host for port 0, else graphics processor
-    /// `port - 1`.
+    /// Returns the board at a ring port: the host for port 0, otherwise graphics processor `port - 1`.
     #[must_use]
     pub const fn of_processor(port: usize) -> Self {
         match port {
@@ -64,9 +63,6 @@ impl fmt::Display for EventDescription {
 impl FromStr for Board {
     type Err = SettingError;
 
-    /// Parses `host`, `ring`, or a name with a number: `gp`, `renderer` or `display`.
-    ///
-    /// Case does not matter. A space between name and number is optional.
     fn from_str(text: &str) -> Result<Self, SettingError> {
         let refused = SettingError::text("host, ring, gp N, renderer N or display N", text);
         let text = text.to_ascii_lowercase();

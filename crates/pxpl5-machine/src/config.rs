@@ -13,7 +13,7 @@ use std::fmt::Debug;
 
 /// The boards of a machine and all their timing parameters.
 ///
-/// The type does not implement `Default`. A configuration starts from a preset, which states its source.
+/// The type does not implement `Default`. Every configuration starts from a preset, which states its sources.
 #[derive(Clone, Debug)]
 pub struct MachineConfig {
     /// Name of the preset that this configuration started from.
@@ -24,29 +24,29 @@ pub struct MachineConfig {
     pub n_renderers: usize,
     /// Timing of the ring: number of channels, clock and overhead.
     pub ring: RingTiming,
-    /// Times of the graphics processors' work. Runs without i860 code use these times.
+    /// Times of the graphics processors' work, for runs without i860 code.
     pub gp: GpTiming,
     /// Version of the i860 code that the graphics processors execute at the cycle level. With `None`, the times come
     /// from `gp` instead.
     pub code: Option<CodeVersion>,
-    /// Timing of the i860 core and its memory at the cycle level: clocks of pipeline freezes and of DRAM accesses.
+    /// Clocks of the i860 and of its memory at the cycle level.
     pub i860: i860::Config,
-    /// Timing of the renderers: clocks of commands, FIFO and backing store.
+    /// Clocks of the renderers' commands, and sizes of their memories.
     pub renderer: RendererTiming,
     /// Timing of the host workstation and its link to the ring.
     pub host: HostTiming,
-    /// The displays. The first display is the sync generator, for which the pipelines draw their pictures.
+    /// The displays. The first display generates the retrace signal, and pipelines draw for this display.
     pub displays: Vec<Box<dyn DisplayConfig>>,
-    /// Parameter tables of firmware, each with the prefix of its parameter paths.
+    /// Timing tables of pipelines, each with the first part of its parameter paths, such as `jitp`.
     pub firmware: Vec<(&'static str, Box<dyn FirmwareTable>)>,
 }
 
-/// The prefix of a parameter table's paths, and a function that returns the table with the values from the papers.
+/// The first part of a table's parameter paths, and a function that returns the table with the values of the papers.
 pub type NamedTable = (&'static str, fn() -> Box<dyn FirmwareTable>);
 
-/// A parameter table of firmware, stored in a [`MachineConfig`].
+/// A timing table of a pipeline, which a [`MachineConfig`] can store.
 pub trait FirmwareTable: ParameterTable + Any + Debug + Send + Sync {
-    /// Returns a boxed copy of the table.
+    /// Returns a copy of the table.
     fn boxed(&self) -> Box<dyn FirmwareTable>;
 }
 
@@ -84,7 +84,7 @@ impl MachineConfig {
         [self.n_gps as u64, self.n_renderers as u64]
     }
 
-    /// Returns the name of the processors' i860 code: `unoptimised`, `compiled`, `scheduled`, or `none`.
+    /// Returns the name of the i860 code: `unoptimised`, `compiled`, `scheduled`, or `none`.
     #[must_use]
     pub const fn code_name(&self) -> &'static str {
         match self.code {
@@ -93,7 +93,6 @@ impl MachineConfig {
         }
     }
 
-    /// Returns all parameter tables in the order of the boards, each with its path prefix.
     fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
         let mut all: Vec<(&'static str, &dyn ParameterTable)> = vec![("ring", &self.ring), ("gp", &self.gp)];
         all.extend(self.i860.tables());
@@ -104,7 +103,6 @@ impl MachineConfig {
         all
     }
 
-    /// Returns the parameter tables that can be changed, each with its path prefix.
     fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
         let mut all: Vec<(&'static str, &mut dyn ParameterTable)> =
             vec![("ring", &mut self.ring), ("gp", &mut self.gp)];
@@ -116,33 +114,31 @@ impl MachineConfig {
         all
     }
 
-    /// Returns the parameters that identify this machine in names of experiments.
+    /// Returns the parameters that identify this machine in the names of experiments.
     ///
-    /// The result omits parameters of firmware and of the i860 that have the values from the papers. In older versions,
-    /// experiments could not set these parameters. Without the omitted parameters, the names of old experiments stay
-    /// valid.
+    /// Parameters of pipelines and of the i860 are omitted if they have the values of the papers. Older versions could
+    /// not change these parameters, so names of old experiments do not contain them.
     #[must_use]
     pub fn identifying_parameters(&self) -> Vec<Parameter> {
         let all = self.parameters().into_iter();
         all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()
     }
 
-    /// Returns true for parameters of firmware and of the i860. Names of old experiments imply the values from the
-    /// papers for these parameters.
+    /// Returns true for parameters of pipelines and of the i860, which names of experiments may omit.
     fn is_implied(&self, parameter: &Parameter) -> bool {
         let table = parameter.path.rsplit_once('.').map(|(table, _)| table);
         let of_i860 = self.i860.tables().map(|(name, _)| name);
         self.firmware.iter().map(|(name, _)| *name).chain(of_i860).any(|name| Some(name) == table)
     }
 
-    /// Adds the parameter table of a firmware, unless the configuration already has a table of this name.
+    /// Adds the timing table of a pipeline, unless the configuration already has a table of this name.
     pub fn add_firmware_table(&mut self, name: &'static str, table: Box<dyn FirmwareTable>) {
         if self.firmware.iter().all(|(known, _)| *known != name) {
             self.firmware.push((name, table));
         }
     }
 
-    /// Returns the firmware parameter table that has the type `T`.
+    /// Returns the timing table of a pipeline that has the type `T`.
     #[must_use]
     pub fn firmware_table<T: FirmwareTable>(&self) -> Option<&T> {
         self.firmware.iter().find_map(|(_, table)| (table.as_ref() as &dyn Any).downcast_ref())
@@ -155,10 +151,9 @@ impl MachineConfig {
         all.flat_map(|(path, table)| Parameter::of_table(path, table, path == i860::CHIP_PATH)).collect()
     }
 
-    /// Returns the parameters that differ from the values of the preset. The keys are the paths of the parameters.
+    /// Returns the parameters that differ from the preset, by path.
     ///
-    /// The preset may lack a table, for example the table of a firmware or of another display. The parameters of such a
-    /// table are compared with the values from the papers.
+    /// If the preset lacks the table of a parameter, the parameter is compared with the value of the papers.
     #[must_use]
     pub fn overrides(&self) -> BTreeMap<String, Value> {
         let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
@@ -169,9 +164,8 @@ impl MachineConfig {
         self.settings().into_iter().filter(|(path, value)| expected(path) != Some(value)).collect()
     }
 
-    /// Returns the changed parameters whose values lie outside their stated range.
-    ///
-    /// The model accepts such values, but no source supports them.
+    /// Returns the changed parameters whose values lie outside the range that the sources support. The model accepts
+    /// such values.
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let changed = self.overrides();
@@ -211,7 +205,6 @@ impl MachineConfig {
         }
     }
 
-    /// Returns the error for a path that is not in any changeable table: the parameter is read-only or unknown.
     fn not_settable(&self, path: &str) -> SettingError {
         match self.parameters().into_iter().find(|parameter| parameter.path == path) {
             Some(Parameter { path, info, value, .. }) => SettingError::read_only(&path, value, info.source),
@@ -266,11 +259,17 @@ impl MachineConfig {
         Self { n_renderers, ..self }
     }
 
+    /// Returns the machine with `display` in place of all displays.
+    #[must_use]
+    pub fn with_display(self, display: impl DisplayConfig + 'static) -> Self {
+        Self { displays: vec![Box::new(display)], ..self }
+    }
+
     /// Returns an error for a ring in which commands for full renderer FIFOs can occupy all channels.
     ///
-    /// A renderer empties its FIFO only when it can send pixels. Without a free channel, the renderers would therefore
-    /// wait for ever. Three limits apply to the channels that such commands occupy: `fifo_channels`, one channel for
-    /// each renderer, and `source_channels` channels for each graphics processor.
+    /// A renderer empties its FIFO only after it has sent pixels, so the machine could then deadlock. Three limits
+    /// apply to the number of these channels: `fifo_channels`, the number of renderers, and `source_channels` for each
+    /// graphics processor.
     fn check_channels(&self) -> Result<(), SettingError> {
         let RingTiming { channels, fifo_channels, source_channels, .. } = self.ring;
         let sent = source_channels.saturating_mul(self.n_gps as u64);
@@ -290,7 +289,6 @@ impl MachineConfig {
     }
 }
 
-/// Converts the value of `n_gps` or `n_renderers` to an integer.
 fn whole(path: &str, value: Value) -> Result<usize, SettingError> {
     let number = value.whole().and_then(|number| usize::try_from(number).ok());
     number.ok_or_else(|| SettingError::not_whole(path, value))

@@ -1,4 +1,4 @@
-//! Events of a machine and their descriptions.
+//! The events in a machine's queue.
 
 use crate::board::{Board, EventDescription};
 use crate::ports::Ports;
@@ -9,21 +9,21 @@ use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::DisplayEvent;
 
-/// An event in the queue of the machine. Either one board or the ring handles the event.
+/// An event in the queue of the machine, with the index of its board, host line or display.
 #[derive(Debug)]
 pub(crate) enum Event {
     Ring(RingEvent),
-    /// Output of the ring to a board.
+    /// An output of the ring, such as a delivered message.
     FromRing(RingOutput),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
-    /// Arrival of messages on a host line, a connection that bypasses the ring. The number is the line's index.
+    /// Messages arrive at the first display on a host line, a connection that bypasses the ring.
     HostLine(usize),
-    /// Event that a display has scheduled for itself.
+    /// An event that a display scheduled for itself.
     Display(usize, DisplayEvent),
-    /// Clock tick of a display that begins a period.
+    /// A display begins a period.
     Tick(usize, PeriodNumber),
-    /// Edge of the boards' clock. Scheduled only if the optimization `IdleBoards` is disabled.
+    /// An edge of the boards' 40 MHz clock. Only runs without the optimization `IdleBoards` have such events.
     Edge,
 }
 
@@ -33,7 +33,6 @@ impl Event {
         matches!(self, Self::Edge | Self::Tick(..) | Self::Display(..) | Self::HostLine(_))
     }
 
-    /// Returns a description of this event for a debugger.
     pub(crate) fn happening(&self, time: Time, ports: &Ports) -> EventDescription {
         let (board, what) = match self {
             Self::Ring(event) => (Board::Ring, ring_what(event)),
@@ -49,7 +48,6 @@ impl Event {
     }
 }
 
-/// Returns the board that receives an output of the ring, and a description of the output.
 fn brought(output: &RingOutput, ports: &Ports) -> (Board, &'static str) {
     match output {
         RingOutput::Announce { message, .. } => (ports.board(message.destination), "message announced"),

@@ -3,13 +3,12 @@
 use pxpl5_gp::Mark;
 use pxpl5_wire::{Body, Message, RegionPixels, SurfaceId};
 
-/// Returns the numbers that enter the trace hash for a ring message: event code, ports of sender and receiver, and
-/// length. `kind` is the event code, which is 1 for an announced message and 2 for a delivered message.
+/// Returns the numbers for a ring message: event code (1 announced, 2 delivered), sender, receiver and length.
 pub(crate) fn facts(kind: u64, message: &Message) -> [u64; 4] {
     [kind, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)]
 }
 
-/// Returns the numbers that enter the trace hash for a message that a host line delivered to port `port` of a display.
+/// Returns the numbers for a message on a host line, a connection from the host to a display that bypasses the ring.
 pub(crate) fn host_line_facts(port: usize, body: &Body) -> Vec<u64> {
     match body {
         Body::Words(words) => [8, port as u64].into_iter().chain(words.iter().map(|word| u64::from(*word))).collect(),
@@ -20,17 +19,16 @@ pub(crate) fn host_line_facts(port: usize, body: &Body) -> Vec<u64> {
     }
 }
 
-/// Returns the numbers that enter the trace hash for a time stamp at the start or end of a stage.
+/// Returns the numbers for a time stamp at the start or end of a stage.
 pub(crate) fn mark_facts(mark: &Mark) -> [u64; 6] {
     let surface = surface_fact(mark.surface);
     [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
 }
 
-/// Returns the number that stands for a surface in the trace hash. The number 2 stands for no surface. The third
-/// surface and all later surfaces therefore have their own number plus 1.
+/// Returns the number for a surface: 0 or 1 for the first two surfaces, 2 for no surface. From the third surface on,
+/// the number is the index plus 1.
 ///
-/// These numbers come from versions with at most two surfaces. The numbers must not change, so that old trace hashes
-/// remain valid.
+/// The numbers come from versions with at most two surfaces, and published hashes depend on them.
 fn surface_fact(surface: Option<SurfaceId>) -> u64 {
     match surface {
         None => 2,

@@ -40,7 +40,7 @@ pub use optimization::Optimization;
 pub use pixels::{PixelWorker, SameThread};
 pub use ports::Ports;
 pub use preset::{PRESETS, Preset};
-pub use record::Record;
+pub use record::{Attachment, Record};
 pub use run_error::{Blocked, RunError};
 pub use traffic::{Traffic, Transfer};
 

@@ -21,7 +21,7 @@ use crate::host_line::HostLine;
 use crate::optimization::Optimization;
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
-use crate::record::Record;
+use crate::record::{Attachment, Record};
 use crate::run_error::{Blocked, RunError};
 use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, GpUse, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
@@ -32,29 +32,27 @@ use pxpl5_wire::display::{DisplayContext, DisplayEvent};
 use pxpl5_wire::{Body, CopyTarget, Message, NodeId, PeriodNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
+use std::sync::Arc;
 
-/// A running machine: boards, observations ([`Record`]), programs and the queue of future events.
+/// A running machine: boards, programs, future events and all observations ([`Record`]).
 #[derive(Debug)]
 pub struct Machine {
     record: Record,
     queue: EventQueue<Event>,
-    /// The host and the graphics processors, indexed by port. Only these boards run programs.
+    /// The host and the graphics processors, indexed by ring port.
     processors: Vec<GpBoard>,
     contexts: Contexts,
-    /// Number of swaps so far at each display port.
     swaps: BTreeMap<NodeId, u64>,
-    /// Host lines into the first display, which bypass the ring.
     host_lines: Vec<Box<dyn HostLine>>,
     pixels: Option<Box<dyn PixelWorker>>,
-    /// True if every edge of the boards' clock causes an event (optimization `IdleBoards` disabled).
+    /// True if boards run at every edge of their clock, because the optimization `IdleBoards` is disabled.
     every_edge: bool,
     failure: Option<RunError>,
-    /// Number of events since the current period of the first display began. Events of displays, host lines and clocks
-    /// do not count.
+    /// Number of events in the current period of the first display, without the events of displays, host lines and
+    /// clocks.
     work_events: u64,
-    /// Number of successive idle ticks of the first display up to now. [`DEADLOCK_TICKS`] defines an idle tick.
+    /// Number of successive idle periods of the first display. [`DEADLOCK_TICKS`] defines an idle period.
     idle_ticks: u64,
-    /// The simulated time up to which the machine has run.
     now: Time,
 }
 
@@ -66,15 +64,13 @@ struct Contexts {
     display: DisplayContext,
 }
 
-/// Number of idle ticks of the first display after which a machine with waiting programs counts as deadlocked.
+/// Number of idle periods of the first display after which a machine with waiting programs counts as deadlocked.
 ///
-/// A tick is the start of a display period. A tick is idle if only displays, host lines and clocks had events in the
-/// period before the tick, and no other part of the machine has a pending event.
+/// In an idle period, only displays, host lines and clocks have events, and no other board has a pending event.
 pub const DEADLOCK_TICKS: u64 = 120;
 
-/// Number of events of the first graphics processor that each tick of the first display causes. The events are the
-/// signal of the retrace, and a poll of the processor's programs. A tick after a period with only these events can
-/// still be idle.
+/// Number of events that the start of a period causes on the first graphics processor: the retrace signal, and a poll
+/// of its programs. A period with only these events can still be idle.
 const EVENTS_OF_A_TICK: u64 = 2;
 
 impl Machine {
@@ -116,6 +112,7 @@ impl Machine {
                 met_full_store: false,
                 elapsed: Time::ZERO,
                 processors_used: Vec::new(),
+                attachments: Vec::new(),
             },
             queue: EventQueue::new(),
             contexts: Contexts::default(),
@@ -129,20 +126,19 @@ impl Machine {
         })
     }
 
-    /// Handles simultaneous events in a pseudo-random order. The order depends on `seed`.
-    ///
-    /// Tests use this method to prove that no result depends on the order of simultaneous events.
+    /// Handles simultaneous events in a pseudo-random order. Tests use different seeds to prove that the order changes
+    /// no result.
     pub fn shuffle_ties(&mut self, seed: u64) {
         self.queue.shuffle_ties(seed);
     }
 
-    /// Uses `worker` to compute the pixels of every region that is copied after this call.
+    /// Uses `worker` to compute the pixels of every region that a renderer copies from now on.
     pub fn compute_all_pixels(&mut self, worker: Box<dyn PixelWorker>) {
         self.pixels = Some(worker);
     }
 
-    /// Makes the graphics processors execute i860 code, so that the clocks of the code give the times of their work.
-    /// The call has an effect only if the configuration has a code version.
+    /// Makes the graphics processors execute i860 code, whose clocks then determine the times of their work. The call
+    /// has an effect only if the configuration has a code version.
     ///
     /// Call this method before loading programs.
     pub fn run_code(&mut self) {
@@ -171,11 +167,12 @@ impl Machine {
         self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
     }
 
-    /// Discards all observations before an instant, to save memory. The last earlier swap of each port is kept. The
-    /// call changes no simulated time.
+    /// Discards all observations before an instant, except the last earlier swap of each port. The call changes no
+    /// simulated time.
     pub fn discard_before(&mut self, instant: Time) {
         let Record { observation, displays, .. } = &mut self.record;
         observation.discard_before(instant, |period| displays[0].tick(period));
+        self.record.attachments.iter().for_each(|attachment| attachment.discard(&self.record));
     }
 
     /// Returns the boards and all observations so far.
@@ -210,8 +207,8 @@ impl Machine {
         &self.record.ports
     }
 
-    /// Returns the handle through which a program uses its board, the host or graphics processor at port `node`.
-    /// `level` is the CPU priority of the program.
+    /// Returns the handle through which a program controls the host or graphics processor at port `node`. `level` is
+    /// the CPU priority of the program.
     ///
     /// # Panics
     ///
@@ -230,10 +227,15 @@ impl Machine {
         self.processors[usize::from(node.0)].load(level, program);
     }
 
-    /// Adds a host line to the first display. A host line bypasses the ring. Call this method before
+    /// Adds a connection from the host to the first display that bypasses the ring. Call this method before
     /// [`Machine::switch_on`].
     pub fn plug_host_line(&mut self, line: Box<dyn HostLine>) {
         self.host_lines.push(line);
+    }
+
+    /// Adds data of the pipeline to the record of the run.
+    pub fn attach(&mut self, attachment: Arc<dyn Attachment>) {
+        self.record.attachments.push(attachment);
     }
 
     /// Starts the machine: all programs and the first period of every display begin at time zero.
@@ -278,8 +280,8 @@ impl Machine {
         self.failure.clone().map_or(Ok(taken), Err)
     }
 
-    /// Removes the next event from the queue if the event is before `end` and the machine has not failed. Returns the
-    /// event's time.
+    /// Removes the next event from the queue and returns its time. Returns `None` if the event is not before `end`, or
+    /// if the machine has failed.
     fn takes_event_before(&mut self, end: Time) -> Option<Time> {
         if self.failure.is_some() {
             return None;
@@ -313,15 +315,14 @@ impl Machine {
         }
     }
 
-    /// Polls every processor and the ring's arbiter, and schedules the next clock edge.
+    /// Lets every processor and the arbiter of the ring check for work, and schedules the next clock edge.
     fn edge(&mut self, now: Time) {
         (0..self.processors.len()).for_each(|board| self.gp_event(now, board, GpEvent::Poll));
         self.ring_event(now, RingEvent::Arbitrate);
         self.queue.schedule(now + self.record.config.ring.signal(), Phase::Work, Event::Edge);
     }
 
-    /// Handles a tick of a display's clock, which begins a period. If the tick belongs to the first display, the
-    /// function also signals a retrace to the first graphics processor.
+    /// Begins a period of a display. The first display also signals a retrace to the first graphics processor.
     fn tick(&mut self, now: Time, display: usize, period: PeriodNumber) {
         self.display_event(now, display, DisplayEvent::Tick(period));
         let next = period.next();
@@ -332,11 +333,10 @@ impl Machine {
         }
     }
 
-    /// Checks for a deadlock at a tick of the first display. The machine is deadlocked if [`DEADLOCK_TICKS`] successive
-    /// ticks were idle, and a program, renderer or message still waits for another board.
+    /// Checks for a deadlock at the start of a period of the first display.
     ///
-    /// A tick with a pending event of another part of the machine is not idle, because one task of a board may take
-    /// longer than [`DEADLOCK_TICKS`] ticks.
+    /// The machine is deadlocked after [`DEADLOCK_TICKS`] idle periods if a program, renderer or message still waits. A
+    /// period with a pending event is not idle, because one task of a board may take longer than all these periods.
     fn watch(&mut self, now: Time) {
         let is_idle = self.work_events <= EVENTS_OF_A_TICK && self.is_at_rest();
         self.idle_ticks = if is_idle { self.idle_ticks + 1 } else { 0 };
@@ -349,30 +349,28 @@ impl Machine {
         }
     }
 
-    /// Returns true if a program, a renderer or a message waits for something other than a retrace.
+    /// Returns true if a program, a renderer or a message waits for another board.
     fn waits_for_a_board(&self) -> bool {
         self.processors.iter().any(GpBoard::waits_for_a_board)
             || self.record.renderers.iter().any(|renderer| renderer.blocked().is_some())
             || !self.record.ring.waiting().is_empty()
     }
 
-    /// Returns the number of successive idle ticks of the first display up to now. [`DEADLOCK_TICKS`] defines an idle
-    /// tick.
+    /// Returns the number of successive idle periods of the first display. [`DEADLOCK_TICKS`] defines an idle period.
     #[must_use]
     pub const fn idle_ticks(&self) -> u64 {
         self.idle_ticks
     }
 
-    /// Returns true if all pending events belong to displays, to host lines or to the boards' clock.
+    /// Returns true if only displays, host lines and clocks have pending events.
     ///
-    /// The next tick of a display can still end the wait of a program.
+    /// The start of a display period can still end the wait of a program.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.queue.pending().all(Event::is_of_displays)
     }
 
-    /// Returns a list of all boards that wait. Each entry has the board, the condition that the board waits for, and
-    /// the board that must act first, if known.
+    /// Returns all boards that wait, each with the condition for which the board waits.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
         let Record { ports, renderers, ring, .. } = &self.record;
@@ -412,7 +410,6 @@ impl Machine {
         schedule_outputs(queue, context);
     }
 
-    /// Delivers an output of the ring to its board and records it in the trace.
     fn bring(&mut self, now: Time, output: RingOutput) {
         let record = &mut self.record;
         let mut traffic = record.observation.traffic.as_deref_mut();
@@ -449,7 +446,6 @@ impl Machine {
         }
     }
 
-    /// Passes a completely received message to its display, host or graphics processor.
     fn deliver(&mut self, now: Time, message: Message) {
         match self.record.ports.of_display(message.destination) {
             Some((display, port)) => {
@@ -459,7 +455,6 @@ impl Machine {
         }
     }
 
-    /// Delivers the messages of a host line to the first display and schedules the line's next arrival.
     fn host_line_event(&mut self, now: Time, line: usize) {
         let messages = self.host_lines[line].messages(now);
         self.schedule_host_line(line, now);
@@ -531,8 +526,7 @@ impl Machine {
         &self.processors
     }
 
-    /// Returns the host or a graphics processor. Returns `None` for other kinds of boards and for boards that do not
-    /// exist.
+    /// Returns the host or a graphics processor, or `None` for any other board.
     #[must_use]
     pub fn board(&self, board: Board) -> Option<&GpBoard> {
         match board {
@@ -542,15 +536,14 @@ impl Machine {
         }
     }
 
-    /// Sets breakpoints at addresses of i860 code, replacing all earlier breakpoints.
+    /// Sets the code addresses at which the processors record their state, and removes all earlier addresses.
     ///
-    /// A breakpoint records the processor's state and changes no simulated time. A processor that takes the times of
-    /// its work from a table never reaches a breakpoint.
+    /// Such breakpoints change no simulated time. Only a processor that executes i860 code reaches a breakpoint.
     pub fn break_at(&mut self, addresses: &BTreeSet<u32>) {
         self.processors.iter_mut().for_each(|board| board.break_at(addresses));
     }
 
-    /// Removes and returns all breakpoint hits recorded since the last call, in the order of the boards.
+    /// Removes and returns the breakpoints reached since the last call, in the order of the boards.
     #[must_use]
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         self.processors.iter_mut().flat_map(GpBoard::take_hits).collect()
@@ -574,13 +567,13 @@ impl Machine {
         self.queue.len()
     }
 
-    /// Waits until the worker has computed all pixels. Returns the number of regions that the worker computed.
+    /// Waits until all pixels are computed. Returns the number of regions that the worker has computed.
     pub fn finish_pixels(&mut self) -> u64 {
         self.pixels.take().map_or(0, PixelWorker::finish)
     }
 }
 
-/// Passes a region's pixels to the worker when the first of the region's messages is sent.
+/// Passes a region to the worker when its first message is sent. The worker then computes the pixels.
 fn compute_pixels(worker: &mut Option<Box<dyn PixelWorker>>, body: &Body) {
     if let (Some(worker), Body::Pixels(pixels)) = (worker, body)
         && pixels.part == 0

@@ -1,4 +1,4 @@
-//! Observations of a run, and the history of each picture that follows from the observations.
+//! Observations of a run, and the stages of pictures that follow from these observations.
 
 use crate::traffic::Traffic;
 use pxpl5_gp::{Mark, Stage, StageEdge};
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 pub struct Arrival {
     /// The surface that shows the region.
     pub surface: SurfaceId,
-    /// The region with its frame buffer port, its picture and its index in the picture.
+    /// The region: its picture, its index in the picture, and its port of the display.
     pub target: CopyTarget,
     /// Arrival of the region's first message.
     pub first_part_at: Time,
@@ -21,30 +21,30 @@ pub struct Arrival {
 }
 
 impl Arrival {
-    /// Returns the time at which the region's first word was on the channel. `message` is the duration of one message.
+    /// Returns the time at which the transfer of the region began on the ring. `message` is the duration of one
+    /// message.
     #[must_use]
     pub const fn begins_at(&self, message: Span) -> Time {
         Time(self.first_part_at.0.saturating_sub(message.0))
     }
 }
 
-/// A change of the visible buffer of a double-buffered display. The change takes place at the start of a display
-/// period.
+/// A change of the visible buffer of a display, at the start of a display period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Swap {
     /// The surface whose visible buffer changes.
     pub surface: SurfaceId,
-    /// The ring port of the surface, or of the part of the surface that swapped.
+    /// The port of the display that swapped. A surface may have several ports.
     pub port: NodeId,
-    /// Number of swaps at this port before this swap.
+    /// Number of earlier swaps at this port.
     pub number: u64,
     /// The display period at whose start the swap takes effect.
     pub tick: PeriodNumber,
-    /// The buffer shown from this swap on. This buffer can be the same buffer as before the swap.
+    /// The buffer that is visible from now on. The buffer can be the same as before.
     pub buffer: u8,
 }
 
-/// A picture, or a part of a picture, that the double buffer at one port has shown.
+/// A picture that a port of a display has shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
     /// Number of the picture, as counted by its pipeline.
@@ -64,32 +64,33 @@ pub struct Observation {
     pub arrivals: Vec<Arrival>,
     /// Swaps of double buffers, in the order in which displays made them.
     pub swaps: Vec<Swap>,
-    /// Regions that were drawn, each with its renderer's index, in the order in which the copy commands started.
+    /// Regions that renderers have copied, each with the index of its renderer, in the order in which the copies
+    /// started.
     pub drawn: Vec<(usize, DrawnRegion)>,
-    /// Ring messages, occupied channels and FIFO levels. `None` unless recording was enabled.
+    /// Ring messages, and use of channels and FIFOs. `None` unless recording was enabled.
     pub traffic: Option<Box<Traffic>>,
     /// Summary of observations that were discarded to save memory.
     pub forgotten: DiscardedSummary,
 }
 
-/// Summary of observations discarded by [`Machine::discard_before`](crate::Machine::discard_before) in a long run.
+/// Summary of the observations that [`Machine::discard_before`](crate::Machine::discard_before) has discarded in a long
+/// run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DiscardedSummary {
-    /// Observations before this instant were discarded, except for the last earlier swap of each port.
+    /// The instant before which observations were discarded. The last earlier swap of each port is kept.
     pub before: Time,
     /// Period of the first swap in the whole run, including discarded swaps.
     pub first_swap: Option<PeriodNumber>,
-    /// Largest number of regions of one picture that were in memory when observations were discarded.
+    /// Largest number of regions that arrived for one picture, up to the last call of `discard_before`.
     pub most_regions: u32,
 }
 
-/// One stage of a picture on one surface, from the time at which the first board begins to the time at which the last
-/// board ends.
+/// One stage of a picture, from the first board that begins to the last board that ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageSpan {
-    /// Number of the picture that the boards worked on, as counted by its pipeline.
+    /// Number of the picture, as counted by its pipeline.
     pub picture: PictureNumber,
-    /// The surface, for stages that handle one eye at a time.
+    /// The surface, if the stage handles one surface at a time.
     pub surface: Option<SurfaceId>,
     /// The kind of work, such as TRANSFORM or COPY.
     pub stage: Stage,
@@ -102,8 +103,8 @@ pub struct StageSpan {
 impl Observation {
     /// Returns all stages in the order of picture, surface and stage.
     ///
-    /// The stage COPY is derived from arrivals at displays. COPY lasts from the start of the first region's transfer to
-    /// the arrival of the last region's last pixel. `message` is the duration of one message.
+    /// Programs record the stages, except COPY. COPY lasts from the first to the last word of the picture's regions at
+    /// the displays. `message` is the duration of one message.
     #[must_use]
     pub fn stages(&self, message: Span) -> Vec<StageSpan> {
         let mut spans: BTreeMap<(PictureNumber, Option<SurfaceId>, Stage), StageSpan> = BTreeMap::new();
@@ -135,11 +136,9 @@ impl Observation {
         spans.into_values().collect()
     }
 
-    /// Returns the frames that each of the first `surfaces` surfaces has shown. A frame begins with a swap of each
-    /// surface. The key is the number of earlier swaps of a surface.
+    /// Returns the period in which each frame was first visible on all of the first `surfaces` surfaces.
     ///
-    /// The value is the display period from which on all of these surfaces show the frame. Frames with discarded swaps
-    /// are missing.
+    /// The key counts the swaps of each surface from 0. Frames with discarded swaps are missing.
     #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
         let of = |surface| self.swaps_of(surface).map(|swap| (swap.number, swap.tick));
@@ -151,21 +150,19 @@ impl Observation {
         frames
     }
 
-    /// Returns the earliest display period that began with a swap, or `None` if no display has swapped. Discarded swaps
-    /// count as well.
+    /// Returns the display period of the first swap in the run, or `None` if no display has swapped.
     #[must_use]
     pub fn first_swap(&self) -> Option<PeriodNumber> {
         self.forgotten.first_swap.or_else(|| self.swaps.iter().map(|swap| swap.tick).min())
     }
 
-    /// Returns the number of swaps of a port before the first of the port's swaps that is still in memory. Returns 0 if
-    /// no swap of this port is in memory.
+    /// Returns the number of swaps of a port that were discarded. Returns 0 if no swap of this port is in memory.
     #[must_use]
     pub fn first_swap_held(&self, port: NodeId) -> u64 {
         self.swaps.iter().filter(|swap| swap.port == port).map(|swap| swap.number).min().unwrap_or_default()
     }
 
-    /// Returns the largest number of regions that arrived for one picture in the whole run.
+    /// Returns the largest number of regions that arrived for one picture, over the whole run.
     #[must_use]
     pub fn most_regions_of_a_picture(&self) -> u32 {
         let mut of_pictures: BTreeMap<PictureNumber, u32> = BTreeMap::new();
@@ -179,7 +176,6 @@ impl Observation {
         self.marks.len() + self.arrivals.len() + self.swaps.len()
     }
 
-    /// Discards observations before `instant`. `tick` returns the start of a display period.
     pub(crate) fn discard_before(&mut self, instant: Time, tick: impl Fn(PeriodNumber) -> Time) {
         let most_regions = self.most_regions_of_a_picture();
         if let Some(traffic) = &mut self.traffic {
@@ -204,22 +200,22 @@ impl Observation {
         self.forgotten = DiscardedSummary { before: instant, first_swap, most_regions };
     }
 
-    /// Returns the swaps of a surface that have not been discarded, in the order of time.
+    /// Returns the swaps of a surface in memory, in the order of time.
     pub fn swaps_of(&self, surface: SurfaceId) -> impl Iterator<Item = &Swap> {
         self.swaps.iter().filter(move |swap| swap.surface == surface)
     }
 }
 
-/// A region that arrived after its deadline, the instant from which the display needs its pixels.
+/// A region that arrived after its deadline, which is the instant at which the display needs its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct LateRegion {
-    /// The display period for which the region was drawn. For NTSC, a period is one field.
+    /// The display period for which the region was drawn.
     pub field: PeriodNumber,
     /// The surface that should have shown the region.
     pub surface: SurfaceId,
     /// Index of the region in the picture's grid of regions.
     pub region: u16,
-    /// Time between the deadline and the arrival of the complete region, in picoseconds.
+    /// Time from the deadline to the arrival of the last pixel, in picoseconds.
     pub lateness: Span,
 }
 

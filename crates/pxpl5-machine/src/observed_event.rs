@@ -1,4 +1,4 @@
-//! The observations of a run as one list of events with the names of their boards.
+//! The observations of a run as one list of events, in which boards have names.
 
 use crate::board::Board;
 use crate::record::Record;
@@ -12,7 +12,7 @@ use std::fmt;
 pub struct ObservedEvent {
     /// Simulated time of the event.
     pub time: Time,
-    /// The board on which the event happened.
+    /// The board that caused the event.
     pub board: Board,
     /// The event, with the picture or message that it belongs to.
     pub kind: ObservedKind,
@@ -42,7 +42,7 @@ pub enum ObservedKind {
         /// Execution time of the region's commands.
         executed: Span,
     },
-    /// The last message of a region arrived at a display.
+    /// A region has completely arrived at a display.
     Arrived {
         /// Number of the picture, as counted by the pipeline.
         picture: PictureNumber,
@@ -51,15 +51,15 @@ pub enum ObservedKind {
         /// The surface that shows the region.
         surface: SurfaceId,
     },
-    /// A display changed the visible buffer of a surface at the start of a display period.
+    /// A display now shows another buffer of a surface.
     Swapped {
         /// The surface whose visible buffer changed.
         surface: SurfaceId,
         /// The buffer that is visible from this event on.
         buffer: u8,
     },
-    /// The first word of a ring message arrived. Only runs that record traffic have such events. The event's board is
-    /// the sender.
+    /// The first word of a ring message arrived. The event's board is the sender. Only runs that record messages have
+    /// such events.
     Message {
         /// The board that receives the message.
         to: Board,
@@ -107,8 +107,8 @@ impl fmt::Display for ObservedKind {
 impl Record {
     /// Returns all observed events in memory, in the order of time.
     ///
-    /// The events are stages of programs, regions that renderers copied, regions that arrived at displays, and swaps.
-    /// If traffic was recorded, the list also has the ring messages. Boards have their names instead of their ports.
+    /// The events are stages of programs, copied regions, arrived regions, swaps, and ring messages if these were
+    /// recorded.
     #[must_use]
     pub fn observed_events(&self) -> Vec<ObservedEvent> {
         let observed = self.observation();

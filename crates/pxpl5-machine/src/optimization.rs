@@ -1,30 +1,24 @@
 //! Optimizations of the simulator that change no result.
 
-/// An optimization of the simulator. An experiment can disable each optimization (`Experiment::without`).
+/// A shortcut of the simulator that an experiment can disable (`Experiment::without`).
 ///
-/// No optimization changes a time or a visible pixel. The test `tests/optimizations.rs` repeats runs with each optimization
-/// disabled. `cargo bench --bench optimizations` measures the speed-ups.
-///
-/// A separate setting of the experiment, `Pixels`, skips the computation of pixels that no reader needs.
+/// No optimization changes a time or a visible pixel. The test `tests/optimizations.rs` repeats runs with each
+/// optimization disabled. `cargo bench --bench optimizations` measures the speed-ups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Optimization {
     /// Boards sleep until their next event.
     ///
-    /// If disabled, every processor polls its programs and the ring polls its arbiter at every edge of the boards' 40
-    /// MHz clock. Renderers and frame buffers never poll. The duration of a renderer's command does not depend on data,
-    /// so the end of the command is known when the command arrives.
+    /// If disabled, every processor and the arbiter of the ring check for work at every edge of the boards' 40 MHz
+    /// clock. Renderers and frame buffers always sleep, because the end of a command is known when the command arrives.
     IdleBoards,
-    /// The ring computes the end of a message when it grants the channel. If disabled, every word on every channel
-    /// causes an event.
+    /// The ring computes the end of a message at its start. If disabled, every word on every channel is an event.
     Transfers,
-    /// The pixels of a region without primitives are computed once. These pixels are reused while the commands of such
-    /// a region stay the same.
+    /// The pixels of regions without primitives are computed once and reused.
     ///
-    /// The firmware of Slats also sends triangles to regions that the triangles do not touch. The computation of pixels
-    /// skips these triangles. If disabled, the pixels of every region and triangle are computed.
+    /// Slats also sends triangles to regions that the triangles do not touch, and the computation of pixels skips these
+    /// triangles. If disabled, the pixels of every region and triangle are computed.
     EmptyRegions,
-    /// At the cycle level, the clocks of repeated code are reused from an earlier execution. The reuse requires that
-    /// all instructions and data of the code are in the caches.
+    /// At the cycle level, the clocks of repeated code are reused if all its instructions and data are in the caches.
     ///
     /// If disabled, the i860s count every clock.
     RepeatedCode,

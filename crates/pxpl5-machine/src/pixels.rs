@@ -1,5 +1,4 @@
-//! Interface for computing pixels during a run. A program that runs a machine provides a worker for this purpose. The
-//! computation takes no simulated time.
+//! Interface to a worker that computes pixels during a run. The computation takes no simulated time.
 
 use pxpl5_wire::PixelSource;
 use std::fmt::Debug;
@@ -10,7 +9,7 @@ pub trait PixelWorker: Debug {
     /// Accepts a region. The worker may compute the region's pixels at any time before [`PixelWorker::finish`] returns.
     fn compute(&mut self, region: &Arc<dyn PixelSource>);
 
-    /// Waits until all regions are computed and returns their number.
+    /// Waits until the pixels of all accepted regions are computed, and returns the number of these regions.
     fn finish(self: Box<Self>) -> u64;
 }
 

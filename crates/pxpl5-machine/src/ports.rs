@@ -9,17 +9,17 @@ use pxpl5_wire::NodeId;
 pub struct Ports {
     /// Port of the host computer.
     pub host: NodeId,
-    /// Ports of the graphics processors, in the order of their boards.
+    /// Port of each graphics processor.
     pub gps: Vec<NodeId>,
-    /// Ports of the renderers, in the order of their boards.
+    /// Port of each renderer.
     pub renderers: Vec<NodeId>,
-    /// Ports of each display, in the machine's order of displays.
+    /// Ports of each display. The first display is the display for which pipelines draw.
     pub displays: Vec<Vec<NodeId>>,
 }
 
 impl Ports {
-    /// Assigns port numbers from 0 to the host, the graphics processors, the renderers and the displays, in this order.
-    /// `pictures` is the number of pictures that a pipeline draws at the same time.
+    /// Numbers the ports from 0: host, graphics processors, renderers, displays. `pictures` is the number of pictures
+    /// that a pipeline draws at the same time, 2 for two eyes.
     pub(crate) fn plug(config: &MachineConfig, pictures: usize) -> Self {
         let mut next = 0;
         Self {
@@ -36,7 +36,7 @@ impl Ports {
         self.displays.first().map_or(&[], Vec::as_slice)
     }
 
-    /// Returns the display that has the port `node`, and the index of the port within this display.
+    /// Returns the index of the display that has the port `node`, and the index of the port within this display.
     pub(crate) fn of_display(&self, node: NodeId) -> Option<(usize, usize)> {
         let has_node = |nodes: &Vec<NodeId>| nodes.binary_search(&node).ok();
         self.displays.iter().enumerate().find_map(|(display, nodes)| Some((display, has_node(nodes)?)))
@@ -60,7 +60,6 @@ impl Ports {
     }
 }
 
-/// Reserves and returns the next `count` unused ports.
 fn take_ports(next: &mut u16, count: usize) -> Vec<NodeId> {
     let first = *next;
     *next += count as u16;

@@ -19,7 +19,6 @@ pub struct Preset {
     n_renderers: usize,
     #[serde(skip)]
     gp: GpTiming,
-    /// i860 code that the graphics processors run at the cycle level.
     #[serde(skip)]
     code: CodeVersion,
 }
@@ -100,10 +99,10 @@ impl MachineConfig {
         Ok(Self::from_preset(preset))
     }
 
-    /// Returns this machine with other times for primitives: the times that its i860 code needs, instead of published
-    /// or fitted times.
+    /// Returns this machine with the times per primitive that the i860 code needs, instead of published or fitted
+    /// times.
     ///
-    /// `of` is the pipeline that uses the code. A machine without a code version gets the times of compiled code.
+    /// `of` is the pipeline whose code is used. A machine without a code version gets the times of compiled code.
     #[must_use]
     pub fn with_times_of_code(self, of: CodeUse) -> Self {
         let gp = self.gp.of_code(self.code.unwrap_or(CodeVersion::Compiled), of);

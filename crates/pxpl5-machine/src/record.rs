@@ -1,4 +1,4 @@
-//! State of a machine's boards, and all observations of a run.
+//! The boards of a machine, and all observations of a run.
 
 use crate::board::Board;
 use crate::config::MachineConfig;
@@ -11,9 +11,18 @@ use pxpl5_sim::{Span, Time, TraceHash};
 use pxpl5_wire::display::{Display, Surface};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::any::Any;
+use std::fmt::Debug;
+use std::sync::Arc;
 
-/// The boards of a machine, without programs, and all observations of the run. The record can be sent to another
-/// thread.
+/// Data that a pipeline adds to the record of a run, beside the observations of the boards.
+///
+/// The pipeline's programs write the data. The pipeline's results read the data with [`Record::attached`].
+pub trait Attachment: Any + Debug + Send + Sync {
+    /// Discards the data that only discarded observations need. By default, all data is kept.
+    fn discard(&self, _record: &Record) {}
+}
+
+/// The boards of a machine, without programs, and all observations of the run.
 #[derive(Debug)]
 pub struct Record {
     pub(crate) config: MachineConfig,
@@ -28,6 +37,7 @@ pub struct Record {
     pub(crate) met_full_store: bool,
     pub(crate) elapsed: Time,
     pub(crate) processors_used: Vec<GpUse>,
+    pub(crate) attachments: Vec<Arc<dyn Attachment>>,
 }
 
 impl Record {
@@ -77,7 +87,6 @@ impl Record {
         self.displays.iter().find_map(|display| (display.as_ref() as &dyn Any).downcast_ref())
     }
 
-    /// Returns the number of the first surface of a display.
     pub(crate) fn first_surface(&self, display: usize) -> usize {
         self.displays[..display].iter().map(|display| display.surfaces().len()).sum()
     }
@@ -94,23 +103,29 @@ impl Record {
         self.surfaces().nth(id.index()).map(|(_, surface)| surface)
     }
 
+    /// Returns the attachment of type `T`, or `None` if the pipeline added none.
+    #[must_use]
+    pub fn attached<T: Attachment>(&self) -> Option<&T> {
+        self.attachments.iter().find_map(|attachment| (attachment.as_ref() as &dyn Any).downcast_ref())
+    }
+
     /// Returns all observations so far.
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         &self.observation
     }
 
-    /// Returns all stages of all pictures. The COPY stages are derived from arrivals at the displays.
+    /// Returns all stages of all pictures. The times of COPY are measured at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.observation.stages(self.message_span())
     }
 
-    /// Returns the pictures that the double buffer at a port has shown, in the order of swaps.
+    /// Returns the pictures that a double-buffered port has shown, in the order of swaps.
     ///
-    /// A swap shows the newest picture with a region that arrived before the swap. The function can use this rule
-    /// because no region of the next picture arrives before the other buffer is free. Pictures with discarded arrivals
-    /// or swaps are missing.
+    /// The picture of a swap is the newest picture of which a region arrived before the swap. No region of the next
+    /// picture can have arrived, because the other buffer is not free yet. Pictures with discarded observations are
+    /// missing.
     #[must_use]
     pub fn shown_by(&self, port: NodeId) -> Vec<Shown> {
         // Sort the arrivals at this port by time.
@@ -146,14 +161,13 @@ impl Record {
         self.display().tick(period)
     }
 
-    /// Returns the start of period `period` of the display `board`. If `board` is not a display, the periods of the
-    /// first display count.
+    /// Returns the start of a period of the display `board`, or of the first display if `board` is not a display.
     pub(crate) fn period_start(&self, board: Board, period: PeriodNumber) -> Time {
         let display = if let Board::Display(number) = board { number } else { 0 };
         self.displays[display].tick(period)
     }
 
-    /// Returns the hash of all traced events of the run.
+    /// Returns the trace hash of the run. Equal runs have equal hashes.
     #[must_use]
     pub const fn trace_hash(&self) -> TraceHash {
         self.hash
@@ -171,8 +185,8 @@ impl Record {
         self.elapsed
     }
 
-    /// Returns the CPU time of the whole run by kind of work. There is one entry for the host and one for each graphics
-    /// processor, in the order of their ports. The slice is empty while the machine runs.
+    /// Returns the CPU time of the whole run by kind of work. The host comes first, then the graphics processors. The
+    /// slice is empty while the machine runs.
     #[must_use]
     pub fn processors_used(&self) -> &[GpUse] {
         &self.processors_used
@@ -180,17 +194,17 @@ impl Record {
 
     /// Returns the number of vertices that graphics processors transformed in the whole run.
     ///
-    /// Each corner of a triangle and each centre of a sphere counts once per view.
+    /// Each corner of a triangle and each centre of a sphere counts once in each pass for one eye.
     #[must_use]
     pub const fn vertex_transforms(&self) -> u64 {
         self.vertex_transforms
     }
 
-    /// Returns true if the capacity of a backing store (`renderer.kept_bits`) has delayed a region, or has changed a
-    /// decision of a program, in the whole run.
+    /// Returns true if a full backing store (`renderer.kept_bits`) has delayed a region or changed a decision of a
+    /// program.
     ///
-    /// If the result is false, the same run with larger backing stores has the same trace, because nothing else depends
-    /// on the capacity. Firmware whose decisions depend on the capacity must report a full backing store with
+    /// If the result is false, the same run with larger backing stores has the same times. Firmware whose decisions
+    /// depend on the capacity must report a full backing store with
     /// [`Gp::note_full_store`](pxpl5_gp::Gp::note_full_store).
     #[must_use]
     pub const fn met_full_store(&self) -> bool {

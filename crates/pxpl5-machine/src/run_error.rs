@@ -18,23 +18,23 @@ pub enum RunError {
         board: Board,
         /// Simulated time of the failure.
         time: Time,
-        /// Description of the failed operation.
+        /// Reason of the failure.
         fault: Fault,
     },
-    /// Programs wait, and only ticks of the displays are pending.
+    /// Programs wait for messages, but no board will send a message any more.
     #[error("nothing can happen any more at {time}:{}", waits(blocked))]
     Deadlock {
         /// Simulated time at which the deadlock was detected.
         time: Time,
-        /// The waiting boards. Each entry names the board and what the board waits for.
+        /// The waiting boards, each with the condition for which the board waits.
         blocked: Vec<Blocked>,
     },
     /// The ring could not carry a message.
     #[error("ring, at {time}: {error}")]
     Ring {
-        /// Simulated time of the request.
+        /// Simulated time of the request to send the message.
         time: Time,
-        /// The error in the message.
+        /// The reason why the ring cannot carry the message.
         error: RingError,
     },
 }
@@ -59,15 +59,14 @@ fn waits(blocked: &[Blocked]) -> String {
     blocked.iter().map(|wait| format!(" {wait};")).collect()
 }
 
-/// A board that cannot continue, as a line of a deadlock report. The text is `BOARD waits for CONDITION`.
+/// A board that waits in a deadlock. The text is `BOARD waits for CONDITION`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Blocked {
     /// The board that waits.
     pub board: Board,
-    /// The board that must act before `board` can continue. `None` if a program waits for any message, because the
-    /// program does not state a sender.
+    /// The board that must act before `board` can continue. `None` if the program waits for a message from any board.
     pub waits_on: Option<Board>,
-    /// Description of the condition that the board waits for.
+    /// Description of the condition for which the board waits.
     pub waits_for: String,
 }
 

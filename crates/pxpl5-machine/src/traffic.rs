@@ -1,4 +1,4 @@
-//! Records of ring messages and renderer FIFOs. Recording is optional and changes no simulated time.
+//! Records of ring messages and of the words in renderers' FIFOs. Recording is optional and changes no simulated time.
 
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Message, NodeId};
@@ -19,18 +19,18 @@ pub struct Transfer {
     pub end: Time,
 }
 
-/// Messages, channel use and FIFO changes recorded during a run.
+/// Messages, and changes in the use of channels and FIFOs, recorded during a run.
 #[derive(Clone, Debug, Default)]
 pub struct Traffic {
-    /// Messages, in the order of their `end` times.
+    /// Messages, in the order of their ends.
     pub transfers: Vec<Transfer>,
-    /// Number of occupied channels after each change. A channel also counts as occupied during overhead and stalls.
+    /// Number of occupied channels after each change. A channel is occupied during overhead and stalls too.
     pub busy_channels: Vec<(Time, u32)>,
     /// Changes of the renderers' FIFOs: index of the renderer, time, and change in words.
     ///
     /// A command adds its words when its last word arrives, and removes its words when its execution starts.
     pub fifo_changes: Vec<(usize, Time, i64)>,
-    /// Messages that a renderer has not yet accepted, by destination port.
+    /// Messages whose first word has arrived at a renderer and whose last word has not, by the renderer's port.
     announced: BTreeMap<NodeId, Transfer>,
 }
 
@@ -55,8 +55,8 @@ impl Traffic {
         self.transfers.len() + self.busy_channels.len() + self.fifo_changes.len()
     }
 
-    /// Discards messages and changes before an instant. For each recorded quantity, the first remaining entry has the
-    /// value at this instant.
+    /// Discards the records before `instant`. The number of occupied channels and the words in FIFOs at this instant
+    /// are kept.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         self.transfers.retain(|transfer| transfer.end >= instant);
         let last = self.busy_channels.partition_point(|(time, _)| *time < instant).saturating_sub(1);
@@ -87,8 +87,8 @@ impl Traffic {
         self.transfers.extend(announced.map(|transfer| Transfer { end, ..transfer }));
     }
 
-    /// Records a message whose receiver takes all words without a gap. The arrival of the first word is computed from
-    /// `end`, the length of the message and `word`, the time of one word.
+    /// Records a message whose words arrive without a gap. The first word arrived before `end` by the time of all
+    /// words. `word` is the time of one word.
     pub(crate) fn deliver(&mut self, message: &Message, end: Time, word: Span) {
         let begin = Time(end.0.saturating_sub((word * u64::from(message.words)).0));
         self.transfers.push(transfer(message, begin, end));

@@ -98,12 +98,12 @@ impl FacesReport {
 impl MemoryReport {
     fn of(outcome: &Outcome, (k, memory): (usize, &DisplayMemory), steps: Option<&Steps>) -> Self {
         let stats = memory.stats();
-        let in_window = outcome.tally().memory_updates.get(&k).copied().unwrap_or_default();
+        let in_window = outcome.tally().updates.get(&k).copied().unwrap_or_default();
         // Mean number of periods between updates within the window.
         let period =
             outcome.window().filter(|_| in_window >= 2).map(|window| window.periods() as f64 / in_window as f64);
         // The last update shows which structures the memory holds.
-        let notes = outcome.face_notes().all();
+        let notes = outcome.requested_updates();
         let last = notes.iter().rfind(|note| note.memory == k);
         Self {
             updates_hz: period.map(|period| 1e3 / (period * outcome.field_ms())),

@@ -3,7 +3,9 @@
 pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
 use crate::turned::LatchedFaces;
-use pxpl5_run::{Cause, Estimator, FinalResults, HeadViews, ResultWindow, SampledPose, Source, WARM_UP_PICTURES};
+use pxpl5_run::{
+    Cause, Estimator, FinalResults, HeadViews, RequestedUpdates, ResultWindow, SampledPose, Source, WARM_UP_PICTURES,
+};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
@@ -117,7 +119,8 @@ impl Shown {
     /// For an address recalculation display, the result has the views of all updates whose records are in memory.
     fn still_seen(&self, run: &FinalResults<'_>, instant: Time) -> BTreeSet<ViewNumber> {
         if self.faces.is_some() {
-            return run.notes.all().iter().map(|note| note.view).collect();
+            let updates = run.record.attached().map_or_else(Vec::new, RequestedUpdates::all);
+            return updates.iter().map(|update| update.view).collect();
         }
         let is_old = |target: &CopyTarget| {
             let viewed = self.views.get(&target.picture).and_then(|view| self.moments.get(view));

@@ -42,7 +42,7 @@ impl StepSum {
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         let display: Option<&AddressRecalculationPipeline> = run.record.display_of_kind();
         let Some(scan) = display.and_then(|display| display.config().scan().ok()) else { return };
-        let Some(history) = FaceHistory::held(run.record, run.notes) else { return };
+        let Some(history) = FaceHistory::held(run.record) else { return };
         // Each field and memory gives one latency, once its results can no longer change.
         for field in self.next.until(run.until) {
             for memory in 0..history.n_memories() {

@@ -19,7 +19,7 @@ pub struct TooHeavy {
     ///
     /// `None` if the pipeline has no closed form, or if the closed form predicts that the whole scene is in time.
     pub triangles_in_time: Option<u64>,
-    /// Advice to the user: a number of triangles to try, or a command that finds this number.
+    /// Advice to the user: a number of triangles to try, or a search that finds this number.
     pub advice: String,
 }
 
@@ -38,14 +38,13 @@ impl TooHeavy {
 }
 
 fn advice(pipeline: &str, triangles_in_time: Option<u64>) -> String {
-    let search =
-        format!("`pxpl5 limit --pipeline {pipeline}` finds the number of test triangles that it draws in time");
+    let search = format!("a search with `limit` finds the number of test triangles that {pipeline} draws in time");
     match triangles_in_time {
         Some(0) => {
             format!("the analytic level predicts that not even one triangle of this scene would be in time; {search}")
         }
         Some(some) => {
-            format!("the analytic level predicts that about {some} triangles would be in time (--triangles {some})")
+            format!("the analytic level predicts that about {some} triangles would be in time (triangles = {some})")
         }
         None => search,
     }

@@ -37,7 +37,7 @@ impl fmt::Debug for LatchedFaces {
 impl LatchedFaces {
     /// Creates the state for a run, or returns `None` if the run's display is not an address recalculation display.
     pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Option<Self> {
-        let history = FaceHistory::held(run.record, run.notes)?;
+        let history = FaceHistory::held(run.record)?;
         let latched = OrientationTiming::of_run(run)?;
         let turns = RefCell::new(Turns::new(head, None));
         Some(Self { history, latched, head: Arc::clone(head), without: None, turns })
@@ -45,7 +45,7 @@ impl LatchedFaces {
 
     /// Replaces the history by the display updates that the run still has in memory.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
-        self.history = FaceHistory::held(run.record, run.notes).unwrap_or_default();
+        self.history = FaceHistory::held(run.record).unwrap_or_default();
     }
 
     /// Discards orientations that were predicted from tracker reports before an instant.

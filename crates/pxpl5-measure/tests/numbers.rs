@@ -162,8 +162,8 @@ fn a_load_that_is_too_heavy_is_told_with_what_would_do() {
         heavy.to_string().starts_with(&begin) && heavy.to_string().ends_with(&format!("{}.", heavy.advice)),
         "{heavy}"
     );
-    let number = heavy.triangles_in_time.filter(|some| *some > 0).map(|some| format!("--triangles {some}"));
-    assert!(heavy.advice.contains(&number.unwrap_or_else(|| "--pipeline jitp-scanline".to_owned())), "{heavy}");
+    let number = heavy.triangles_in_time.filter(|some| *some > 0).map(|some| format!("triangles = {some}"));
+    assert!(heavy.advice.contains(&number.unwrap_or_else(|| "jitp-scanline".to_owned())), "{heavy}");
     assert_eq!(run("jitp-scanline", "full-screen:2", 40).report().too_heavy, None);
 }
 
@@ -179,13 +179,13 @@ fn a_number_that_would_do_is_said_where_it_is_less_than_there_is() {
     assert!(!scene.triangles().is_empty() && !scene.spheres().is_empty(), "of both kinds");
     let experiment = Experiment::with(MachineConfig::slats(), Arc::new(Slats::split()), scene);
     let n = all(&experiment);
-    let fewer = format!("(--triangles {})", n - 1);
+    let fewer = format!("(triangles = {})", n - 1);
     let cases = [
         (by(|_| Some(0)), Some(0), "not even one"),
         (by(|experiment| Some(all(experiment) - 1)), Some(n - 1), fewer.as_str()),
-        (by(|experiment| Some(all(experiment))), None, "pxpl5 limit"),
-        (by(|experiment| Some(all(experiment) + 1)), None, "pxpl5 limit"),
-        (by(|_| None), None, "pxpl5 limit"),
+        (by(|experiment| Some(all(experiment))), None, "`limit`"),
+        (by(|experiment| Some(all(experiment) + 1)), None, "`limit`"),
+        (by(|_| None), None, "`limit`"),
     ];
     let (first_period, last_period) = (PeriodNumber(4), PeriodNumber(11));
     let due = DuePictures {

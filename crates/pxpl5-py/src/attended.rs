@@ -2,9 +2,10 @@
 //! reports progress and reacts to Ctrl-C.
 
 use crate::errors::failed_run;
+use pxpl5::StopFlag;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
@@ -13,7 +14,7 @@ use std::time::Duration;
 pub(crate) struct Progress {
     done: AtomicU64,
     of: AtomicU64,
-    stopped: Arc<AtomicBool>,
+    stopped: StopFlag,
 }
 
 impl Progress {
@@ -24,16 +25,16 @@ impl Progress {
     }
 
     pub(crate) fn stop(&self) {
-        self.stopped.store(true, Ordering::Relaxed);
+        self.stopped.stop();
     }
 
-    /// Returns the flag that is true after a call of [`Self::stop`].
-    pub(crate) fn stop_flag(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.stopped)
+    /// Returns the flag that is set after a call of [`Self::stop`].
+    pub(crate) fn stop_flag(&self) -> StopFlag {
+        self.stopped.clone()
     }
 
     pub(crate) fn is_stopped(&self) -> bool {
-        self.stopped.load(Ordering::Relaxed)
+        self.stopped.is_stopped()
     }
 }
 

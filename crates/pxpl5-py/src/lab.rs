@@ -1,28 +1,25 @@
 //! Functions that evaluate many experiments: published figures, limits and comparisons.
 
-use crate::attended::attended;
+use crate::attended::{Progress, attended};
 use crate::catalogue::python;
 use crate::errors::{failed_run, failed_sweep, wrong_setting};
 use crate::settings::Settings;
 use pxpl5::Statistics;
-use pxpl5::compare::{CONFIDENCE, CompareQuery, MAX_SEEDS, Precision, UntilPrecise};
+use pxpl5::compare::{CONFIDENCE, CompareQuery, MAX_SEEDS, Precision, RowChoice, UntilPrecise};
 use pxpl5::figures::{Bench, FIGURES, FigureRow, run_all_with};
 use pxpl5::lab::diff::Changed;
 use pxpl5::levels::{LevelQuery, LevelRecord, compare_with};
-use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery, Values};
+use pxpl5::limit::{Limit, LimitQuery, Model, OverQuery};
 use pxpl5::readings::run as rank;
 use pxpl5::rig::{PASSES, Rig};
 use pxpl5::tracking::rig::Side;
-use pxpl5::{Goal, Level, StudyError, TestScene};
+use pxpl5::{Goal, Level, SettingError, StopFlag, StudyError};
 use pyo3::prelude::*;
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Returns the level of modelling called `name`, or raises an exception for an unknown name.
 fn level(name: &str) -> PyResult<Level> {
-    let names = Level::ALL.map(Level::name).join(", ");
-    let found = Level::ALL.into_iter().find(|level| level.name() == name);
-    found.ok_or_else(|| wrong_setting(format!("level: expected {names}, found {name}")))
+    name.parse().map_err(|error: SettingError| wrong_setting(error.at("level")))
 }
 
 /// Returns the identifiers of the published figures, such as 4b, each with the statement of its paper.
@@ -45,13 +42,17 @@ pub(crate) fn figure<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let level = self::level(level)?;
     let Some(figure) = FIGURES.iter().find(|figure| figure.id == id) else {
-        let ids: Vec<&str> = FIGURES.iter().map(|figure| figure.id).collect();
-        return Err(wrong_setting(format!("there is no figure {id}; expected one of {}", ids.join(", "))));
+        return Err(wrong_setting(SettingError::unknown("figure", id, FIGURES.iter().map(|figure| figure.id))));
     };
     let measured =
-        attended(py, progress, false, move |_| Bench::new(level).measure(figure.id).map_err(|e| e.to_string()))?;
+        attended(py, progress, false, move |watch| bench(level, &watch).measure(figure.id).map_err(|e| e.to_string()))?;
     let measured = measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?;
     python(py, &row(&figure.row(measured)))
+}
+
+/// Returns the settings for figures whose measurement ends when `watch` is stopped.
+fn bench(level: Level, watch: &Progress) -> Bench {
+    Bench::new(level).with_stop(watch.stop_flag())
 }
 
 fn row(row: &FigureRow) -> serde_json::Value {
@@ -78,14 +79,14 @@ pub(crate) fn figures<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let level = self::level(level)?;
     let figures = attended(py, progress, false, move |watch| {
-        run_all_with(&Bench::new(level), |done, of| watch.report(done, of))
+        run_all_with(&bench(level, &watch), |done, of| watch.report(done, of))
     })?;
     let rows: Vec<serde_json::Value> = figures.map_err(failed_run)?.rows.iter().map(row).collect();
     python(py, &rows)
 }
 
-/// Runs all pipelines with the same settings and compares the results. Returns a dictionary whose `pipelines` has one
-/// row for each pipeline.
+/// Runs several pipelines with the same settings and compares the results. Returns a dictionary whose `pipelines` has
+/// one row for each pipeline. Without names in ``only``, the usual rows run, or all rows if ``all_rows`` is true.
 ///
 /// ``confidence`` is the confidence of all intervals, between 0 and 1. With ``until_precision``, such as 10% or 0.2px,
 /// a row gets up to ``max_seeds`` seeds. Finished rows are stored in ``folder``. If ``resume`` is true, the rows in the
@@ -94,13 +95,14 @@ pub(crate) fn figures<'py>(
 /// Raises :class:`pxpl5.SettingError` for an invalid setting, and :class:`pxpl5.SweepError` if the folder cannot be
 /// used, is in use, or contains another comparison.
 #[pyfunction]
-#[pyo3(signature = (settings, only, seeds, *, limits = false, causes = false, predictors = false, confidence = None, until_precision = None, max_seeds = None, folder = None, resume = false, progress = None))]
+#[pyo3(signature = (settings, only, seeds, *, all_rows = false, limits = false, causes = false, predictors = false, confidence = None, until_precision = None, max_seeds = None, folder = None, resume = false, progress = None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn compare<'py>(
     py: Python<'py>,
     settings: &Settings,
     only: Vec<String>,
     seeds: Vec<u64>,
+    all_rows: bool,
     limits: bool,
     causes: bool,
     predictors: bool,
@@ -114,16 +116,16 @@ pub(crate) fn compare<'py>(
     let width: Option<Precision> = until_precision
         .map(str::parse)
         .transpose()
-        .map_err(|error: pxpl5::SettingError| wrong_setting(format!("until_precision: {error}")))?;
+        .map_err(|error: SettingError| wrong_setting(format!("until_precision: {error}")))?;
     let until = width.map(|width| UntilPrecise { width, max_seeds: max_seeds.unwrap_or(MAX_SEEDS) });
     let shared = settings.file.clone();
     let confidence = confidence.unwrap_or(CONFIDENCE);
+    let only = if all_rows { RowChoice::All } else { only.into() };
     let mut query =
-        CompareQuery { shared, only, seeds, limits, causes, predictors, pictures: false, confidence, until };
+        CompareQuery { only, seeds, limits, causes, predictors, confidence, until, ..CompareQuery::new(shared) };
     query.set_length().map_err(wrong_setting)?;
-    // With a folder, Ctrl-C waits until all runs have stopped, so that the comparison can be resumed at once. A search
-    // for the largest number of triangles cannot be stopped.
-    let waits = folder.is_some() && !limits;
+    // With a folder, Ctrl-C waits until all runs have stopped, so that the comparison can be resumed at once.
+    let waits = folder.is_some();
     let comparison = attended(py, progress, waits, move |watch| {
         let store = folder.map(|folder| query.open_store(&folder, resume)).transpose()?;
         query.run_stoppable(store.as_ref(), &watch.stop_flag(), |done, of| watch.report(done, of), |_| {})
@@ -140,7 +142,7 @@ fn wrong_study(error: StudyError) -> PyErr {
 }
 
 /// Finds the largest number of triangles that a pipeline draws in time. Returns a dictionary with triangles,
-/// first_miss, island, unbroken_from, tried, goal, fields and scene.
+/// first_miss, island, unbroken_from, tried, goal, fields and scene. ``triangles`` is None if there is no limit.
 ///
 /// ``test_scene`` is full-screen, typical or None. If ``thinned`` is true, triangles of the settings' own scene are
 /// removed instead of using a test scene. ``rate_hz`` or ``latency_fields`` replaces the pipeline's own goal.
@@ -150,7 +152,8 @@ fn wrong_study(error: StudyError) -> PyErr {
 ///
 /// Raises :class:`pxpl5.SettingError` for an invalid setting.
 #[pyfunction]
-#[pyo3(signature = (settings, *, test_scene = None, thinned = false, rate_hz = None, latency_fields = None, fields = None))]
+#[pyo3(signature = (settings, *, test_scene = None, thinned = false, rate_hz = None, latency_fields = None, fields = None, progress = None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn limit<'py>(
     py: Python<'py>,
     settings: &Settings,
@@ -159,6 +162,7 @@ pub(crate) fn limit<'py>(
     rate_hz: Option<f64>,
     latency_fields: Option<f64>,
     fields: Option<u64>,
+    progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let plan = settings.plan()?;
     let mut query = LimitQuery::of_plan(&plan);
@@ -167,10 +171,7 @@ pub(crate) fn limit<'py>(
     let own = query.criterion.goal;
     query.criterion.goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(own);
     if let Some(name) = test_scene {
-        let found = TestScene::ALL.into_iter().find(|scene| scene.name() == name);
-        let expected = TestScene::ALL.map(TestScene::name).join(" or ");
-        query.criterion.scene =
-            found.ok_or_else(|| wrong_setting(format!("scene: expected {expected}, found {name}")))?;
+        query.criterion.scene = name.parse().map_err(|error: SettingError| wrong_setting(error.at("test_scene")))?;
     }
     // With `thinned`, a reduced version of the settings' scene replaces the test scene.
     if thinned {
@@ -179,12 +180,16 @@ pub(crate) fn limit<'py>(
     let drawn =
         query.model.as_ref().map_or(query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned());
     let criterion = query.criterion;
-    let found = attended(py, None, false, move |_| query.search().map_err(|error| error.to_string()))?;
-    let Limit { triangles, first_miss, island, unbroken_from, tried } = found.map_err(wrong_setting)?;
+    let found = attended(py, progress, false, move |watch| {
+        let query = LimitQuery { stop: watch.stop_flag(), ..query };
+        query.search_with(|tried, of| watch.report(tried, of)).map_err(|error| error.to_string())
+    })?;
+    let found = found.map_err(wrong_setting)?;
+    let Limit { triangles, first_miss, island, unbroken_from, tried } = found;
     python(
         py,
         &json!({
-            "triangles": triangles,
+            "triangles": found.has_limit().then_some(triangles),
             "first_miss": first_miss,
             "island": island,
             "unbroken_from": unbroken_from,
@@ -222,24 +227,14 @@ pub(crate) fn limit_over<'py>(
     let mut file = settings.file.clone();
     let first = file.resolve().map_err(wrong_setting)?;
     let fields = fields.unwrap_or(first.limit.fields);
-    file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "keyword fields").map_err(wrong_setting)?;
-    // A range without an end has the end of the setting's sources.
-    let usual = || OverQuery::usual_values(&first, key).map_err(wrong_setting);
-    let values = match (low, high) {
-        (None, None) => usual()?,
-        (low, high) => {
-            let from = low.map_or_else(|| usual().map(|values| values.from), Ok)?;
-            let to = high.map_or_else(|| usual().map(|values| values.last()), Ok)?;
-            let is_whole = from.fract() == 0.0 && to.fract() == 0.0 && from >= 0.0 && to < MAX_WHOLE;
-            let values = if is_whole { Values::whole(from as u64, to as u64) } else { Values::real(from, to) };
-            values.ok_or_else(|| wrong_setting(format!("low and high: expected a range, found {from} to {to}")))?
-        }
-    };
+    file.set("fields", i64::try_from(fields).unwrap_or(i64::MAX), "keyword").map_err(wrong_setting)?;
+    let values = OverQuery::values(&first, key, low, high).map_err(|error| wrong_setting(error.at("low and high")))?;
     let goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(first.limit.goal);
-    let query = OverQuery { file, key: key.to_owned(), values, goal };
-    let (tried, of) = (query.clone(), VALUES);
+    let query = OverQuery { file, key: key.to_owned(), values, goal, stop: StopFlag::default() };
+    let tried = query.clone();
     let limit = attended(py, progress, false, move |watch| {
-        tried.search(|done| watch.report(done, of.max(done))).map_err(|error| error.to_string())
+        let tried = OverQuery { stop: watch.stop_flag(), ..tried };
+        tried.search(|done, of| watch.report(done, of)).map_err(|error| error.to_string())
     })?;
     let mut found = serde_json::to_value(limit.map_err(wrong_setting)?).map_err(wrong_setting)?;
     found["over"] = key.into();
@@ -249,13 +244,6 @@ pub(crate) fn limit_over<'py>(
     found["high"] = query.values.last().into();
     python(py, &found)
 }
-
-/// Estimated number of values that a search over a setting tries: five values, and seven values of a bisection. If a
-/// search tries more values, the end of the progress bar moves.
-const VALUES: u64 = 12;
-
-/// Limit below which a 64-bit floating-point number represents every whole number exactly.
-const MAX_WHOLE: f64 = 1e15;
 
 /// Compares two reports, each as JSON text. Returns a dictionary with same_trace, settings, results and equal.
 ///
@@ -297,7 +285,8 @@ pub(crate) fn rig<'py>(
     let tracker = tracker.ok_or_else(|| wrong_setting("the rig: expected a head with a tracker, found none"))?;
     let mut rig = Rig { seed: plan.seed, passes: passes.unwrap_or(PASSES), ..Rig::assumed(tracker) };
     rig.rig.photodiode_line = line.unwrap_or(rig.rig.photodiode_line);
-    let measured = attended(py, None, false, move |_| {
+    let measured = attended(py, None, false, move |watch| {
+        let rig = Rig { stop: watch.stop_flag(), ..rig };
         rig.measure(&plan.machine, plan.pipeline.clone()).map_err(|error| error.to_string())
     })?;
     let measured = measured.map_err(wrong_setting)?;
@@ -350,8 +339,8 @@ pub(crate) fn levels<'py>(
     let record = match experiments {
         None => LevelRecord::read(LEVELS).map_err(failed_run)?,
         Some(experiments) => {
-            let query = LevelQuery { experiments, speeds };
             let measured = attended(py, progress, false, move |watch| {
+                let query = LevelQuery { experiments, speeds, stop: watch.stop_flag() };
                 compare_with(query, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
             })?;
             measured.map_err(failed_run)?
@@ -377,7 +366,7 @@ pub(crate) fn readings<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let ranked = attended(py, progress, false, move |watch| {
-        let bench = Bench::new(Level::Analytic).with_mig(seeds, frames);
+        let bench = bench(Level::Analytic, &watch).with_mig(seeds, frames);
         rank(&bench, best, |done, of| watch.report(done, of)).map_err(|error| error.to_string())
     })?;
     python(py, &ranked.map_err(failed_run)?)

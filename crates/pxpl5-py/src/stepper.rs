@@ -9,13 +9,11 @@ use crate::errors::{failed_run, wrong_setting};
 use crate::functions::PythonFunctions;
 use crate::outcome::outcome_of_run;
 use crate::picture::Picture;
-use pxpl5::Board;
-use pxpl5::{ExperimentError, Pause, PeriodNumber, Stepper as Native, SurfaceId, Time};
+use pxpl5::{Board, ExperimentError, Pause, PeriodNumber, Stepper as Native, StopFlag, SurfaceId, Time};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 /// Work for the thread of the machine. After [`Stepper::finish`], the job gets `None` in place of the machine.
 type Job = Box<dyn FnOnce(&mut Option<Native>) + Send>;
@@ -23,15 +21,15 @@ type Job = Box<dyn FnOnce(&mut Option<Native>) + Send>;
 /// A thread that owns a machine and executes jobs on it, one after the other.
 pub(crate) struct MachineThread {
     jobs: Mutex<Sender<Job>>,
-    /// Flag that another thread sets to true to end a long job early.
-    stop: Arc<AtomicBool>,
+    /// Flag that another thread sets to end a long job early.
+    stop: StopFlag,
 }
 
 impl MachineThread {
     pub(crate) fn start(
         py: Python<'_>,
         experiment: pxpl5::Experiment,
-        stop: Arc<AtomicBool>,
+        stop: StopFlag,
     ) -> PyResult<Result<Self, ExperimentError>> {
         let (jobs, received) = channel::<Job>();
         let (sender, begun) = sync_channel(1);
@@ -57,11 +55,11 @@ impl MachineThread {
     fn ask<T: Send + 'static>(
         &self,
         py: Python<'_>,
-        job: impl FnOnce(&mut Option<Native>, &AtomicBool) -> T + Send + 'static,
+        job: impl FnOnce(&mut Option<Native>, &StopFlag) -> T + Send + 'static,
     ) -> PyResult<T> {
         let (sender, result) = sync_channel(1);
-        let stop = Arc::clone(&self.stop);
-        stop.store(false, Ordering::Relaxed);
+        let stop = self.stop.clone();
+        stop.clear();
         let job: Job = Box::new(move |stepper| {
             let _ = sender.send(job(stepper, &stop));
         });
@@ -74,7 +72,7 @@ impl MachineThread {
     fn look<T: Send + 'static>(
         &self,
         py: Python<'_>,
-        job: impl FnOnce(&mut Native, &AtomicBool) -> T + Send + 'static,
+        job: impl FnOnce(&mut Native, &StopFlag) -> T + Send + 'static,
     ) -> PyResult<T> {
         let found = self.ask(py, |stepper, stop| stepper.as_mut().map(|stepper| job(stepper, stop)))?;
         found.ok_or_else(|| failed_run("the run is finished: expected a stepper before finish()"))
@@ -88,12 +86,12 @@ impl MachineThread {
 
 /// Waits for the result of another thread without the interpreter's lock. Ctrl-C sets `stop` and raises
 /// `KeyboardInterrupt`.
-pub(crate) fn wait<T: Send>(py: Python<'_>, mut results: Receiver<T>, stop: &AtomicBool) -> PyResult<T> {
+pub(crate) fn wait<T: Send>(py: Python<'_>, mut results: Receiver<T>, stop: &StopFlag) -> PyResult<T> {
     loop {
         match py.detach(|| recv(&mut results)) {
             Ok(result) => return Ok(result),
             Err(RecvTimeoutError::Timeout) => {
-                py.check_signals().inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
+                py.check_signals().inspect_err(|_| stop.stop())?;
             }
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(failed_run("a bug of the emulator: its thread panicked"));
@@ -108,11 +106,11 @@ fn recv<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
 }
 
 /// Runs the machine to an instant in steps of one field, so that the flag `stop` takes effect soon.
-fn run_to(stepper: &mut Native, time: Time, stop: &AtomicBool) -> Pause {
+fn run_to(stepper: &mut Native, time: Time, stop: &StopFlag) -> Pause {
     loop {
         let next = stepper.record().tick(stepper.period().next());
         let pause = stepper.run_to(next.min(time));
-        if next >= time || pause != Pause::Reached || stop.load(Ordering::Relaxed) {
+        if next >= time || pause != Pause::Reached || stop.is_stopped() {
             return pause;
         }
     }
@@ -155,7 +153,7 @@ impl Stepper {
     fn step(
         &self,
         py: Python<'_>,
-        step: impl FnOnce(&mut Native, &AtomicBool) -> Pause + Send + 'static,
+        step: impl FnOnce(&mut Native, &StopFlag) -> Pause + Send + 'static,
     ) -> PyResult<String> {
         let pause = self.thread.look(py, step);
         self.checks.check()?;

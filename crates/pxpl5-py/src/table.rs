@@ -1,5 +1,6 @@
 //! Tables with typed columns that Python reads through the Arrow PyCapsule interface.
 
+use crate::arrays::Count;
 use crate::errors::wrong_setting;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::{
@@ -322,6 +323,13 @@ impl Table {
         });
         let columns = PyList::new(py, columns.collect::<PyResult<Vec<_>>>()?)?;
         Ok((py.import("pxpl5._pickle")?.getattr("table")?, (columns,).into_pyobject(py)?))
+    }
+
+    /// Returns a table of the first rows.
+    #[pyo3(signature = (rows = Count(5)), text_signature = "($self, rows=5)")]
+    fn head(&self, rows: Count) -> Self {
+        let rows = rows.size().min(self.batch.num_rows());
+        Self { batch: self.batch.slice(0, rows) }
     }
 
     /// Returns all rows as dictionaries, in order.

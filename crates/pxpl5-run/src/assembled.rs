@@ -1,36 +1,28 @@
 //! A machine with its programs, and the records of its run.
 
 use crate::head_views::HeadViews;
-use crate::pipelines::faces::requests::RequestedUpdates;
 use pxpl5_machine::Machine;
 use pxpl5_sim::Time;
 use std::sync::Arc;
 
-/// A machine with its programs, and the records that are written during the run.
 #[derive(Debug)]
 pub(crate) struct Assembled {
     pub(crate) machine: Machine,
     pub(crate) head: Option<Arc<HeadViews>>,
-    pub(crate) notes: RequestedUpdates,
 }
 
 impl Assembled {
-    /// Returns the number of records of the run in memory: observations of the machine, recorded messages, and records
-    /// of the head.
+    /// Returns the number of records in memory, including recorded messages and requested head poses.
     pub(crate) fn records(&self) -> usize {
         let observation = self.machine.record().observation();
         let traffic = observation.traffic.as_ref().map_or(0, |traffic| traffic.records());
         observation.records() + traffic + self.head.as_ref().map_or(0, |head| head.records())
     }
 
-    /// Discards observations of the machine before the time `instant`, and records of the head before the time
-    /// `of_head`. No result that is computed later may need the discarded records.
+    /// Discards the machine's observations before `instant` and the requested head poses before `of_head`. The results
+    /// of discarded records must already be part of the statistics of the run.
     pub(crate) fn discard_before(&mut self, instant: Time, of_head: Time) {
         self.machine.discard_before(instant);
         self.head.iter().for_each(|head| head.discard_before(of_head));
-        let record = self.machine.record();
-        let of_memories = record.ports().display().iter().enumerate();
-        of_memories
-            .for_each(|(memory, port)| self.notes.keep_from(memory, record.observation().first_swap_held(*port)));
     }
 }

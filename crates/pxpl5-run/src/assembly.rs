@@ -6,13 +6,14 @@ use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
 use crate::head::Head;
 use crate::head_views::HeadViews;
+use crate::keys::PipelineSettings;
 use crate::level::{Level, with_clocks_of_instructions};
 use crate::pipeline::{Pipeline, Setup};
-use crate::pipelines::faces::requests::RequestedUpdates;
-use crate::pipelines::faces::segments::moves;
 use crate::preparation::Preparation;
+use crate::registry::{DisplayEntry, PipelineEntry};
 use crate::scene_views::{hmd_on, poses, views};
 use crate::views::{FrameStarts, ReportTimes};
+use crate::{displays, pipelines};
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Machine, MachineConfig};
 use pxpl5_sim::parameters::SettingError;
@@ -26,7 +27,7 @@ impl Experiment {
         }
         // Adapt the machine to the pipeline, the scene's background and the level of modelling.
         let mut adapted = self.pipeline.adapt(self.config.clone());
-        check_faces(&adapted, self.pipeline.as_ref())?;
+        check_coverage(&adapted, self.pipeline.as_ref())?;
         let [red, green, blue] = self.scene.lighting().background;
         let background = u32::from_be_bytes([0, red, green, blue]);
         adapted.displays.iter_mut().for_each(|display| display.set_background(background));
@@ -41,8 +42,7 @@ impl Experiment {
             machine.run_code();
         }
         // Load the programs, then apply the options that change no simulated time.
-        let (setup, head) = self.setup(&config, &machine, preparation)?;
-        let notes = setup.notes.clone();
+        let (setup, head) = self.setup(&config, &mut machine, preparation)?;
         self.pipeline.load(&mut machine, &setup)?;
         if let Some(seed) = self.shuffle {
             machine.shuffle_ties(seed);
@@ -55,38 +55,34 @@ impl Experiment {
             machine.record_traffic();
         }
         machine.switch_on();
-        Ok(Assembled { machine, head, notes })
+        Ok(Assembled { machine, head })
     }
 
     fn setup(
         &self,
         config: &MachineConfig,
-        machine: &Machine,
+        machine: &mut Machine,
         preparation: Preparation,
     ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
         // Functions for a viewer who follows the scene's own motion without any delay.
         let hmd = hmd_on(machine.record().display(), &self.hmd);
         let eyes = self.pipeline.eyes();
         let period = config.host.view_period_ns * 1_000;
-        let cut = self.pipeline.cut(&self.scene, config)?;
-        let scene = cut.as_ref().map_or(&self.scene, |cut| &cut.scene);
-        let list = Arc::new(display_list_for(scene, self.pipeline.shading())?);
-        let (views, wanted) = views(scene, self.seed, hmd, eyes);
+        let scene = self.pipeline.prepare(&self.scene, machine)?;
+        let list = Arc::new(display_list_for(&scene, self.pipeline.shading())?);
+        let (views, wanted) = views(&scene, self.seed, hmd, eyes);
         let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
         let starts = frame_starts(config.host, self.seed);
         let aim = self.aim();
         let pixels = self.pixels != Pixels::Off;
-        let poses = poses(scene, self.seed);
-        let notes = RequestedUpdates::default();
-        let moving = scene.structures().iter().map(moves).collect();
-        let cells = cut.as_ref().map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
+        let poses = poses(&scene, self.seed);
         let host = config.host;
-        let setup = Setup { list, views, wanted, poses, moving, cells, notes, aim, reports, starts, host, pixels };
+        let setup = Setup { list, views, wanted, poses, scene, aim, reports, starts, host, pixels };
         // With a tracked head, views and reports come from the tracker instead.
         let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };
         let until = machine.record().tick(self.end());
         check_recording(&head, until)?;
-        let head = Arc::new(HeadViews::new(head, scene, (hmd, eyes), until, preparation.seen_times));
+        let head = Arc::new(HeadViews::new(head, &setup.scene, (hmd, eyes), until, preparation.seen_times));
         let (views, wanted, reports) = HeadViews::functions(&head);
         let setup = Setup { views, wanted, reports, poses: HeadViews::poses(&head), ..setup };
         if !self.on_demand {
@@ -105,25 +101,27 @@ fn frame_starts(host: HostTiming, seed: u64) -> FrameStarts {
     Arc::new(move |ready| Some(ready + host.application_span(mix(seed ^ mix(ready.0)))))
 }
 
-/// Checks that display and pipeline match. A display that accepts cube faces needs a pipeline that draws cube faces,
-/// and vice versa.
+/// Checks that display and pipeline have the same coverage.
 ///
 /// # Errors
 ///
-/// [`SettingError`] states the expected kind of pipeline and the pipeline found.
-pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), SettingError> {
+/// [`SettingError`] states the coverage of both.
+pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), SettingError> {
     let Some(display) = config.displays.first() else { return Ok(()) };
-    let name = display.name();
-    let pipeline_name = pipeline.name();
-    match (display.shows_cube_faces(), pipeline.draws_faces()) {
-        (true, false) => Err(SettingError::combination(format_args!(
-            "display {name} shows six faces around the head: expected a pipeline that draws faces, such as arp-full, found {pipeline_name}"
-        ))),
-        (false, true) => Err(SettingError::combination(format_args!(
-            "{pipeline_name} draws six faces around the head: expected the display arp, found {name}"
-        ))),
-        _ => Ok(()),
+    let (shown, drawn) = (display.coverage(), pipeline.coverage());
+    if shown == drawn {
+        return Ok(());
     }
+    // The first entries of the lists that match serve as examples.
+    let matching = |entry: &PipelineEntry| (entry.build)(&PipelineSettings::default()).coverage() == shown;
+    let pipelines = pipelines::entries().into_iter().find(matching).map_or("none", |entry| entry.name);
+    let matching = |entry: &DisplayEntry| (entry.config)().coverage() == drawn;
+    let displays = displays::entries().into_iter().find(matching).map_or("none", |entry| entry.name);
+    let (display, pipeline) = (display.name(), pipeline.name());
+    Err(SettingError::combination(format_args!(
+        "display {display} shows {shown}, and {pipeline} draws {drawn}: \
+         expected a pipeline such as {pipelines}, or a display such as {displays}, found {display} with {pipeline}"
+    )))
 }
 
 /// Checks that a recorded head motion has poses for the whole run.

@@ -5,7 +5,7 @@ use pphigs::{DisplayList, DisplayStructure, MAX_EDITS, ModelFrame, RecentViews, 
 use pxpl5_geometry::{Culling, WorldSphere};
 use pxpl5_scene::Scene;
 
-/// Returns the scene's primitives as a display list.
+/// Returns the triangles and spheres of a scene as a display list.
 ///
 /// # Errors
 ///
@@ -52,7 +52,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, ExperimentError> {
     Ok(list.with_vertices_in_order())
 }
 
-/// Returns the scene's primitives as a display list for a pipeline that uses the method of shading `shading`.
+/// Returns the list of [`display_list`], with colours that are computed in advance if `shading` requires them.
 pub(crate) fn display_list_for(scene: &Scene, shading: Shading) -> Result<DisplayList, ExperimentError> {
     let list = display_list(scene)?;
     Ok(if shading == Shading::Precomputed { list.with_precomputed_colours() } else { list })

@@ -6,42 +6,39 @@ use crate::instants::Instants;
 use crate::observers::{FinalResults, StreamingObserver};
 use crate::picture_ends::WARM_UP_PICTURES;
 use crate::pipeline::PictureTimes;
-use crate::pipelines::faces::latched_head::OrientationTiming;
-use pxpl5_sim::{Span, Time};
+use pxpl5_sim::Span;
 use pxpl5_wire::display::LightTimes;
-use pxpl5_wire::{FieldParity, PeriodNumber, PictureNumber, ViewNumber};
+use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::any::Any;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-/// Step, in picoseconds, to which the prediction interval for tuning is rounded: one millisecond. A finer step changes
-/// the parameters of a filter by less than one per cent.
+/// One millisecond, the step to which a prediction interval is rounded before tuning. A finer step changes the
+/// parameters of a filter by less than one per cent.
 const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 
 /// Streaming observer that collects the times at which views are shown, and the prediction intervals of views and
-/// latched (sampled and held) orientations.
+/// of orientations by which the display turns pictures.
 #[derive(Debug, Default)]
 pub(crate) struct DryRunObserver {
     pictures: usize,
-    /// Views that later pictures may also show.
+    /// Views that a later picture may show again.
     going_on: BTreeMap<ViewNumber, ShownView>,
     aimed_at: Instants,
     leads: Mean,
     intervals: Mean,
     turns: Mean,
     turned_to: PeriodNumber,
-    /// Last picture so far. The next picture, which will replace this picture on the screen, is not known yet.
+    /// Last picture so far. The picture that replaces it on the screen is not known yet.
     waiting: Option<PictureTimes>,
 }
 
-/// Time span in which a view is shown, over all pictures that show the view.
+/// The time from the first to the last light of all pictures that show a view.
 #[derive(Clone, Copy, Debug)]
 struct ShownView {
     shown: LightTimes,
-    /// True if a complete picture showed the view after the warm-up.
     is_complete: bool,
 }
 
-/// Mean of time spans in milliseconds, summed in the order of arrival.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     sum_ms: f64,
@@ -54,13 +51,11 @@ impl Mean {
         self.n += 1;
     }
 
-    /// Returns the mean, or NaN for an empty sum.
     fn ms(self) -> f64 {
         self.sum_ms / self.n as f64
     }
 
-    /// Returns the mean in picoseconds, rounded to whole steps of [`INTERVAL_STEP_PS`]. Returns `None` for an empty
-    /// sum.
+    /// Returns the mean, rounded to steps of [`INTERVAL_STEP_PS`], or `None` if no span was added.
     fn rounded_ps(self) -> Option<u64> {
         let steps = (self.ms() * 1e9 / INTERVAL_STEP_PS as f64).round();
         (self.n > 0).then_some(steps as u64 * INTERVAL_STEP_PS)
@@ -85,7 +80,6 @@ impl StreamingObserver for DryRunObserver {
 }
 
 impl DryRunObserver {
-    /// Returns the results of the dry run so far.
     pub(crate) fn into_dry_run(self) -> DryRun {
         DryRun {
             seen_times: SeenTimes::new(self.aimed_at, (self.leads.ms() * 1e9) as u64),
@@ -94,21 +88,16 @@ impl DryRunObserver {
         }
     }
 
-    /// Returns the pictures whose display times are known, each with the next picture, which replaces the picture on
-    /// the screen.
+    /// Returns each new picture with its successor, because the successor ends the display time of the picture.
     ///
-    /// For a display with several memories, only the first memory is timed. The first memory holds the structures that
-    /// must be drawn most often. The last picture of this memory is returned only when its successor is known.
+    /// For a display with several layers, only the first layer is timed. The first layer holds the structures that must
+    /// be drawn most often. The last picture of this layer is returned only when its successor is known.
     fn timed(&mut self, results: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
-        let notes = results.notes.all();
-        // Leave out the updates of all memories except the first.
-        let of_others: BTreeSet<PictureNumber> =
-            notes.iter().filter(|note| note.memory > 0).map(|note| note.picture).collect();
-        let is_timed = |times: &&PictureTimes| !of_others.contains(&times.picture);
+        let is_timed = |times: &&PictureTimes| times.layer == 0;
         let timed = results.pictures.iter().filter(is_timed).copied();
         let mut timed: Vec<PictureTimes> = self.waiting.take().into_iter().chain(timed).collect();
         let next = results.next.filter(is_timed).copied();
-        // If another memory is shown next, the successor of the last picture is not known yet.
+        // If another layer is shown next, the successor of the last picture is not known yet.
         if results.next.is_some() && next.is_none() {
             self.waiting = timed.pop();
         }
@@ -124,8 +113,8 @@ impl DryRunObserver {
         view.is_complete |= is_complete;
     }
 
-    /// Adds all views to the results of the dry run except the newest view, which the next picture may also show. At
-    /// the end of the run, adds the newest view too.
+    /// Adds all views but the newest to the results, because the next picture may show the newest view again. At the
+    /// end of the run, adds the newest view too.
     fn end_views(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose]) {
         let newest = self.going_on.pop_last();
         let ended = std::mem::take(&mut self.going_on);
@@ -136,9 +125,10 @@ impl DryRunObserver {
         }
     }
 
-    /// Adds a view that no later picture shows to the results of the dry run. The results get the instant for which the
-    /// view is drawn, and the prediction interval. The instant is not needed for firmware that computes the display
-    /// times of its own views. Such firmware may also show views in another order than the order of their numbers.
+    /// Adds the prediction interval of a view that no later picture shows.
+    ///
+    /// The instant of the view is stored too, unless the firmware computes display times itself. Such firmware may show
+    /// views in another order than their numbers.
     fn end_view(&mut self, results: &FinalResults<'_>, sampled: &[SampledPose], view: ViewNumber, shown: ShownView) {
         let ShownView { shown, is_complete } = shown;
         let instant = results.aim.instant(&shown);
@@ -154,26 +144,12 @@ impl DryRunObserver {
         }
     }
 
-    /// Adds the prediction interval of the middle pixel of each field. The interval lasts from the measurement of the
-    /// head's orientation to the instant for which the orientation was predicted.
+    /// Adds the prediction interval of the orientation by which the display turns each period.
     fn take_turns(&mut self, results: &FinalResults<'_>, head: &HeadViews) {
-        let display = results.record.display();
-        let Some((latched, surface)) = OrientationTiming::of_run(results).zip(display.surfaces().first()) else {
-            return;
-        };
-        for field in self.turned_to.until(results.until) {
-            let y = surface.height / 2 + FieldParity::of_field(field).first_line();
-            let span = turned(&latched, head, [surface.width / 2, y], field);
-            span.into_iter().for_each(|span| self.turns.add(span));
-        }
-        self.turned_to = results.until;
+        let FinalResults { pipeline, record, aim, until, .. } = *results;
+        let periods = self.turned_to.until(until);
+        let spans = periods.filter_map(|period| pipeline.turn_interval(record, head, aim, period));
+        spans.for_each(|span| self.turns.add(span));
+        self.turned_to = until;
     }
-}
-
-/// Returns the prediction interval of the head orientation that a pixel uses. Returns `None` before the first tracker
-/// report.
-fn turned(latched: &OrientationTiming, head: &HeadViews, [x, y]: [u32; 2], field: PeriodNumber) -> Option<Span> {
-    let (known, aimed): (Time, Time) = latched.orientation_of_pixel(head, x, y, field)?;
-    let measured = head.measured_at(head.report_by(known)?)?;
-    Some(aimed.since(measured))
 }

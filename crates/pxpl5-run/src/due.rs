@@ -2,7 +2,7 @@
 //!
 //! | word | meaning |
 //! |---|---|
-//! | due | in this period of the display, a new picture should be seen at the rate of the pipeline |
+//! | due | a pipeline at its nominal rate shows a new picture in this period of the display |
 //! | shown | the picture was complete and in time |
 //! | late | the picture was complete before its period ended, but after its deadline |
 //! | incomplete | the picture was begun, but not complete when its period ended |
@@ -15,11 +15,10 @@ use crate::result_window::ResultWindow;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 
-/// Smallest number of pictures in a result window from which an update rate can be computed.
 pub(crate) const LEAST_UPDATES: u64 = 2;
 
-/// Numbers of pictures that were due in the result window of a run, counted by result. Each picture has one of four
-/// results: shown, late, incomplete or missed.
+/// Numbers of pictures that were due in the result window of a run. Each due picture was shown, late, incomplete or
+/// missed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DuePictures {
     /// First display period of the result window.
@@ -32,27 +31,24 @@ pub struct DuePictures {
     pub due: u64,
     /// Number of due pictures that were complete and in time.
     pub shown: u64,
-    /// Number of due pictures that were complete before their period ended, but not in time.
+    /// Number of due pictures that were complete before their period ended, but after their deadline.
     pub late: u64,
     /// Number of due pictures that were incomplete when their period ended.
     pub incomplete: u64,
     /// Number of due pictures that were never begun, or left out.
     pub missed: u64,
-    /// Number of periods of the result window in which any picture was shown in time, due or not.
-    ///
-    /// The number exceeds `shown` if the pipeline shows more pictures than are due.
+    /// Number of periods of the result window in which the pipeline showed a picture in time, even if none was due.
     pub pictures: u64,
 }
 
 impl DuePictures {
     /// Counts the due pictures of a run by result. Returns `None` if no complete picture was due.
     ///
-    /// `pictures` gives the result of each picture that was begun, and the period in which the picture should be seen,
-    /// in order of periods. `periods_a_picture` is the number of periods from one due picture to the next. `reached` is
-    /// the first period that was not over when the run ended.
+    /// Each item of `pictures` is a picture that was begun: its display period and its result, in order of periods.
+    /// `periods_a_picture` is the number of periods from one due picture to the next. `reached` is the first period
+    /// that was not over when the run ended.
     ///
-    /// A picture that is shown between the due period of the preceding picture and its own due period also counts as
-    /// shown.
+    /// A picture also counts as shown if it is shown before its due period, but after the preceding due period.
     #[must_use]
     pub fn count(
         pictures: impl Iterator<Item = (PeriodNumber, PictureResult)>,
@@ -65,7 +61,6 @@ impl DuePictures {
         Some(Self::of_ends(&ends, periods_a_picture, &window))
     }
 
-    /// Counts the pictures that were due in a result window.
     pub(crate) fn of_ends(ends: &PictureResults, periods_a_picture: u64, window: &ResultWindow) -> Self {
         let every = periods_a_picture.max(1);
         let ResultWindow { first_period, last_period, .. } = *window;
@@ -101,7 +96,7 @@ impl DuePictures {
     }
 
     /// Returns the number of pictures shown per second, for a display period of `period_ms` milliseconds. Returns
-    /// `None` if fewer than two pictures were shown, because a single picture has no rate.
+    /// `None` if fewer than two pictures were shown.
     #[must_use]
     pub fn updates_hz(&self, period_ms: f64) -> Option<f64> {
         let window_ms = (self.due * self.periods_a_picture) as f64 * period_ms;

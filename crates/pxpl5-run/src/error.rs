@@ -7,7 +7,7 @@ use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
 use thiserror::Error;
 
-/// An error of an experiment.
+/// The reasons why an experiment cannot run, or ended without a result.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ExperimentError {
@@ -75,17 +75,17 @@ pub enum ExperimentError {
     /// run.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
     Level,
-    /// The scene has no primitives, or too many moving structures.
+    /// The scene has no triangles or spheres, or too many moving structures. The text states which.
     #[error("{0}")]
     Scene(String),
-    /// The run was ended early by the function that observes the run ([`crate::Experiment::run_stopping`]), or by the
-    /// host ([`crate::Host::is_stopped`]).
+    /// The host ([`crate::Host::is_stopped`]) or the observing function ([`crate::Experiment::run_stopping`]) ended the
+    /// run early.
     #[error("{0}")]
     Stopped(String),
     /// The machine failed. All observations before the failure are kept.
     #[error("{error} ({} had been shown)", count_of(partial.tally().pictures, "picture"))]
     Run {
-        /// Error of the machine.
+        /// The machine's reason for the failure.
         error: RunError,
         /// Outcome of the run until the error.
         partial: Box<Outcome>,
@@ -96,7 +96,6 @@ fn seconds(at: Time) -> f64 {
     at.since(Time::ZERO).as_ms() * 1e-3
 }
 
-/// Returns a count with the singular or plural form of a noun.
 fn count_of(count: u64, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }
@@ -105,7 +104,6 @@ fn were(count: u64, name: &str) -> String {
     format!("{} {}", count_of(count, name), if count == 1 { "was" } else { "were" })
 }
 
-/// Returns advice about the number of fields to simulate.
 fn advice(needed: Option<u64>) -> String {
     match needed {
         Some(fields) => format!("simulate more fields: the next one is shown after about {fields}"),

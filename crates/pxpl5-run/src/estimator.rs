@@ -1,4 +1,4 @@
-//! Estimates of the head's pose from the tracker reports that have reached the host. One cause of error can be removed.
+//! Estimates the head's pose from tracker reports after a run. The estimate can leave out one cause of error.
 
 use crate::head_views::{Follower, HeadViews};
 use crate::report_schedule::Coming;
@@ -12,30 +12,28 @@ use tracking::predict::ExactPredictor;
 use tracking::time::PS_PER_S;
 use tracking::tracker::{TrackerConfig, TrackerModel};
 
-/// A cause of misregistration, the offset between displayed and correct positions.
-///
-/// Each cause can be removed from the reports and poses of a run that has ended. The machine's times stay unchanged.
+/// A cause of pixel errors. After a run, an [`Estimator`] can compute poses as if one cause did not exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// Age of tracker reports at their arrival, and age of pictures at the time when the pictures are shown. Without
-    /// this cause, the host has all measurements up to the instant for which a picture is drawn.
+    /// Latency: reports arrive late at the host, and pictures are shown late. Without this cause, the host has every
+    /// measurement up to the instant for which a picture is drawn.
     Latency,
-    /// Duration of the scan: a picture is drawn for one instant but is lit over a time span. Without this cause, the
-    /// whole picture is evaluated at the instant for which the picture was drawn.
+    /// Scan-out: a picture is drawn for one instant, but its lines light one after the other. Without this cause, all
+    /// lines light at the instant for which the picture was drawn.
     ScanOut,
     /// Noise and bias of the tracker. Without this cause, reports contain the true pose.
     Noise,
-    /// Error of the predictor. Without this cause, the pose of the newest report moves along the true motion of the
-    /// head.
+    /// Errors of the predictor. Without this cause, the pose of the newest report is moved exactly as the head really
+    /// moves.
     Prediction,
-    /// Intervals at which the tracker measures and the host polls. Without this cause, each prediction uses a
-    /// measurement that arrives exactly at the instant of the prediction.
+    /// Sampling: the tracker measures, and the host polls, at intervals. Without this cause, a report arrives exactly
+    /// when the host predicts.
     Sampling,
 }
 
 impl Cause {
-    /// All causes of error, in the order in which tables list the causes.
+    /// All causes of error, in the order of their rows in tables.
     pub const ALL: [Self; 5] = [Self::Latency, Self::ScanOut, Self::Noise, Self::Prediction, Self::Sampling];
 
     /// Returns the name of the cause of error in tables and files.
@@ -53,11 +51,10 @@ impl Cause {
 
 pxpl5_sim::parameters::named!(Cause, "cause", Cause::ALL.map(|cause| (cause.name(), cause)));
 
-/// Length in picoseconds of the series of reports that a new predictor receives for one request, if each request has
-/// its own series ([`Cause::Sampling`]).
+/// Length of the series of reports that a new predictor receives for one request, in picoseconds.
 const FED_PS: u64 = 2 * PS_PER_S;
 
-/// An estimator of the head's pose from the tracker reports that have reached the host by an instant.
+/// Computes the head's pose from the tracker reports that a host has at an instant.
 pub struct Estimator {
     views: Arc<HeadViews>,
     way: Way,
@@ -68,8 +65,8 @@ enum Way {
     Following(Follower),
     /// One predictor receives all measurements of the tracker up to the requested instant.
     AtOnce(Follower),
-    /// For each request, a new predictor receives a separate series of tracker reports. The newest report of the series
-    /// arrives at the instant of the request.
+    /// Each request creates a predictor and a series of reports, the newest of which arrives at the instant of the
+    /// request.
     Fresh(TrackerModel),
 }
 
@@ -80,8 +77,8 @@ impl fmt::Debug for Estimator {
 }
 
 impl Estimator {
-    /// Creates an estimator that gives the same poses as the run's host, optionally without one cause of error. The
-    /// cause [`Cause::ScanOut`] does not affect poses and changes nothing here.
+    /// Creates an estimator that gives the same poses as the run's host, but without one cause of error. The cause
+    /// [`Cause::ScanOut`] does not affect poses, so the poses do not change.
     #[must_use]
     pub fn new(views: &Arc<HeadViews>, without: Option<Cause>) -> Self {
         let head = views.head();
@@ -100,8 +97,8 @@ impl Estimator {
         Self { views: Arc::clone(views), way }
     }
 
-    /// Returns the head's pose at the instant `at` in the scene's coordinates, from tracker reports that had arrived by
-    /// the instant `known`. From call to call, `known` must not decrease.
+    /// Returns the predicted pose of the head at the instant `at`, in the scene's coordinates. The prediction uses only
+    /// the reports that had arrived at the instant `known`. From call to call, `known` must not decrease.
     pub fn pose(&mut self, known: Time, at: Time) -> Pose {
         let start = self.views.start();
         let tracked = match &mut self.way {
@@ -113,12 +110,10 @@ impl Estimator {
     }
 }
 
-/// Returns a tracker model for the settings `tracker`, from which one cause of error has been removed.
 fn model_of(tracker: TrackerConfig) -> TrackerModel {
     TrackerModel::new(tracker).expect("less of what was checked by Head::new")
 }
 
-/// Returns a predictor that has the settings of the run's predictor, but receives the reports of the tracker `tracker`.
 fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     let head = views.head();
     let model = model_of(tracker);
@@ -128,11 +123,9 @@ fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower {
     Follower::new(Box::new(arrivals), Box::new(reports()), head.build_predictor())
 }
 
-/// Returns the pose at `at` without the cause [`Cause::Sampling`], from a separate series of tracker reports. The
-/// newest report of the series arrives at `known`.
+/// Returns the pose at `at`, as if a tracker report had arrived exactly at `known`.
 ///
-/// The tracker model reports the head's motion with a shift in time. The shift is the age that the run's newest report
-/// has at `known`.
+/// To make a report arrive at `known`, the function shifts the motion by the age of the newest report at `known`.
 fn fresh(views: &HeadViews, tracker: &TrackerModel, known: Time, at: Time) -> Pose {
     let head = views.head();
     // Find the newest report of the run.

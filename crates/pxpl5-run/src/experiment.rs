@@ -9,7 +9,6 @@ use crate::keep::Keep;
 use crate::level::Level;
 use crate::observers::{FinalResults, ObserverFactory};
 use crate::pipeline::Pipeline;
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::raster::Raster;
 use pxpl5_machine::{MachineConfig, Optimization, Record};
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
@@ -19,7 +18,7 @@ use pxpl5_wire::display::Aim;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Choice of the pixels that a run computes. The choice changes no simulated time and no trace.
+/// The pixels that a run computes. The choice changes no simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pixels {
@@ -32,7 +31,7 @@ pub enum Pixels {
 }
 
 impl Pixels {
-    /// All choices of the pixels to compute, with their names in experiment files.
+    /// All choices of [`Pixels`], with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("off", Self::Off), ("lazy", Self::Lazy), ("all", Self::All)];
 }
 
@@ -41,10 +40,7 @@ pxpl5_sim::parameters::named!(Pixels, "choice of pixels", Pixels::ALL);
 /// Smallest and largest number of fields that an experiment may simulate.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
 
-/// Returns the parameters whose values no source supports.
-///
-/// An unsupported value lies outside the range that the sources give for the parameter. The value also differs from the
-/// values that the machine's preset and the pipeline set.
+/// Returns the parameters whose values no source supports: values outside the range of the sources, set by the user.
 #[must_use]
 pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
     let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
@@ -96,10 +92,8 @@ pub struct Estimates {
     ///
     /// The function returns `None` if no such picture will be shown, or if the formulas give no estimate.
     pub fields_needed: fn(&Experiment) -> Option<u64>,
-    /// Function that estimates the number of primitives to which the scene must be decimated so that the pipeline shows
-    /// all pictures in time.
-    ///
-    /// The function returns `None` if the formulas give no estimate.
+    /// Function that estimates how many primitives the scene can have, after decimation, so that all pictures are in
+    /// time. Returns `None` if the formulas give no estimate.
     pub triangles_in_time: fn(&Experiment) -> Option<u64>,
 }
 
@@ -158,24 +152,22 @@ impl Experiment {
         self
     }
 
-    /// Sets the host computer, which supplies a clock and the worker that computes the pixels of [`Pixels::All`]. The
-    /// host changes no result.
+    /// Sets the host computer, which supplies a clock and the threads for [`Pixels::All`]. The host changes no result.
     #[must_use]
     pub fn host(mut self, host: impl Host + 'static) -> Self {
         self.host = Arc::new(host);
         self
     }
 
-    /// Makes the run handle simultaneous events in a pseudo-random order derived from a seed. A correct model gives the
-    /// same results in every order.
+    /// Makes the run handle simultaneous events in a pseudo-random order. Tests use different seeds to prove that the
+    /// order changes no result.
     #[must_use]
     pub const fn shuffle_ties(mut self, seed: u64) -> Self {
         self.shuffle = Some(seed);
         self
     }
 
-    /// Makes the run record messages, busy channels of the ring and FIFO contents. The recording changes no simulated
-    /// time.
+    /// Makes the run record ring messages and the contents of FIFOs. The recording changes no simulated time.
     #[must_use]
     pub const fn record_traffic(mut self, record: bool) -> Self {
         self.traffic = record;
@@ -197,7 +189,7 @@ impl Experiment {
         self
     }
 
-    /// Sets the level of modelling: [`Level::Transaction`], the default, or [`Level::Cycle`].
+    /// Sets the level of detail: [`Level::Transaction`], the default, or [`Level::Cycle`].
     #[must_use]
     pub const fn level(mut self, level: Level) -> Self {
         self.level = level;
@@ -207,8 +199,8 @@ impl Experiment {
     /// Sets a head whose pose a tracker reports. Without such a head, the pipeline follows the scene's own motion
     /// without any delay.
     ///
-    /// If the head's pose is predicted, the experiment runs twice. The first run is a dry run without prediction, which
-    /// finds the time at which each view is seen.
+    /// If the head's pose is predicted, the experiment runs twice. The first run, a dry run, finds the time at which
+    /// each view is seen.
     #[must_use]
     pub fn head(mut self, head: impl Into<Arc<Head>>) -> Self {
         self.head = Some(head.into());
@@ -216,22 +208,18 @@ impl Experiment {
     }
 
     /// Makes the host begin a frame only when the tracker reports a pose, so that frames do not queue in the pipeline.
+    /// The setting has no effect without a head, or if the pipeline's host does not begin frames.
     ///
-    /// The measurement of latency with a pendulum outside the machine uses this setting. The setting has no effect
-    /// without a head, or if the pipeline's host does not begin frames.
+    /// A measurement of latency with a pendulum in front of the tracker uses this setting.
     #[must_use]
     pub const fn on_demand(mut self) -> Self {
         self.on_demand = true;
         self
     }
 
-    /// Sets the functions that estimate values for error messages, from the pipeline's closed form.
+    /// Sets the functions that compute the estimates in error messages, such as a sufficient number of fields.
     ///
-    /// The message about a run that is too short can then recommend a number of fields. The message about a scene that
-    /// is too large can recommend a number of triangles.
-    ///
-    /// This method is hidden, because the estimates change error messages only. The code that runs experiment files
-    /// sets these functions.
+    /// This method is hidden, because the estimates change error messages only.
     #[doc(hidden)]
     #[must_use]
     pub const fn with_estimates(mut self, estimates: Option<Estimates>) -> Self {
@@ -241,20 +229,18 @@ impl Experiment {
 
     /// Sets the streaming observer of a run with [`Keep::Statistics`].
     ///
-    /// A run with [`Keep::Statistics`] discards old records, which the results for a tracked head need. The observer
-    /// must therefore process these records during the run. A run with [`Keep::Everything`] needs no observer.
+    /// Such a run discards old records. The observer must therefore compute the results for a tracked head during the
+    /// run. A run with [`Keep::Everything`] needs no observer.
     #[must_use]
     pub const fn observed_by(mut self, sums: Option<ObserverFactory>) -> Self {
         self.sums = sums;
         self
     }
 
-    /// Returns the results of a run of this experiment with all records in memory. The list of pictures is empty.
     pub(crate) fn final_results<'a>(
         &'a self,
         record: &'a Record,
         head: Option<&'a Arc<HeadViews>>,
-        notes: &'a RequestedUpdates,
     ) -> FinalResults<'a> {
         FinalResults {
             pipeline: self.pipeline.as_ref(),
@@ -262,7 +248,6 @@ impl Experiment {
             fields: self.fields,
             record,
             head,
-            notes,
             hmd: self.hmd,
             arrivals: &record.observation().arrivals,
             pictures: &[],
@@ -273,17 +258,15 @@ impl Experiment {
         }
     }
 
-    /// Returns an estimate of the number of primitives to which the scene must be decimated so that all pictures are
-    /// shown in time.
-    ///
-    /// The estimate comes from the pipeline's closed form. Returns `None` without a closed form.
+    /// Returns an estimate of how many primitives the scene can have, after decimation, so that all pictures are in
+    /// time. Returns `None` if the pipeline has no closed form, or if the formulas give no estimate.
     #[must_use]
     pub fn triangles_in_time(&self) -> Option<u64> {
         (self.estimates?.triangles_in_time)(self)
     }
 
-    /// Sets the optics of the head-mounted display and the distance between the viewer's eyes. The resolution comes
-    /// from the machine's display.
+    /// Sets the optics of the head-mounted display and the distance between the eyes. The resolution comes from the
+    /// machine's display.
     #[must_use]
     pub const fn with_hmd(mut self, hmd: Hmd) -> Self {
         self.hmd = hmd;
@@ -297,10 +280,10 @@ impl Experiment {
         &self.hmd
     }
 
-    /// Sets the period of the first display at which the result window (the periods that are evaluated) begins. The
-    /// window begins later if the warm-up takes longer.
+    /// Begins the evaluation of the run at the period `period` of the first display, or later if the warm-up takes
+    /// longer.
     ///
-    /// With this setting, different pipelines are evaluated over the same periods, to within one interval between due
+    /// With this setting, results of different pipelines cover the same periods, to within one interval between due
     /// pictures.
     #[must_use]
     pub const fn results_from(mut self, period: PeriodNumber) -> Self {
@@ -326,21 +309,20 @@ impl Experiment {
         Self { head: None, ..self }
     }
 
-    /// Returns the raster correction of the head-mounted display.
+    /// Returns the correction that the head-mounted display applies to a picture during scan-out.
     #[must_use]
     pub fn raster(&self) -> Raster {
         self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
     }
 
-    /// Returns the instant for which the view of a picture is drawn, within the time in which the picture is displayed.
-    /// Examples are the middle and the first pixel.
+    /// Returns the instant for which pictures are drawn, such as the middle of the time in which a picture lights.
     #[must_use]
     pub fn aim(&self) -> Aim {
         self.head.as_ref().map(|head| head.aim()).unwrap_or_default()
     }
 
-    /// Returns a hash of everything that affects the trace: machine, pipeline with its settings, contents of the scene,
-    /// number of fields, seed, level and head.
+    /// Returns a hash of everything that affects the results: machine, pipeline with its settings, contents of the
+    /// scene, number of fields, seed, level and head.
     #[must_use]
     pub fn config_hash(&self) -> Fingerprint {
         let mut hash = Fingerprint::default();
@@ -379,17 +361,15 @@ impl Experiment {
         hash
     }
 
-    /// Returns the parameters of the machine, the tracker and the predictor whose values no source supports. See
-    /// [`out_of_range`].
+    /// Returns the parameters of machine, tracker and predictor whose values no source supports ([`out_of_range`]).
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(|head| head.unsupported_parameters()).cloned();
         out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
-    /// Returns warnings about parameter values that no source supports ([`out_of_range`]), and about work without code
-    /// at the cycle level ([`warning_without_code`]). Problems in the files of the head's motion and of the scene are
-    /// included.
+    /// Returns warnings about parameters without a source ([`out_of_range`]), work without code
+    /// ([`warning_without_code`]), and problems in the files of the head's motion and of the scene.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let supposed = self.out_of_range();
@@ -405,8 +385,7 @@ impl Experiment {
         &self.scene
     }
 
-    /// Returns the machine's configuration that this experiment received, without the changes that the pipeline makes
-    /// in [`Pipeline::adapt`].
+    /// Returns the machine's configuration before the pipeline changes it ([`Pipeline::adapt`]).
     #[must_use]
     pub const fn config(&self) -> &MachineConfig {
         &self.config
@@ -424,7 +403,6 @@ impl Experiment {
         self.fields
     }
 
-    /// Returns the period of the first display at whose start the run ends. This period is not simulated.
     pub(crate) const fn end(&self) -> PeriodNumber {
         PeriodNumber::FIRST.after(self.fields)
     }
@@ -435,13 +413,13 @@ impl Experiment {
         self.seed
     }
 
-    /// Returns the level of modelling.
+    /// Returns the level of detail of the simulation.
     #[must_use]
     pub const fn modelling_level(&self) -> Level {
         self.level
     }
 
-    /// Returns the choice of the pixels that are computed.
+    /// Returns which pixels the run computes.
     #[must_use]
     pub const fn pixels_wanted(&self) -> Pixels {
         self.pixels

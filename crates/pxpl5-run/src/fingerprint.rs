@@ -11,7 +11,7 @@ use std::str::FromStr;
 const OFFSET_BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
 const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
 
-/// A 128-bit hash of contents, printed as 32 hexadecimal digits.
+/// A 128-bit hash of settings or of a scene, printed as 32 hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Fingerprint(u128);
 
@@ -30,14 +30,13 @@ impl Fingerprint {
         fingerprint
     }
 
-    /// Returns a hash of a scene: everything that can be seen or that takes time, which is primitives, structures,
-    /// light and motion.
+    /// Returns a hash of everything in a scene that affects pictures or times: primitives, structures, light and
+    /// motion.
     ///
-    /// The hash covers neither the scene's name nor the seed of the motion, because an experiment sets the seed.
+    /// The hash omits the scene's name, and the seed of the motion, which is a setting of an experiment.
     ///
-    /// The hash covers the numbers one after the other, with the least significant byte first. A list is hashed as its
-    /// length (64 bits), then its entries. The value of an enum is hashed as a byte, counted from 0 in the order of
-    /// declaration.
+    /// Numbers are hashed with the least significant byte first. A list is hashed as its length (64 bits), then its
+    /// entries. The value of an enum is hashed as a byte, counted from 0 in the order of declaration.
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
         let mut all = Self::default();
@@ -56,7 +55,7 @@ impl Fingerprint {
         all
     }
 
-    /// Adds a setting to the hash, as a line of text with key and value.
+    /// Adds the line `key = value` to the hash.
     pub fn setting(&mut self, key: &str, value: impl fmt::Display) {
         // Writing to the hash cannot fail.
         let _ = writeln!(self, "{key}={value}");
@@ -102,8 +101,7 @@ impl Fingerprint {
         self.add(colour);
     }
 
-    /// Adds a structure to the hash. The name of the structure is left out, because the name affects neither pictures
-    /// nor times.
+    /// Adds a structure to the hash. The name of the structure affects neither pictures nor times, and is left out.
     fn structure(&mut self, structure: &Structure) {
         // The pattern lists all fields, so a new field cannot be forgotten.
         let Structure { name: _, vertices, triangles, spheres, frame, hinge, culls_back_faces } = structure;
@@ -173,7 +171,6 @@ impl Write for Fingerprint {
 impl FromStr for Fingerprint {
     type Err = ParseIntError;
 
-    /// Parses the 32 hexadecimal digits that `Display` writes.
     fn from_str(text: &str) -> Result<Self, ParseIntError> {
         u128::from_str_radix(text, 16).map(Self)
     }

@@ -1,4 +1,4 @@
-//! A head, a tracker and a predictor, which together give a pipeline its views.
+//! The head of a viewer, with a tracker and a predictor.
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
@@ -15,27 +15,25 @@ use tracking::motion::{Motion, Still};
 use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned};
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 
-/// A head motion that several parts of a run share.
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 
-/// Origin of the parameters of a predictor.
+/// Origin of a predictor's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Numbers {
-    /// The user has set the parameters.
     Given,
-    /// A dry run will find the parameters, for the interval over which the pipeline predicts.
+    /// A dry run will find the parameters.
     ToBeTuned,
-    /// A dry run has found the parameters. The first training covers all poses.
+    /// A dry run has found the parameters. The first training data are for complete poses, the second for orientations.
     ///
-    /// The second training covers orientations alone, for a display that predicts orientations over another interval.
+    /// Only a display that itself uses the newest orientation has training data for orientations.
     Tuned(Option<Training>, Option<Training>),
 }
 
-/// Identifier of the tuning method in names of experiments. The method and the other settings determine the tuned
-/// parameters.
+/// Names of experiments contain this text instead of the tuned parameters, which follow from the method and all other
+/// settings.
 const TUNING: &str = "for its interval and motion, version 1";
 
-/// Meaning of the positions and orientations of a head motion.
+/// The coordinates in which a head motion is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HeadPlace {
     /// The first pose of the motion is placed at the start of the scene's own motion. All other poses keep their
@@ -47,13 +45,13 @@ pub enum HeadPlace {
 }
 
 impl HeadPlace {
-    /// All meanings of a head motion's poses, with their names in experiment files.
+    /// Both choices of coordinates, with their names in experiment files.
     pub const ALL: [(&'static str, Self); 2] = [("scene", Self::Scene), ("world", Self::World)];
 }
 
 pxpl5_sim::parameters::named!(HeadPlace, "meaning of head poses", HeadPlace::ALL);
 
-/// A head with its motion, tracker and predictor, and with the raster correction of its display.
+/// A viewer's head with a motion, a tracker, a predictor and a display.
 #[derive(Clone)]
 pub struct Head {
     pub(crate) motion: Moving,
@@ -67,7 +65,6 @@ pub struct Head {
     place: HeadPlace,
     reports: Option<Arc<[TrackerReport]>>,
     unsupported_parameters: Vec<Parameter>,
-    /// Cache of tuned predictors, which several heads share.
     tunings: Option<Arc<Tunings>>,
 }
 
@@ -93,11 +90,11 @@ impl Head {
     /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the same noise that the tracker
     /// model adds.
     ///
-    /// The first pose of the motion is placed at the start of the scene's own motion ([`HeadPlace::Scene`]). After
-    /// [`Head::placed`] with [`HeadPlace::World`], the poses are coordinates of the scene instead.
+    /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), unless [`Head::placed`] changes
+    /// this.
     ///
-    /// A dry run tunes the predictor's parameters for the motion and for the interval over which the pipeline predicts.
-    /// See [`tune`](tracking::predict::tune).
+    /// A run tunes the predictor's parameters for this motion and for the pipeline's prediction interval. See
+    /// [`tune`](tracking::predict::tune).
     ///
     /// # Errors
     ///
@@ -112,7 +109,7 @@ impl Head {
         Ok(Self { numbers: Numbers::ToBeTuned, ..Self::predicted_by(motion, tracker, predictor, seed)? })
     }
 
-    /// Creates a head whose predictor has the parameters in `predictor` and is not tuned.
+    /// Creates a head whose predictor uses the parameters in `predictor` without tuning.
     ///
     /// # Errors
     ///
@@ -142,7 +139,7 @@ impl Head {
         })
     }
 
-    /// Shares the results of tuning with all heads that use the same cache. The cache changes no result.
+    /// Uses a cache of tuned predictors, which several heads can share. The cache changes no result.
     #[must_use]
     pub fn sharing_tunings(self, tunings: Arc<Tunings>) -> Self {
         Self { tunings: Some(tunings), ..self }
@@ -161,8 +158,7 @@ impl Head {
         self
     }
 
-    /// Replaces the prediction method and keeps the parameters. If the current predictor is tuned, the predictor with
-    /// the new method is tuned too.
+    /// Replaces the prediction method and keeps all other settings of the predictor.
     #[must_use]
     pub const fn predicting(mut self, kind: PredictorKind) -> Self {
         self.predictor.kind = kind;
@@ -189,44 +185,40 @@ impl Head {
         self.evaluate_at_m
     }
 
-    /// Sets the meaning of the motion's poses: relative to the start of the scene's own motion, or in the world of the
-    /// scene.
+    /// Sets the coordinates of the motion: relative to the start of the scene's own motion, or in the scene.
     #[must_use]
     pub const fn placed(mut self, place: HeadPlace) -> Self {
         self.place = place;
         self
     }
 
-    /// Returns the meaning of the motion's poses.
+    /// Returns the coordinates in which the motion is given.
     #[must_use]
     pub const fn place(&self) -> HeadPlace {
         self.place
     }
 
-    /// Sets the raster correction of the head-mounted display.
+    /// Sets the correction that the head-mounted display applies to a picture during scan-out.
     #[must_use]
     pub const fn before(mut self, raster: Raster) -> Self {
         self.raster = raster;
         self
     }
 
-    /// Sets the instant for which a picture's view is predicted, within the time in which the picture is displayed.
-    /// Examples are the middle and the first pixel.
+    /// Sets the instant for which poses are predicted, such as the middle of the time in which a picture lights.
     #[must_use]
     pub const fn with_aim(mut self, aim: Aim) -> Self {
         self.aim = aim;
         self
     }
 
-    /// Stores the parameters of the tracker and the predictor whose values no source supports. Reports warn of these
-    /// parameters.
+    /// Stores parameters of tracker and predictor whose values no source supports. Reports warn of these parameters.
     #[must_use]
     pub fn with_unsupported_parameters(self, unsupported_parameters: Vec<Parameter>) -> Self {
         Self { unsupported_parameters, ..self }
     }
 
-    /// Returns the parameters of the tracker and the predictor whose values no source supports, as set by
-    /// [`Head::with_unsupported_parameters`].
+    /// Returns the parameters that [`Head::with_unsupported_parameters`] has stored.
     #[must_use]
     pub fn unsupported_parameters(&self) -> &[Parameter] {
         &self.unsupported_parameters
@@ -238,19 +230,16 @@ impl Head {
         Self { reports: Some(reports.into()), ..self }
     }
 
-    /// Returns the arrival and measurement times of the reports that reach the host before an instant.
     pub(crate) fn arrivals(&self, until: Time) -> Arrivals {
         let reports = self.reports_of(Arc::new(Still(Pose::IDENTITY)));
         Box::new(reports.map(Coming::of).take_while(move |coming| coming.arrives < until))
     }
 
-    /// Returns the contents of all tracker reports, in order of arrival.
     pub(crate) fn contents(&self) -> Contents {
         self.reports_of(Arc::clone(&self.motion))
     }
 
-    /// Returns the tracker's reports about a motion, in order of arrival. If [`Head::reporting`] has replaced the
-    /// reports, returns the replacements.
+    /// Returns the reports that [`Head::reporting`] has set, or else the tracker's reports about `motion`.
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),
@@ -258,14 +247,13 @@ impl Head {
         }
     }
 
-    /// Returns the instant for which a picture's view is predicted, within the time in which the picture is displayed.
-    /// Examples are the middle and the first pixel.
+    /// Returns the instant for which poses are predicted, such as the middle of the time in which a picture lights.
     #[must_use]
     pub const fn aim(&self) -> Aim {
         self.aim
     }
 
-    /// Returns the raster correction of the head-mounted display.
+    /// Returns the correction that the head-mounted display applies to a picture during scan-out.
     #[must_use]
     pub const fn raster(&self) -> Raster {
         self.raster
@@ -318,19 +306,17 @@ impl Head {
         self.numbers != Numbers::Given
     }
 
-    /// Returns true if the parameters of the predictor are not tuned yet and must be tuned.
     pub(crate) fn is_to_be_tuned(&self) -> bool {
         self.numbers == Numbers::ToBeTuned && self.predicts()
     }
 
-    /// Returns this head with a predictor that is tuned for an interval from a report to the predicted instant. The
-    /// interval is in picoseconds.
+    /// Returns this head with a predictor that is tuned for a prediction interval in picoseconds.
     pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
         let tuned = self.tuning(interval_ps);
         Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training, None), ..self.clone() }
     }
 
-    /// Returns this head with the predictor's parameters for orientations tuned for an interval in picoseconds. The
+    /// Returns this head with new parameters for orientations, tuned for a prediction interval in picoseconds. The
     /// parameters for positions stay the same.
     pub(crate) fn tuned_for_turns(&self, interval_ps: u64) -> Self {
         let Tuned { config: of_turns, training } = self.tuning(interval_ps);
@@ -363,17 +349,16 @@ impl Head {
         &self.predictor
     }
 
-    /// Returns the data from which the predictor was tuned. Returns `None` if the user set the parameters, or before
-    /// the run.
+    /// Returns the training data from which the predictor was tuned. Returns `None` before the run, or if the user set
+    /// the parameters.
     #[must_use]
     pub const fn training(&self) -> Option<&Training> {
         if let Numbers::Tuned(Some(training), _) = &self.numbers { Some(training) } else { None }
     }
 
-    /// Returns the data from which the parameters for orientations were tuned separately. Returns `None` if positions
-    /// and orientations have the same tuning, or if nothing was tuned.
+    /// Returns the training data from which the parameters for orientations were tuned separately, or `None`.
     ///
-    /// Only a display that latches orientations needs separate parameters.
+    /// Only a display that turns pictures needs separate parameters.
     #[must_use]
     pub const fn training_of_turns(&self) -> Option<&Training> {
         if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }
@@ -391,7 +376,7 @@ impl Head {
         &self.tracker
     }
 
-    /// Returns the motion, in the tracker's coordinates.
+    /// Returns the head's motion, in the tracker's coordinates.
     #[must_use]
     pub fn motion(&self) -> &(dyn Motion + Send + Sync) {
         self.motion.as_ref()
@@ -406,7 +391,6 @@ impl Head {
     }
 }
 
-/// An iterator over the reports by which [`Head::reporting`] has replaced the tracker's reports.
 struct GivenReports {
     given: Arc<[TrackerReport]>,
     next: usize,

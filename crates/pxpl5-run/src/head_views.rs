@@ -1,4 +1,4 @@
-//! Records of the poses that a pipeline requested, and of the tracker reports from which each pose was computed.
+//! The views of a tracked head: predicted poses, and records of the poses that a pipeline requested.
 
 use crate::dry_run::SeenTimes;
 use crate::head::{Head, HeadPlace};
@@ -17,19 +17,19 @@ use tracking::Pose;
 use tracking::predict::Predictor;
 use tracking::tracker::TrackerReport;
 
-/// A pose that a pipeline requested.
+/// A pose that a pipeline requested, with the tracker report that it is based on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledPose {
     /// Number of the view for which the pose was requested, as counted by the pipeline.
     pub number: ViewNumber,
-    /// Instant of the request: tracker reports that had arrived by then could be used.
+    /// Instant of the request. The pose depends only on reports that had arrived by this instant.
     pub known: Time,
-    /// Measurement time of the newest report that was used. `None` before the first report.
+    /// Time at which the newest used report was measured. `None` before the first report.
     pub measured_at: Option<Time>,
-    /// Arrival time of the newest report that was used. `None` before the first report.
+    /// Time at which the newest used report arrived at the host. `None` before the first report.
     pub arrived_at: Option<Time>,
-    /// Instant for which the view's picture is drawn, by the head's [`Aim`](crate::Aim). Moving objects are placed at
-    /// their positions at this instant.
+    /// Instant for which the picture is drawn, chosen by the head's [`Aim`](crate::Aim). Moving objects have their
+    /// positions of this instant.
     pub objects_at: Time,
     /// Instant for which the pose was predicted. `None` without prediction: the newest report was used unchanged.
     pub predicted_for: Option<Time>,
@@ -37,7 +37,6 @@ pub struct SampledPose {
     pub pose: Pose,
 }
 
-/// Arrival and measurement times of the newest report that a predictor has received.
 #[derive(Clone, Copy, Debug, Default)]
 struct Newest {
     measured_at: Option<Time>,
@@ -46,7 +45,8 @@ struct Newest {
 
 /// A predictor that receives tracker reports as simulated time advances.
 ///
-/// The content of a report is computed only after its arrival, because an interactive head's motion is unknown before.
+/// The content of a report is computed only after its arrival, because the motion of an interactive head is unknown
+/// before.
 pub(crate) struct Follower {
     arrivals: Peekable<Arrivals>,
     contents: Contents,
@@ -55,19 +55,17 @@ pub(crate) struct Follower {
 }
 
 impl Follower {
-    /// Creates a follower, which passes tracker reports to `predictor` when they have arrived. `arrivals` has the times
-    /// and `contents` the contents of the same reports.
+    /// Creates a follower of the reports whose times are `arrivals` and whose contents are `contents`.
     pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
         Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
     }
 
-    /// Creates a predictor that receives all reports that reach a head's host before an instant.
     fn of_head(head: &Head, until: Time) -> Self {
         Self::new(head.arrivals(until), head.contents(), head.build_predictor())
     }
 
-    /// Gives the predictor all reports that had arrived by `known`. If `known` is earlier than in a previous call, the
-    /// predictor keeps all reports that it has received.
+    /// Passes all reports that arrived by `known` to the predictor. A report cannot be taken back, so an earlier
+    /// `known` changes nothing.
     fn follow(&mut self, known: Time) {
         while self.arrivals.next_if(|coming| coming.arrives <= known).is_some() {
             let Some(report) = self.contents.next() else { return };
@@ -84,21 +82,19 @@ impl Follower {
         }
     }
 
-    /// Returns the pose at an instant, in the tracker's coordinates, from the reports that had arrived by `known`.
-    /// Before the first report, returns the start of the motion.
+    /// Returns the predicted pose at `at`, in the tracker's coordinates, or `start` before the first report.
     pub(crate) fn pose(&mut self, known: Time, at: Time, start: &Pose) -> Pose {
         self.follow(known);
         if self.newest.measured_at.is_none() { *start } else { self.predictor.predict(at.0) }
     }
 }
 
-/// The views that a head's tracker and predictor provide for a pipeline, with records of the requested poses.
+/// The views that a tracked head provides for a pipeline, with records of the requested poses.
 pub struct HeadViews {
     head: Arc<Head>,
     scene: Arc<Scene>,
     hmd: Hmd,
     eyes: usize,
-    /// End of the run. Reports that arrive later are ignored.
     until: Time,
     schedule: Mutex<ReportSchedule>,
     seen_times: Option<SeenTimes>,
@@ -115,8 +111,6 @@ impl fmt::Debug for HeadViews {
 }
 
 impl HeadViews {
-    /// Creates the views of a head for reports that arrive before `until`. The tracked motion begins where the scene's
-    /// own motion begins, or has the coordinates of the scene ([`HeadPlace`]).
     pub(crate) fn new(
         head: Arc<Head>,
         scene: &Arc<Scene>,
@@ -135,7 +129,7 @@ impl HeadViews {
         Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, seen_times, base, start, state }
     }
 
-    /// Returns the three functions by which a pipeline requests views and report times.
+    /// Returns the functions for firmware: the view at a sample time, the view for a later instant, and report times.
     pub(crate) fn functions(this: &Arc<Self>) -> (Views, ViewsWanted, ReportTimes) {
         let [a, b, c] = [(); 3].map(|()| Arc::clone(this));
         (
@@ -145,8 +139,8 @@ impl HeadViews {
         )
     }
 
-    /// Returns the function by which a host requests the pose of the head alone. The function uses a separate
-    /// predictor.
+    /// Returns a function that predicts the head's pose. The function has its own predictor, because its requests have
+    /// other times than the requests for views.
     pub(crate) fn poses(this: &Arc<Self>) -> Poses {
         let follower = Mutex::new(this.follower());
         let views = Arc::clone(this);
@@ -163,25 +157,22 @@ impl HeadViews {
         Some(self.schedule().from(arrived)?.measured)
     }
 
-    /// Returns the arrival time of the last report that had reached the host by an instant. Returns `None` before the
-    /// first report.
+    /// Returns the arrival time of the last report that reached the host at `instant` or earlier. Returns `None` before
+    /// the first report.
     #[must_use]
     pub fn report_by(&self, instant: Time) -> Option<Time> {
         Some(self.schedule().by(instant)?.arrives)
     }
 
-    /// Returns the arrival time of the last report of the run, or `None` if the run has none.
     pub(crate) fn last_report(&self) -> Option<Time> {
         self.report_by(self.until)
     }
 
-    /// Returns the number of records of poses and reports in memory.
     pub(crate) fn records(&self) -> usize {
         self.state().1.len() + self.schedule().held()
     }
 
-    /// Discards records of poses that were requested before an instant. Also discards records of reports that a newer
-    /// report had replaced before this instant.
+    /// Discards poses that were requested before `instant`, and reports that are no longer the newest at `instant`.
     pub(crate) fn discard_before(&self, instant: Time) {
         self.state().1.retain(|sampled| sampled.known >= instant);
         self.schedule().discard_before(instant);
@@ -209,7 +200,6 @@ impl HeadViews {
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
     }
 
-    /// Returns the arrival time of the first report that reaches the host at `instant` or later.
     pub(crate) fn report_from(&self, instant: Time) -> Option<Time> {
         Some(self.schedule().from(instant)?.arrives)
     }
@@ -221,15 +211,14 @@ impl HeadViews {
         Some(self.schedule().after(after)?.arrives)
     }
 
-    /// Converts a pose from the tracker's coordinates to scene coordinates. For [`HeadPlace::Scene`], the start of the
-    /// tracked motion maps to the start of the scene's own motion. For [`HeadPlace::World`], the pose stays unchanged.
+    /// Converts a pose from the tracker's coordinates to the scene's coordinates, as [`HeadPlace`] defines.
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.start.position);
         Pose { position: self.base.position + way, orientation: (turn * tracked.orientation).normalize() }
     }
 
-    /// Returns the true pose of the head at a time, in the scene's coordinates.
+    /// Returns the head's actual pose at a time, without tracker and prediction, in the scene's coordinates.
     #[must_use]
     pub fn truth(&self, time: Time) -> Pose {
         self.in_scene(&self.head.motion.pose(time.0))
@@ -247,7 +236,8 @@ impl HeadViews {
         &self.scene
     }
 
-    /// Returns the distance at which errors of content without a known position are evaluated, in metres.
+    /// Returns the distance, in metres, at which pixel errors are evaluated if the position of a pixel's content is
+    /// unknown.
     ///
     /// The default is the distance from the head's start to the centre of the scene, at least 0.1.
     #[must_use]
@@ -256,7 +246,8 @@ impl HeadViews {
         self.head.evaluate_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
-    /// Returns the records of all requested poses that remain in memory ([`Keep`](crate::Keep)), sorted by view number.
+    /// Returns the records of the requested poses in memory, sorted by view number. [`Keep`](crate::Keep) decides how
+    /// many records stay in memory.
     #[must_use]
     pub fn sampled(&self) -> Vec<SampledPose> {
         let mut all = self.state().1.clone();
@@ -264,12 +255,10 @@ impl HeadViews {
         all
     }
 
-    /// Creates another predictor with the same settings, which receives the same reports from the first report on.
     pub(crate) fn follower(&self) -> Follower {
         Follower::of_head(&self.head, self.until)
     }
 
-    /// Returns the times of the reports that reach the host during the run.
     pub(crate) fn arrivals(&self) -> Arrivals {
         self.head.arrivals(self.until)
     }

@@ -1,9 +1,9 @@
-//! Services of the host computer that a simulation uses.
+//! The interface to the computer on which a simulation runs.
 
 use pxpl5_machine::{PixelWorker, SameThread};
 use std::fmt::Debug;
 
-/// Services of the host computer that a simulation uses. No service affects the trace.
+/// Services of the computer on which a simulation runs. No service affects a result.
 pub trait Host: Debug + Send + Sync {
     /// Returns the time of the host's clock in seconds, or `None` without a clock. The zero of the clock is arbitrary.
     fn seconds(&self) -> Option<f64> {
@@ -12,7 +12,7 @@ pub trait Host: Debug + Send + Sync {
 
     /// Returns true if the result of a run is no longer needed.
     ///
-    /// A run, also a dry run, calls this method from time to time. If the method returns true, the run ends with
+    /// A run calls this method from time to time. If the method returns true, the run ends with
     /// [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
     fn is_stopped(&self) -> bool {
         false

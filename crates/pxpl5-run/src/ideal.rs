@@ -13,21 +13,20 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{Lines, SurfaceId, ViewNumber};
 
 impl Outcome {
-    /// Returns the ideal picture of a surface at a time. Returns `None` for a surface that the first display or the
-    /// pipeline does not have.
+    /// Returns the picture that a surface would show at `time` if drawing took no time. Returns `None` for a surface
+    /// that does not exist.
     ///
-    /// An ideal renderer draws all lines, with the pipeline's method of shading and with numbers of the same widths in
-    /// bits. The head is at its true pose, or at the pose of the scene's own motion if no head is tracked.
+    /// The head has its true pose at this time. Shading, and the widths of all numbers in bits, are the same as in the
+    /// pipeline.
     ///
-    /// For a still scene and a still head, every complete picture of the machine equals the ideal picture, except at
-    /// pixels where several primitives have exactly the same depth ([`IdealPicture::ties`]).
+    /// For a still scene and a still head, every complete picture of the machine equals this picture. The only
+    /// exceptions are pixels where several primitives have exactly the same depth ([`IdealPicture::ties`]).
     #[must_use]
     pub fn ideal_picture(&self, surface: impl Into<SurfaceId>, time: Time) -> Option<IdealPicture> {
         ideal_picture(self.experiment(), self.record(), self.head().map(AsRef::as_ref), surface.into(), time)
     }
 }
 
-/// Returns the ideal picture of an experiment that has ended or is in progress.
 pub(crate) fn ideal_picture(
     experiment: &Experiment,
     record: &Record,

@@ -3,15 +3,14 @@
 
 use pxpl5_sim::Time;
 
-/// Number of entries between two points at which decoding can begin. A lookup decodes at most this number of entries.
+/// Number of entries from one `Begin` to the next. A lookup decodes at most this number of entries.
 const BLOCK: u64 = 256;
 
-/// A compressed list of instants. Each instant has a number, such as the number of a view. The numbers ascend.
+/// A compressed list of instants. Each instant has a number, such as the number of its view. The numbers ascend.
 ///
-/// Each entry stores the number of skipped numbers before this entry, and the difference from the expected instant. A
-/// step is the difference of two successive instants. The expected instant is the last instant plus the step before the
-/// last step. If two steps alternate, for example the steps of two fields, or of two and three periods, the difference
-/// is 0 and takes one byte.
+/// Each entry stores the number of skipped numbers before it, and the difference from an expected instant. A step is
+/// the difference of two successive instants. The expected instant is the last instant plus the step before the last
+/// step. The difference is therefore 0, in one byte, if two steps alternate, for example two and three periods.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Instants {
     written: Vec<u8>,
@@ -20,16 +19,14 @@ pub(crate) struct Instants {
     count: u64,
 }
 
-/// A point at which decoding of the compressed instants can begin: a decoded entry, and the byte position of the next
-/// entry.
+/// An entry at which decoding can begin, with the position of the next entry in the bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Begin {
     at: At,
     next: usize,
 }
 
-/// An instant of the list in picoseconds, its number, and the last two steps that lead to this instant. A step is the
-/// difference of two successive instants. The older step comes first.
+/// A decoded entry: number, instant in picoseconds, and the last two steps before it, the older first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct At {
     number: u64,
@@ -38,8 +35,7 @@ struct At {
 }
 
 impl At {
-    /// Returns the expected next instant: the last instant plus the step before the last step. A step is the difference
-    /// of two successive instants. Steps wrap around, so an instant may lie before its predecessor.
+    /// Returns the expected next instant. The addition wraps, because an instant may lie before its predecessor.
     const fn expected(&self) -> u64 {
         self.instant.wrapping_add(self.steps[0])
     }
@@ -50,7 +46,7 @@ impl At {
 }
 
 impl Instants {
-    /// Adds an instant. Its number must be greater than all numbers in the list.
+    /// Adds an instant. `number` must be greater than the numbers of all earlier instants.
     pub(crate) fn push(&mut self, number: u64, instant: Time) {
         let at = match self.last {
             None => At { number, instant: instant.0, steps: [0; 2] },
@@ -70,7 +66,7 @@ impl Instants {
         self.count += 1;
     }
 
-    /// Returns the instant of a number, or `None` if the number was skipped.
+    /// Returns the instant with the number `number`, or `None` if the list does not contain this number.
     pub(crate) fn of(&self, number: u64) -> Option<Time> {
         let block = self.begins.partition_point(|begin| begin.at.number <= number);
         let Begin { mut at, mut next } = *self.begins.get(block.checked_sub(1)?)?;
@@ -83,7 +79,7 @@ impl Instants {
     }
 }
 
-/// Maps small positive and negative differences to small numbers (zigzag code).
+/// Maps 0, -1, 1, -2, 2 ... to 0, 1, 2, 3, 4 ... (zigzag code), so that small differences take few bytes.
 const fn folded(difference: u64) -> u64 {
     let signed = difference.cast_signed();
     (signed << 1 ^ signed >> 63).cast_unsigned()

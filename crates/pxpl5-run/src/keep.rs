@@ -1,4 +1,4 @@
-//! Choice of the observations that a run keeps.
+//! Choice of the observations that a run keeps in memory.
 
 /// The choice of the observations that a run keeps in memory. The choice changes no time and no trace.
 ///
@@ -10,23 +10,23 @@ pub enum Keep {
     /// observations of one field take 2 KB (Slats) to 100 KB (frameless rendering).
     #[default]
     Everything,
-    /// Keeps statistics of the whole run, and all observations of its last pictures. Memory, and computing time per
-    /// field, do not depend on the length of the run.
+    /// Keeps statistics of the whole run, and all observations of its last pictures. Memory does not depend on the
+    /// length of the run.
     ///
-    /// The streaming observer of [`Experiment::observed_by`](crate::Experiment::observed_by) computes the results for a
-    /// tracked head. Without an observer, the report states that these results are missing. Two kinds of runs keep
-    /// everything nevertheless: a run that records messages, and a run of a pipeline that needs old records
+    /// The results for a tracked head need the streaming observer of
+    /// [`Experiment::observed_by`](crate::Experiment::observed_by). Two kinds of runs keep everything nevertheless: a
+    /// run that records messages, and a run of a pipeline that needs old records
     /// ([`PictureRules::can_discard_records`](crate::PictureRules::can_discard_records)).
     Statistics,
-    /// Like [`Keep::Statistics`], but also allows recorded messages, and uses no streaming observer.
+    /// Like [`Keep::Statistics`], but messages may be recorded, and no streaming observer is used.
     ///
-    /// A page that displays a run for hours uses this choice. Pixel errors are available only for the last pictures.
-    /// Traffic is available only for the last periods.
+    /// A page that displays a run for hours uses this choice. Pixel errors and messages are available only for the last
+    /// periods.
     Recent,
 }
 
 impl Keep {
-    /// All choices of the observations that a run keeps, with their names in experiment files.
+    /// All choices of [`Keep`], with their names in experiment files.
     pub const ALL: [(&str, Self); 3] =
         [("everything", Self::Everything), ("statistics", Self::Statistics), ("recent", Self::Recent)];
 }

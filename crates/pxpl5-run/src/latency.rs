@@ -1,8 +1,8 @@
-//! Division of a picture's latency into parts. The parts add up to the latency to the picosecond.
+//! The parts of a picture's latency. The sum of the parts is the latency, to the picosecond.
 //!
-//! The parts are measured on the eye that is drawn last, because this eye decides when the picture can be shown. Each
-//! part begins at the end of the preceding part. A stage that overlaps an earlier stage counts only from the end of the
-//! earlier stage. Parts that a pipeline does not have are zero.
+//! The parts are measured on the eye that is drawn last, because this eye decides when the picture can be shown. If two
+//! stages overlap, the later stage counts from the end of the earlier stage. A stage that a pipeline does not have
+//! takes zero time.
 
 use crate::pipeline::PictureTimes;
 use pxpl5_gp::Stage;
@@ -10,7 +10,7 @@ use pxpl5_machine::{Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PictureNumber, SurfaceId};
 
-/// Definition of one part of the time from the sample of the head's pose until the picture is lit.
+/// Definition of one part of the time from the sample of the head's pose to the light of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartDefinition {
     /// Name of this part of the latency in tables, files and timelines.
@@ -63,14 +63,14 @@ impl LatencyParts {
         self.begin + self.spans.iter().copied().sum::<Span>()
     }
 
-    /// Returns the latency as defined in the papers, from the start of TRANSFORM to the retrace.
+    /// Returns the part of the latency that the papers count, from the start of TRANSFORM to the retrace.
     #[must_use]
     pub fn published(&self) -> Span {
         LATENCY_PARTS.iter().zip(self.spans).filter(|(part, _)| part.published).map(|(_, span)| span).sum()
     }
 }
 
-/// Returns the latency parts of a picture. `stages` must contain the stages of this picture only.
+/// Divides the latency of a picture. `stages` must contain the stages of this picture only.
 pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan]) -> LatencyParts {
     let PictureTimes { picture, sampled_at, transform_at, shown_at, .. } = *times;
     let light = first_light(record, shown_at);
@@ -101,14 +101,12 @@ pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan])
     LatencyParts { picture, begin, spans }
 }
 
-/// Returns the time at which the first visible pixel is lit in the period that contains an instant.
 fn first_light(record: &Record, shown_at: Time) -> Time {
     let display = record.display();
     display.first_light(0, display.period_at(shown_at)).unwrap_or(shown_at)
 }
 
-/// Times of a stereo frame. Each surface has a start of TRANSFORM and an end of COPY. Both surfaces share the swap and
-/// the instant at which the first pixel is lit.
+/// Times of a stereo frame. Each eye has a separate TRANSFORM and COPY, but the eyes share the swap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Pair {
     pub(crate) transform_at: [Time; 2],
@@ -117,24 +115,22 @@ pub(crate) struct Pair {
     pub(crate) light_at: Time,
 }
 
-/// For each latency, the index of the surface whose TRANSFORM starts the latency, and the index of the surface whose
-/// event ends the latency.
-///
-/// There are three latencies: of the first surface, of the second surface, and of the pair of surfaces.
+/// The three latencies of a stereo frame: of the first eye, of the second eye, and from the first to the second eye.
+/// Each entry has the index of the eye that starts the latency and of the eye that ends the latency.
 pub(crate) const LATENCY_SURFACES: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
 
-/// Function that returns the time of the event that ends a surface's latency.
+/// Function that returns the time of the event that ends a latency. The argument is the index of the eye.
 pub(crate) type End = fn(&Pair, usize) -> Time;
 
-/// Name, definition and time function of each event that ends a latency.
+/// The events that can end a latency, with name, definition and time.
 pub(crate) const ENDS: [(&str, &str, End); 3] = [
     ("end_of_copy", "the end of its COPY", |pair, surface| pair.copied_at[surface]),
     ("swap", "the retrace at which the frame is swapped in", |pair, _| pair.shown_at),
     ("light", "the beam at the first visible pixel", |pair, _| pair.light_at),
 ];
 
-/// Returns the times of a stereo frame, or `None` if a surface has no separate TRANSFORM or COPY. `stages` must contain
-/// only the stages of this picture.
+/// Returns the times of a stereo frame, or `None` if both eyes share TRANSFORM or COPY. `stages` must contain only the
+/// stages of this picture.
 pub(crate) fn pair(record: &Record, shown_at: Time, stages: &[StageSpan]) -> Option<Pair> {
     let [Some(first), Some(second)] = [SurfaceId(0), SurfaceId(1)].map(|surface| own_times(stages, surface)) else {
         return None;
@@ -147,7 +143,6 @@ pub(crate) fn pair(record: &Record, shown_at: Time, stages: &[StageSpan]) -> Opt
     })
 }
 
-/// Returns the start of a surface's separate TRANSFORM and the end of its separate COPY.
 fn own_times(stages: &[StageSpan], surface: SurfaceId) -> Option<(Time, Time)> {
     let own = || stages.iter().filter(|span| span.surface == Some(surface));
     let transform_at = own().filter(|span| span.stage == Stage::Transform).map(|span| span.begin).min()?;
@@ -155,8 +150,8 @@ fn own_times(stages: &[StageSpan], surface: SurfaceId) -> Option<(Time, Time)> {
     Some((transform_at, copied_at))
 }
 
-/// Returns the time spans of `stage` that belong to `surface` or to all surfaces together. If `surface` is `None`,
-/// returns the spans of every surface.
+/// Returns the executions of `stage` for `surface`, or for every surface if `surface` is `None`. Executions for all
+/// surfaces together are included.
 fn spans_of(stages: &[StageSpan], stage: Stage, surface: Option<SurfaceId>) -> impl Iterator<Item = &StageSpan> {
     let concerned = move |span: &StageSpan| span.surface.is_none() || surface.is_none() || span.surface == surface;
     stages.iter().filter(move |span| span.stage == stage && concerned(span))
@@ -170,13 +165,12 @@ fn end_of(stages: &[StageSpan], stage: Stage, surface: Option<SurfaceId>) -> Opt
     spans_of(stages, stage, surface).filter_map(|span| span.end).max()
 }
 
-/// Returns the last surface that has a separate TRANSFORM.
 fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }
 
-/// Returns true if a SEND stage begins at `sampled_at`, the time at which a picture's pose was sampled. If so, SEND and
-/// the other stages use the same picture numbers.
+/// Returns true if a SEND stage begins at `sampled_at`. Otherwise SEND counts its pictures in another way than the
+/// other stages, so the latency has no part for SEND.
 fn sent_for_it(stages: &[StageSpan], sampled_at: Option<Time>) -> bool {
     spans_of(stages, Stage::Send, None).any(|span| Some(span.begin) == sampled_at)
 }

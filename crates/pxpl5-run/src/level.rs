@@ -9,7 +9,7 @@
 //! The cycle level needs no more detailed model of the ring. A property test of the ring's crate shows that the events
 //! and a word-by-word reference model give the same picosecond for every message.
 //!
-//! This crate has Rendering Control, Slats, just-in-time pixels, frameless rendering and the pipelines with six faces.
+//! This crate has Rendering Control, Slats, just-in-time pixels, frameless rendering and address recalculation.
 //! In these pipelines, all work of graphics processors is i860 code (docs/gp-timing.md). At the cycle level no time
 //! comes from the timing table, and `tests/cycle.rs` checks this. Other pipelines take the times of the table for work
 //! without code ([`Pipeline::without_code`](crate::Pipeline::without_code)), and their reports state this.
@@ -22,7 +22,7 @@ use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::{CommandKind, Layout, RendererTiming};
 use serde::{Deserialize, Serialize};
 
-/// The level of modelling, from formulas to single instructions.
+/// The level of detail of a simulation, from formulas to single instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
@@ -51,8 +51,8 @@ impl Level {
 
 pxpl5_sim::parameters::named!(Level, "level", Level::ALL.map(|level| (level.name(), level)));
 
-/// Returns the machine with renderer clocks computed from instruction lists. Clocks that an experiment has changed keep
-/// the changed values.
+/// Replaces the clocks of renderer commands by the lengths of the commands' programs. Clocks that an experiment has
+/// changed keep their values.
 pub(crate) fn with_clocks_of_instructions(machine: &MachineConfig, layout: &Layout) -> MachineConfig {
     let mut machine = machine.clone();
     let timing = &mut machine.renderer;

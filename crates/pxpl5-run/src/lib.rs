@@ -8,8 +8,7 @@
 //!   Head (tracker) -+                           +--> pxpl5-measure: latencies, errors in pixels, pictures
 //! ```
 //!
-//! A [`Registry`] lists all pipelines. To list, parse or compare pipelines, code iterates over the registry and names
-//! no pipeline.
+//! A [`Registry`] lists all pipelines. Commands and experiment files find pipelines in the registry by name.
 //!
 //! **Not here:** access to the host computer. A [`Host`] supplies the clock and the threads. Scenes are passed as
 //! values.
@@ -60,7 +59,7 @@ mod tunings;
 mod views;
 mod window;
 
-pub use assembly::check_faces;
+pub use assembly::check_coverage;
 pub use display_list::display_list;
 pub use dry_run::{DryRun, SeenTimes};
 pub use due::DuePictures;
@@ -89,7 +88,7 @@ pub use pipelines::{
 };
 pub use pxpl5_sim::parameters::{Key, KeyValue, KeyValues};
 pub use pxpl5_sim::{DefinedStatistics, KEPT_SAMPLES, Samples, Statistics, number_or_nan};
-pub use pxpl5_wire::display::{Aim, LightTimes};
+pub use pxpl5_wire::display::{Aim, Coverage, LightTimes};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
 pub use reprojection::{Every, Reprojection, Warp};

@@ -1,8 +1,7 @@
-//! Streaming observers, which process the records of a run during the run, so that old records can be discarded.
+//! Streaming observers, which compute results during a run, so that old records can be discarded.
 
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::ResultWindow;
 use pxpl5_machine::{Arrival, Record};
 use pxpl5_scene::Hmd;
@@ -12,42 +11,38 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Results of a run that can no longer change, and that a streaming observer has not received before.
+/// Results that became final since the last call of a streaming observer.
 ///
-/// After a run that keeps everything, one value of this type holds all results of the run.
+/// After a run that keeps everything, one value of this type has all results.
 #[derive(Clone, Copy, Debug)]
 pub struct FinalResults<'a> {
     /// Pipeline that draws the pictures.
     pub pipeline: &'a dyn Pipeline,
-    /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
-    /// middle and the first pixel.
+    /// Instant for which pictures are drawn, such as the middle of the time in which a picture lights.
     pub aim: Aim,
     /// Number of periods of the first display that the run simulates.
     pub fields: u64,
     /// The machine and its records in memory, including records of later pictures and periods.
     pub record: &'a Record,
-    /// Views of the tracked head that remain in memory. `None` without a head.
+    /// Views of the tracked head, with the requested poses in memory. `None` without a tracked head.
     pub head: Option<&'a Arc<HeadViews>>,
     /// Optics of the head-mounted display.
     pub hmd: Hmd,
-    /// Records of the requested updates of display memories, as far as the records are still in memory.
-    pub notes: &'a RequestedUpdates,
     /// Regions that have arrived since the last call of the observer. Some may belong to later pictures.
     pub arrivals: &'a [Arrival],
-    /// Pictures whose results can no longer change, in the order in which the pictures are shown.
+    /// Pictures that became final since the last call, in the order in which they were shown.
     pub pictures: &'a [PictureTimes],
-    /// The next picture that is shown after all of `pictures`. `None` at the end of the run.
+    /// The picture that is shown after the last entry of `pictures`. `None` at the end of the run.
     pub next: Option<&'a PictureTimes>,
-    /// First period whose results can still change. The observer has received every picture that is shown before this
-    /// period, even in part.
+    /// First period that is not final. All pictures that were shown before this period have been passed to the
+    /// observer.
     pub until: PeriodNumber,
-    /// Largest number of samples of each kind that are kept individually: see
-    /// [`Samples::keeping`](crate::Samples::keeping).
+    /// Largest number of samples that a statistic stores. See [`Samples::keeping`](crate::Samples::keeping).
     pub samples: usize,
-    /// Result window as determined so far. `None` if the run has no window.
+    /// Periods over which results are computed, as known so far. `None` if the run has no such periods.
     ///
-    /// The start of the result window may still move to a later period. All data that the observer received earlier
-    /// then lies outside the result window.
+    /// The start may still move to a later period. The observer then clears its results, because all earlier data lies
+    /// before the new start.
     pub window: Option<ResultWindow>,
 }
 
@@ -62,8 +57,8 @@ impl FinalResults<'_> {
         self.pictures.iter().filter(is_held)
     }
 
-    /// Returns the final periods of the result window, beginning with `next`. `next` is the first period that the
-    /// observer has not received.
+    /// Returns the final periods of the result window from period `next` on. `next` is the first period that the
+    /// observer has not yet processed.
     pub fn periods_from(&self, next: PeriodNumber) -> impl DoubleEndedIterator<Item = PeriodNumber> + Clone + use<> {
         let Self { until, window, .. } = *self;
         let (first, end) = window
@@ -74,8 +69,8 @@ impl FinalResults<'_> {
 
 /// A streaming observer of a run.
 ///
-/// The observer receives every record once, in order. The observer must store all data for later use, because the run
-/// discards old records.
+/// The observer receives every record once, in order. The run discards old records, so the observer must copy data that
+/// it needs later.
 pub trait StreamingObserver: Debug + Send {
     /// Processes results that can no longer change.
     fn take(&mut self, results: &FinalResults<'_>);

@@ -7,7 +7,6 @@ use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
 use crate::observers::FinalResults;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::{ResultWindow, WINDOW_DEFINITION};
 use crate::summary::Summary;
 use crate::tally::{Tally, of_picture};
@@ -19,16 +18,14 @@ use pxpl5_wire::PeriodNumber;
 use std::fmt;
 use std::sync::Arc;
 
-/// Result of an experiment: the machine's [`Record`] and the pictures that were shown. An outcome can be sent to
-/// another thread.
+/// Result of an experiment: the machine's [`Record`] and the pictures that were shown.
 ///
-/// `Debug` prints one line only, because errors contain an outcome, and a panic message must not list every vertex of
-/// the scene.
+/// `Debug` prints one line only. Errors contain an outcome, and a panic message must not list every vertex of the
+/// scene.
 pub struct Outcome {
     experiment: Experiment,
     record: Record,
     head: Option<Arc<HeadViews>>,
-    notes: RequestedUpdates,
     closed: Closed,
     reached: PeriodNumber,
     host_seconds: Option<f64>,
@@ -54,39 +51,39 @@ impl Outcome {
         reached: PeriodNumber,
         host_seconds: Option<f64>,
     ) -> Self {
-        let Assembled { machine, head, notes } = run;
+        let Assembled { machine, head } = run;
         let record = machine.into_record();
-        let closed = window.close(&experiment, &record, (head.as_ref(), &notes), reached);
-        Self { experiment, record, head, notes, closed, reached, host_seconds }
+        let closed = window.close(&experiment, &record, head.as_ref(), reached);
+        Self { experiment, record, head, closed, reached, host_seconds }
     }
 
-    /// Returns all final results of the run and the records in memory, for evaluation after the run.
+    /// Returns the results of the run for evaluation, as far as the records are in memory.
     #[must_use]
     pub fn final_results(&self) -> FinalResults<'_> {
-        let all = self.experiment.final_results(&self.record, self.head.as_ref(), &self.notes);
+        let all = self.experiment.final_results(&self.record, self.head.as_ref());
         FinalResults { pictures: self.pictures(), window: self.closed.window, ..all }
     }
 
-    /// Returns the result of the streaming observer ([`Experiment::observed_by`]), if the result has the type `T`.
+    /// Returns the result of the streaming observer ([`Experiment::observed_by`]) if it has the type `T`.
     #[must_use]
     pub fn observed<T: 'static>(&self) -> Option<&T> {
         self.closed.observed.as_deref()?.downcast_ref()
     }
 
-    /// Returns true if old records of the run were discarded ([`Keep`](crate::Keep)). Results without a streaming
-    /// observer then cover only the last periods.
+    /// Returns true if the run discarded old records ([`Keep`](crate::Keep)). Most results are then available only for
+    /// the last periods.
     #[must_use]
     pub fn has_discarded_records(&self) -> bool {
         self.observation().forgotten.before > Time::ZERO
     }
 
-    /// Returns the sums of results over the whole run.
+    /// Returns the statistics that the run has accumulated.
     #[must_use]
     pub const fn tally(&self) -> &Tally {
         &self.closed.tally
     }
 
-    /// Returns the experiment that was run, as requested by the caller.
+    /// Returns the experiment that was run.
     #[must_use]
     pub const fn experiment(&self) -> &Experiment {
         &self.experiment
@@ -101,8 +98,8 @@ impl Outcome {
         &self.closed.pictures
     }
 
-    /// Returns the result window: the display periods over which latencies, pictures due, errors and rates are
-    /// computed. Returns `None` if the run ended before the result window began.
+    /// Returns the display periods over which latencies, due pictures, errors and rates are computed. Returns `None` if
+    /// the run ended before these periods began.
     #[must_use]
     pub const fn window(&self) -> Option<ResultWindow> {
         self.closed.window
@@ -140,7 +137,7 @@ impl Outcome {
         Some(DuePictures::of_ends(self.closed.tally.ends(), every, &self.closed.window?))
     }
 
-    /// Returns a text that defines when a picture is due, when it is in time, and which pictures are counted.
+    /// Returns a text that defines for this pipeline when a picture is due, and when it is in time.
     #[must_use]
     pub fn due_definition(&self) -> String {
         format!("{}; {WINDOW_DEFINITION}", self.pipeline().due_definition())
@@ -169,8 +166,8 @@ impl Outcome {
         Some(seen * 1e3 / (window.periods() as f64 * self.field_ms()))
     }
 
-    /// Returns true if the viewer sees a complete screen at the end. A screen shows one picture, or the pictures of two
-    /// interlaced fields. All of these pictures must be in time.
+    /// Returns true if the viewer sees a complete screen at the end. With interlaced fields, a screen shows the
+    /// pictures of two fields, and both must have been in time.
     #[must_use]
     pub fn ends_complete(&self) -> bool {
         let (_, fields_of_a_screen) = self.record.display().rows_lit(PeriodNumber::FIRST);
@@ -189,13 +186,6 @@ impl Outcome {
     #[must_use]
     pub const fn head(&self) -> Option<&Arc<HeadViews>> {
         self.head.as_ref()
-    }
-
-    /// Returns the requested updates of display memories, in order. The result is empty for a pipeline without cube
-    /// faces.
-    #[must_use]
-    pub const fn face_notes(&self) -> &RequestedUpdates {
-        &self.notes
     }
 
     /// Returns the real time that the run took on the host computer, in seconds. Returns `None` on a host without a
@@ -218,13 +208,13 @@ impl Outcome {
         self.record.observed_events().into_iter()
     }
 
-    /// Returns the time spans of all stages of all pictures. The times of COPY are measured at the displays.
+    /// Returns the start and end of every stage of every picture. The times of COPY are measured at the displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
     }
 
-    /// Returns the CPU time of the software that receives one message on a graphics processor.
+    /// Returns the time that a graphics processor needs to receive one message.
     #[must_use]
     pub const fn receive_span(&self) -> Span {
         Span::from_ns(self.experiment.config.gp.message_ns)
@@ -269,8 +259,8 @@ impl Outcome {
         self.closed.tally.latency_ms.statistics_in(self.field_ms())
     }
 
-    /// Returns the latency parts of the complete pictures in the result window. Pictures without records in memory are
-    /// left out.
+    /// Returns the parts of the latencies of the complete pictures in the result window. Pictures without records in
+    /// memory are left out.
     #[must_use]
     pub fn latency_parts(&self) -> Vec<LatencyParts> {
         let stages = self.stages();
@@ -279,7 +269,7 @@ impl Outcome {
         parts.collect()
     }
 
-    /// Returns the summary that all levels of modelling provide, over the pictures in the result window.
+    /// Returns the results that are available at every level of detail, over the pictures in the result window.
     #[must_use]
     pub fn summary(&self) -> Summary {
         let tally = self.tally();

@@ -4,7 +4,7 @@ use crate::displays;
 use crate::pipelines;
 use crate::registry::{PipelineEntry, Registry};
 
-/// Pipelines that represent their families in a comparison of only a few rows.
+/// Pipelines that appear in a short comparison, one for each family.
 const USUAL: [&str; 7] =
     ["rendering-control", "slats", "frameless", "jitp-field", "jitp-scanline-racing", "arp-full", "arp-priority-line"];
 
@@ -16,10 +16,9 @@ impl Registry {
         Self::with(pipelines::entries(), displays::entries())
     }
 
-    /// Returns true if a pipeline represents its family in a comparison of only a few rows.
+    /// Returns true if a short comparison, with one row per family of pipelines, includes `pipeline`.
     ///
-    /// If `USUAL` has no pipeline of a family, the first compared pipeline of the family represents this family. An
-    /// example is a family of another crate.
+    /// Each family of the papers has one such pipeline. In any other family, the first compared pipeline is included.
     #[must_use]
     pub fn is_usual(&self, pipeline: &PipelineEntry) -> bool {
         let mut family = self.pipelines().iter().filter(|other| other.compared && other.family == pipeline.family);

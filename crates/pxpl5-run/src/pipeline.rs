@@ -1,20 +1,18 @@
 //! Interface between pipelines and experiments.
 
+use crate::head_views::HeadViews;
 use crate::picture_ends::PictureResult;
-use crate::pipelines::faces::requests::RequestedUpdates;
-use crate::pipelines::faces::segments::SegmentedScene;
 use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
-use address_recalculation::priority::Cell;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
 use pxpl5_gp::{CodeUse, HostTiming};
 use pxpl5_machine::{Arrival, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::Scene;
-use pxpl5_sim::Time;
 use pxpl5_sim::parameters::KeyValue;
 use pxpl5_sim::parameters::SettingError;
-use pxpl5_wire::display::{Aim, LightTimes};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::{Aim, Coverage, LightTimes};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -51,13 +49,8 @@ pub struct Setup {
     pub wanted: ViewsWanted,
     /// Function that returns the pose of the head alone, for displays that follow its rotation.
     pub poses: Poses,
-    /// For each structure of the scene, true if the structure moves by itself or with the head.
-    pub moving: Arc<[bool]>,
-    /// Cells (squares of the floor) in which each structure lies. Empty unless the pipeline cut the scene into cells
-    /// ([`Pipeline::cut`]).
-    pub cells: Arc<[Vec<Cell>]>,
-    /// Record of the updates of display memories that a pipeline with cube faces has requested.
-    pub notes: RequestedUpdates,
+    /// Scene from which the display list was made ([`Pipeline::prepare`]).
+    pub scene: Arc<Scene>,
     /// Instant for which a picture's view is drawn, within the time in which the picture is displayed. Examples are the
     /// middle and the first pixel.
     ///
@@ -93,6 +86,8 @@ pub struct PictureTimes {
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
     pub end: PictureResult,
+    /// Layer of the display that the picture replaces. 0 for a display that shows one picture at a time.
+    pub layer: usize,
 }
 
 impl PictureTimes {
@@ -139,20 +134,20 @@ pub trait Pipeline: PictureRules + Any + Debug + Send + Sync {
         config
     }
 
-    /// Returns true if the pipeline draws faces of a cube around the viewer's head. The display must accept cube faces
-    /// ([`DisplayConfig::shows_cube_faces`](pxpl5_wire::display::DisplayConfig::shows_cube_faces)).
-    fn draws_faces(&self) -> bool {
-        false
+    /// Returns the directions that a picture shows. The display must have the same coverage
+    /// ([`DisplayConfig::coverage`](pxpl5_wire::display::DisplayConfig::coverage)).
+    fn coverage(&self) -> Coverage {
+        Coverage::View
     }
 
-    /// Returns the scene in segments (parts of objects) that are drawn at different times. Returns `None` if the host
-    /// loads the scene unchanged.
+    /// Returns the scene in the form that the pipeline draws. The default is the unchanged scene. A pipeline can attach
+    /// data about the scene to the machine, for [`Pipeline::load`].
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] for a scene that cannot be cut into segments.
-    fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<SegmentedScene>, SettingError> {
-        Ok(None)
+    /// Returns a [`SettingError`] for a scene that the pipeline cannot draw.
+    fn prepare(&self, scene: &Arc<Scene>, _machine: &mut Machine) -> Result<Arc<Scene>, SettingError> {
+        Ok(Arc::clone(scene))
     }
 
     /// Returns a short description of the graphics processors' work that has no i860 code. Returns `None` if all work
@@ -188,12 +183,19 @@ pub trait PictureRules {
     /// are in order.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
 
-    /// Returns the number of display periods before `end` in which the display showed old cube faces in a new head
+    /// Returns the number of display periods before `end` in which the display showed old pictures in a new head
     /// direction.
     ///
     /// Each such period counts as a picture, although the pipeline drew nothing for this period.
     fn turned_periods(&self, _record: &Record, _end: Time) -> u64 {
         0
+    }
+
+    /// Returns the prediction interval of the orientation by which the display turns the middle pixel of a period. The
+    /// interval lasts from the measurement of the orientation to the instant for which the orientation was predicted.
+    /// Returns `None` if the display turns no pictures, and before the first report.
+    fn turn_interval(&self, _record: &Record, _head: &HeadViews, _aim: Aim, _period: PeriodNumber) -> Option<Span> {
+        None
     }
 
     /// Returns true if [`PictureRules::pictures`] and [`PictureRules::late_regions`] need no old records.

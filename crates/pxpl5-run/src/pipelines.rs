@@ -34,8 +34,8 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
     all
 }
 
-/// Checks that a renderer's backing store has room for a finished region. The region takes `blocks` blocks of
-/// `renderer.kept_bits` bits. Without room, no region could be copied.
+/// Checks that a backing store of `renderer.backing_bits` bits holds one finished region, because a region without room
+/// can never be copied. The region takes `blocks` blocks of `renderer.kept_bits` bits.
 fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     let renderer = &record.config().renderer;
     if renderer.backing_regions() >= blocks {
@@ -47,8 +47,8 @@ fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     Err(SettingError::value("renderer.backing_bits", expected, found))
 }
 
-/// Returns the display of a pipeline that draws interlaced fields of the papers' size. Returns an error for smaller
-/// displays and for other kinds of display.
+/// Returns the first display of the machine. Returns an error unless the display is interlaced and has at least 640 x
+/// 480 pixels.
 fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, SettingError> {
     let display: &NtscDisplay = (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
         let found = record.display().name();
@@ -70,25 +70,23 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Setti
     Ok(display)
 }
 
-/// Methods of shading with their names. The first method is the default.
+/// The methods of shading, with their names in experiment files.
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
-/// The key `shading` of pipelines that support both Phong and Gouraud shading.
+/// The setting `shading` of pipelines that support both Phong and Gouraud shading.
 const SHADING: Key = Key::new("shading", "method of shading", KeyValues::Names(&const { names(&SHADINGS) }));
 
-/// Returns the value of the setting [`SHADING`] for a method of shading.
 fn shading_value(shading: Shading) -> KeyValue {
     KeyValue::Name(SHADINGS[usize::from(shading == SHADINGS[1].1)].0)
 }
 
-/// Returns the shading in the settings, or the default.
 fn shading_or(settings: &PipelineSettings, default: Shading) -> Shading {
     let given = SHADINGS.iter().find(|(name, _)| settings.name(SHADING.name) == Some(name));
     given.map_or(default, |(_, shading)| *shading)
 }
 
-/// Returns the times of a picture that has its own view and that is shown by a swap. `stages` must be sorted by
-/// picture. Returns `None` before the picture's TRANSFORM.
+/// Returns the times of a picture that a swap shows at `shown_at`. Returns `None` before the picture's TRANSFORM.
+/// `stages` must be sorted by picture.
 fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
     let first = stages.partition_point(|span| span.picture < picture);
     let own = stages[first..].iter().take_while(|span| span.picture == picture);
@@ -101,15 +99,15 @@ fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> O
         copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),
         shown_at,
         end: PictureResult::Shown,
+        layer: 0,
     })
 }
 
-/// Returns the time stamps of the stage SAMPLE, at which a board took the newest view for drawing.
 fn samples(record: &Record) -> impl Iterator<Item = &Mark> {
     record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample)
 }
 
-/// Returns the regions that arrived after their deadline, in order of arrival. `due` gives the deadline of a region.
+/// Returns the regions that arrived after the deadline `due`, in order of arrival.
 fn late_regions(
     display: &NtscDisplay,
     record: &Record,

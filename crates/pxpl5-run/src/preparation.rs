@@ -1,4 +1,4 @@
-//! Preparation of a run: the dry run that finds the times at which views are seen, and the tuning of the predictor.
+//! Preparation of a run: a dry run, and the tuning of the predictor.
 
 use crate::dry_run::{DryRun, SeenTimes};
 use crate::dry_run_observer::DryRunObserver;
@@ -10,18 +10,16 @@ use crate::observers::{ObserverFactory, StreamingObserver};
 use crate::outcome::Outcome;
 use std::sync::Arc;
 
-/// Number of fields of a dry run for firmware that computes the display times of its views.
+/// Number of fields of a dry run if the firmware computes the display times of its views.
 ///
-/// This number suffices for the statistics of the prediction interval. If no picture is complete after this number of
-/// fields, the dry run takes all fields.
+/// The dry run then needs only the mean prediction interval. If no picture is complete within these fields, a second
+/// dry run takes all fields.
 const INTERVAL_FIELDS: u64 = 60;
 
-/// Results of the preparation of a run.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Preparation {
     /// Time at which each view is seen. `None` without prediction, or if the firmware computes these times itself.
     pub(crate) seen_times: Option<SeenTimes>,
-    /// Head with a tuned predictor. `None` if the predictor needs no tuning.
     pub(crate) head: Option<Arc<Head>>,
 }
 
@@ -40,13 +38,13 @@ impl Experiment {
         Ok(Self { dry_run, ..self })
     }
 
-    /// Returns the result that [`Experiment::after_dry_run`] has stored.
+    /// Returns the dry run that [`Experiment::after_dry_run`] has stored.
     #[must_use]
     pub const fn dry_run(&self) -> Option<&Arc<DryRun>> {
         self.dry_run.as_ref()
     }
 
-    /// Stores the result of [`Experiment::after_dry_run`] from an experiment that differs only in the predictor.
+    /// Stores the dry run of an experiment that differs only in the predictor.
     ///
     /// This method is hidden, because a wrong dry run would give wrong results. A comparison of predictors uses this
     /// method, so that one dry run serves all predictors.
@@ -56,7 +54,6 @@ impl Experiment {
         Self { dry_run, ..self }
     }
 
-    /// Performs a dry run if the predictor needs its result, and tunes the predictor if required.
     pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
         let Some(head) = self.predicting_head() else { return Ok(Preparation::default()) };
         let known = self.dry_run.clone().map_or_else(|| self.make_dry_run(head), Ok)?;
@@ -65,7 +62,8 @@ impl Experiment {
         Ok(Preparation { seen_times, head: tuned.map(Arc::new) })
     }
 
-    /// Returns the head if its pose is predicted and the predictor needs the result of a dry run.
+    /// Returns the head if a run needs a dry run: the firmware does not compute display times, or the predictor is not
+    /// tuned.
     fn predicting_head(&self) -> Option<&Arc<Head>> {
         let needs = |head: &&Arc<Head>| !self.pipeline.knows_when_seen() || head.is_to_be_tuned();
         self.head.as_ref().filter(|head| head.predicts()).filter(needs)
@@ -80,8 +78,6 @@ impl Experiment {
         Ok(Arc::new(dry_run))
     }
 
-    /// Runs the experiment without prediction. A streaming observer keeps two or three bytes per view, for any length
-    /// of the run.
     fn without_prediction(&self, head: &Head, fields: u64) -> Result<DryRun, ExperimentError> {
         let plain = Some(Arc::new(head.without_prediction()));
         let (keep, sums): (Keep, ObserverFactory) = (Keep::Statistics, || Box::<DryRunObserver>::default());
@@ -104,7 +100,6 @@ impl Experiment {
     }
 }
 
-/// Computes the result of a dry run that has kept all records.
 fn dry_run_of(outcome: &Outcome) -> DryRun {
     let mut sum = DryRunObserver::default();
     sum.take(&outcome.final_results());

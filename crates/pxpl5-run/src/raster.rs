@@ -6,25 +6,24 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// Correction that a display applies to a picture while the display scans the frame buffer.
+/// The correction that a display applies to a picture during scan-out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Raster {
     /// No correction: each pixel is displayed at the position at which the pixel was drawn.
     #[default]
     Plain,
-    /// The picture is shifted during the scan, by the error of the pose for which the picture was drawn (VDRT, Breglia
-    /// 1981).
+    /// Each line is shifted by the error of the pose for which the picture was drawn (VDRT, Breglia 1981).
     Vdrt,
-    /// A device moves the picture to the newest pose.
+    /// A device after the frame buffer moves the picture to the newest pose.
     Reprojected(Reprojection),
 }
 
 impl Raster {
-    /// All corrections of a display that have no parameters, with their names on the command line.
+    /// The corrections without parameters, with their names on the command line.
     pub const ALL: [(&str, Self); 2] = [("plain", Self::Plain), ("vdrt", Self::Vdrt)];
 
-    /// Returns the device that moves pictures. VDRT also counts as a device. Returns `None` without a correction.
+    /// Returns the correction as a device that moves pictures, or `None` without a correction.
     #[must_use]
     pub const fn reprojection(self) -> Option<Reprojection> {
         match self {
@@ -38,7 +37,6 @@ impl Raster {
 impl FromStr for Raster {
     type Err = SettingError;
 
-    /// Parses `plain`, `vdrt`, or a device such as `rotation every line, 100 us`.
     fn from_str(text: &str) -> Result<Self, SettingError> {
         let named = Self::ALL.iter().find(|(name, _)| *name == text).map(|(_, raster)| *raster);
         named.map_or_else(|| text.parse().map(Self::Reprojected), Ok)

@@ -1,4 +1,5 @@
-//! Registry of pipelines and displays. To list, parse or compare pipelines, code iterates over a [`Registry`].
+//! Registry of pipelines and displays. Commands and experiment files find a pipeline or a display in the registry by
+//! name.
 
 use crate::error::ExperimentError;
 use crate::experiment::{Estimates, Experiment};
@@ -14,7 +15,7 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// The condition that a pipeline must meet for a scene to count as drawn in time.
+/// The condition that a pipeline must meet so that a scene counts as drawn in time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Goal {
@@ -27,8 +28,8 @@ pub enum Goal {
     LatencyFields(f64),
 }
 
-/// Kind of triangles in the test scenes. A search draws test scenes of different sizes to find the largest number of
-/// triangles that a pipeline draws in time.
+/// Kind of triangles in a test scene. A search varies the number of these triangles to find the largest scene that a
+/// pipeline draws in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TestScene {
@@ -39,10 +40,10 @@ pub enum TestScene {
 }
 
 impl TestScene {
-    /// All kinds of triangles in test scenes, starting with the largest triangles.
+    /// All kinds of test scenes, beginning with the largest triangles.
     pub const ALL: [Self; 2] = [Self::FullScreen, Self::Typical];
 
-    /// Returns the name of the kind of triangles on the command line and in tables.
+    /// Returns the name of the test scene on the command line and in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -54,23 +55,23 @@ impl TestScene {
 
 pxpl5_sim::parameters::named!(TestScene, "test scene", TestScene::ALL.map(|scene| (scene.name(), scene)));
 
-/// Criterion by which a search finds the largest number of triangles that a pipeline draws in time.
+/// Settings of a search for the largest number of triangles that a pipeline draws in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitCriterion {
     /// Condition that every scene up to the limit must meet.
     pub goal: Goal,
     /// Kind of triangles in the test scene.
     pub scene: TestScene,
-    /// Number of fields to simulate for each size of the scene. The number is large enough to reach a steady state.
+    /// Number of fields to simulate for each size of the scene, large enough for a steady state.
     pub fields: u64,
 }
 
 /// The closed form of a pipeline: formulas that give the results of an experiment without simulated events.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosedForm {
-    /// Function that computes the summary of an experiment.
+    /// Function that computes the results of an experiment.
     pub summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
-    /// Functions that compute estimates for an experiment.
+    /// Functions that compute the estimates in error messages.
     pub estimates: Estimates,
 }
 
@@ -83,17 +84,17 @@ pub struct PipelineEntry {
     pub family: &'static str,
     /// Description of the pipeline in one line, with the publication.
     pub about: &'static str,
-    /// Preset of a machine on which the papers ran the pipeline, or on which the pipeline could have run.
+    /// Name of the machine preset for this pipeline. The papers ran the pipeline on this machine, or could have done
+    /// so.
     pub preset: &'static str,
     /// Settings of the pipeline (keys), with allowed values and help texts.
     pub keys: &'static [Key],
     /// Function that builds the pipeline from its settings. Settings that the user did not change have the values from
     /// the papers.
     pub build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
-    /// Function that returns the criterion for the largest scene, given the settings.
+    /// Function that returns, for the pipeline's settings, how a search finds the largest scene.
     pub limit: fn(&PipelineSettings) -> LimitCriterion,
-    /// Timing tables of the firmware. The name of a table, such as `jitp`, is the first part of the paths of the
-    /// table's parameters.
+    /// Timing tables of the firmware, with their names. The parameter paths of the table `jitp` begin with `jitp.`.
     pub tables: &'static [NamedTable],
     /// Closed form of the pipeline, or `None` if the pipeline has no closed form.
     pub closed_form: Option<ClosedForm>,
@@ -119,8 +120,6 @@ impl fmt::Display for PipelineEntry {
 impl FromStr for PipelineEntry {
     type Err = SettingError;
 
-    /// Returns the registry entry of a built-in pipeline, without its closed form. [`Registry::pipeline`] also finds
-    /// other pipelines.
     fn from_str(name: &str) -> Result<Self, SettingError> {
         Registry::of_papers().pipeline(name).copied()
     }
@@ -135,7 +134,6 @@ impl fmt::Display for DisplayEntry {
 impl FromStr for DisplayEntry {
     type Err = SettingError;
 
-    /// Returns the registry entry of a built-in display. [`Registry::display`] also finds other displays.
     fn from_str(name: &str) -> Result<Self, SettingError> {
         Registry::of_papers().display(name).copied()
     }
@@ -217,8 +215,8 @@ impl Registry {
         find_named("display", name, self.displays.iter().map(|entry| (entry.name, entry)))
     }
 
-    /// Returns the settings (keys) of all pipelines, without repetition. Each setting comes with the families of
-    /// pipelines that have this setting.
+    /// Returns the settings (keys) of all pipelines. Each setting appears once, with the families of pipelines that
+    /// have this setting.
     #[must_use]
     pub fn keys(&self) -> Vec<(Key, Vec<&'static str>)> {
         let mut all: Vec<(Key, Vec<&'static str>)> = Vec::new();

@@ -1,23 +1,18 @@
-//! Arrival times of a tracker's reports at the host. The times do not depend on the contents of the reports, so the
-//! times are known in advance even for an interactive head.
+//! Arrival times of a tracker's reports at the host. The times do not depend on the motion, so the times are known in
+//! advance even for an interactive head.
 
 use pxpl5_sim::Time;
 use std::collections::VecDeque;
 use tracking::tracker::TrackerReport;
 
-/// Arrival and measurement times of a report, without its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Coming {
-    /// Arrival time at the host.
     pub(crate) arrives: Time,
-    /// Time at which the content of the report was measured.
     pub(crate) measured: Time,
 }
 
-/// Times of future reports, in order of arrival.
 pub(crate) type Arrivals = Box<dyn Iterator<Item = Coming> + Send>;
 
-/// Contents of reports, in order of arrival. Each content is computed on demand.
 pub(crate) type Contents = Box<dyn Iterator<Item = TrackerReport> + Send>;
 
 impl Coming {
@@ -40,40 +35,34 @@ impl ReportSchedule {
         Self { arrivals, known: VecDeque::new() }
     }
 
-    /// Returns the first report that arrives at an instant or later. Returns `None` if no such report exists.
     pub(crate) fn from(&mut self, instant: Time) -> Option<Coming> {
         self.read_until_after(instant);
         let earlier = self.known.partition_point(|coming| coming.arrives < instant);
         self.known.get(earlier).copied()
     }
 
-    /// Returns the first report that arrives after an instant. Returns `None` if no such report exists.
     pub(crate) fn after(&mut self, instant: Time) -> Option<Coming> {
         self.from(Time(instant.0.saturating_add(1)))
     }
 
-    /// Returns the last report that had arrived by an instant, or `None` before the first report.
+    /// Returns the last report that arrives at `instant` or earlier.
     pub(crate) fn by(&mut self, instant: Time) -> Option<Coming> {
         self.read_until_after(instant);
         let there = self.known.partition_point(|coming| coming.arrives <= instant);
         self.known.get(there.checked_sub(1)?).copied()
     }
 
-    /// Discards reports that are not needed for `instant` or later instants.
-    ///
-    /// The last report before the instant stays, and so do reports that arrived at the same time.
+    /// Discards the reports before the last report that had arrived at `instant`.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         let Some(last) = self.by(instant) else { return };
         let earlier = self.known.partition_point(|coming| coming.arrives < last.arrives);
         self.known.drain(..earlier);
     }
 
-    /// Returns the number of tracker reports whose times are in memory.
     pub(crate) fn held(&self) -> usize {
         self.known.len()
     }
 
-    /// Computes the times of the reports that follow the last report in memory, until a report arrives after `instant`.
     fn read_until_after(&mut self, instant: Time) {
         while self.known.back().is_none_or(|last| last.arrives <= instant) {
             let Some(coming) = self.arrivals.next() else { return };

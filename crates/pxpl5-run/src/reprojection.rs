@@ -1,4 +1,4 @@
-//! A device between frame buffer and eye that moves the last picture to the current pose of the head.
+//! A device between frame buffer and eye that moves the last picture to the newest pose of the head.
 
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::REGION_SIZE;
@@ -10,17 +10,17 @@ use std::str::FromStr;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Warp {
-    /// The whole picture is shifted by yaw and pitch. The result is exact only in the middle of the picture.
+    /// The device shifts the whole picture by the change of yaw and pitch. The result is exact only in the middle.
     Shift,
-    /// The picture is rotated about the eye by a homography, as in timewarp, the method of current headsets. The result
+    /// The device rotates the picture about the eye by a homography, like the timewarp of current headsets. The result
     /// is exact for rotations of the head. Translations remain uncorrected.
     Rotation,
-    /// Each pixel is moved according to its depth. The result is exact for rotations and translations, except where the
-    /// picture lacks the content.
+    /// The device moves each pixel according to its depth. The result is exact, except where an object hid the content
+    /// in the last picture.
     Depth,
 }
 
-/// The part of a scan that is moved by the same pose. The device takes the newest pose for each part.
+/// The part of a scan for which the device uses one pose. Each part uses the newest pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Every {
@@ -37,15 +37,14 @@ pub enum Every {
 pub struct Reprojection {
     /// The method by which the device moves a picture.
     pub by: Warp,
-    /// The part of a scan that is moved by the same pose. The device takes the newest pose for each part.
+    /// The part of a scan for which the device uses one pose.
     pub every: Every,
-    /// Time from the instant at which the device takes a pose until the first pixel that is moved to this pose is lit,
-    /// in microseconds.
+    /// Time from the sample of a pose to the light of the first pixel that uses the pose, in microseconds.
     pub latency_us: u64,
 }
 
 impl Warp {
-    /// All methods by which a device moves a picture, with their names in experiment files.
+    /// All methods, with their names in experiment files.
     pub const ALL: [(&str, Self); 3] = [("shift", Self::Shift), ("rotation", Self::Rotation), ("depth", Self::Depth)];
 }
 
@@ -58,9 +57,9 @@ impl Every {
 
     /// Returns the default latency of a device, in microseconds (assumed).
     ///
-    /// The latency is 2,000 for one pose per field, because the graphics hardware of a current headset begins this long
-    /// before the retrace (range 1,000 to 4,000). For one pose per strip the latency is 500, and for one pose per line
-    /// 100 (range 64 to 1,000). In both cases the device works during the scan and holds only a few lines.
+    /// With one pose per field, the latency is 2,000 (range 1,000 to 4,000). The graphics hardware of a current headset
+    /// begins this long before the retrace. With one pose per strip the latency is 500. With one pose per line the
+    /// latency is 100 (range 64 to 1,000), because the device holds only a few lines.
     #[must_use]
     pub const fn usual_latency_us(self) -> u64 {
         match self {
@@ -83,8 +82,8 @@ impl Reprojection {
 
     /// The raster offset of VDRT (Breglia 1981): a shift whose pose is taken at the retrace, once per field.
     ///
-    /// The rates of yaw and pitch continue the shift during the field. The picture is assumed to extend beyond the edge
-    /// of the screen.
+    /// During the field, the shift continues at the rates of yaw and pitch. The picture is assumed to extend beyond the
+    /// edge of the screen.
     pub const VDRT: Self = Self { by: Warp::Shift, every: Every::Field, latency_us: 0 };
 }
 
@@ -97,13 +96,11 @@ impl fmt::Display for Reprojection {
     }
 }
 
-/// The forms in which a correction of the raster can be written as text.
 pub(crate) const RASTER_FORMS: &str = "plain, vdrt or a device such as `rotation every line, 100 us`";
 
 impl FromStr for Reprojection {
     type Err = SettingError;
 
-    /// Parses a text such as `rotation every line, 100 us`, the form in which a device is written.
     fn from_str(text: &str) -> Result<Self, SettingError> {
         let parse = || {
             let (way, latency) = text.split_once(", ")?;

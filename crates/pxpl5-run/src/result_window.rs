@@ -1,11 +1,11 @@
-//! The result window: the display periods over which latencies, pictures due, errors and rates are computed.
+//! The result window: the display periods over which latencies, due pictures, errors and rates are computed.
 //!
-//! The warm-up is over when [`WARM_UP_PERIODS`] have passed and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures
-//! were begun. The window begins after the warm-up, with the periods of the next picture that is due.
+//! The window begins with the first due picture after the warm-up. The warm-up ends after [`WARM_UP_PERIODS`] display
+//! periods and [`WARM_UP_PICTURES`](crate::WARM_UP_PICTURES) pictures.
 //!
-//! If a due picture in the first half of the run was not shown, the window begins with the first such picture. The
-//! window therefore leaves out no failure. Pictures before this window may have been in time only because queues were
-//! still empty. Pictures of the warm-up never have a latency or an error.
+//! If a due picture in the first half of the run was not shown, the window begins with this picture. No failure is
+//! therefore left out. Earlier pictures may have been in time only because queues were still empty. Pictures of the
+//! warm-up never have a latency or an error.
 //!
 //! The window ends with the last complete period, or one period earlier if no picture is ever due.
 
@@ -13,35 +13,33 @@ use crate::picture_ends::{PictureResult, PictureResults};
 use pxpl5_wire::PeriodNumber;
 use serde::{Deserialize, Serialize};
 
-/// Number of display periods at the start of a run that are not evaluated (assumed). In these periods, the first views
-/// are still being drawn, and the first pictures were requested too late.
+/// Number of display periods at the start of a run that are not evaluated (assumed). In these periods, the pipeline
+/// still fills.
 pub const WARM_UP_PERIODS: u64 = 8;
 
-/// Rule for the result window of a run, as text for readers of a report.
+/// The rule for the result window, as text in reports.
 pub const WINDOW_DEFINITION: &str = "latencies, due pictures, errors and rates cover one window; it begins with the 9th period of the \
     display, or with the first period of the fifth picture if that is later, and it ends with the last complete period; if a picture \
     due in the first half of the run was not shown, it begins with the first such picture, because earlier pictures may have profited \
     from empty queues; the first four pictures have no latency and no error";
 
-/// Periods of the first display over which all results of a run are computed.
+/// The display periods over which the results of a run are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ResultWindow {
     /// First display period of the result window.
     pub first_period: PeriodNumber,
     /// Last display period of the result window, inclusive.
     pub last_period: PeriodNumber,
-    /// Period of the first picture after the warm-up. `None` if the run shows no picture after the warm-up.
     #[serde(skip)]
     steady_from: Option<PeriodNumber>,
 }
 
 impl ResultWindow {
-    /// Returns the result window of a run that has ended. Returns `None` if no period remains after the warm-up, or if
-    /// the remaining periods are too few for a due picture.
+    /// Returns the result window of a run that has ended. Returns `None` if the periods after the warm-up are too few
+    /// for a due picture.
     ///
     /// `reached` is the first period that was not simulated to its end. `every` is the number of periods from one due
-    /// picture to the next, or `None` if no picture is ever due. `planned` is the first period after the requested
-    /// length of the run, and defines the first half of the run.
+    /// picture to the next, or `None` if no picture is ever due. `planned` is the requested number of periods.
     pub(crate) fn of(
         ends: &PictureResults,
         every: Option<u64>,
@@ -59,8 +57,8 @@ impl ResultWindow {
         (whole > 0).then_some(Self { last_period, ..begun })
     }
 
-    /// Returns the result window of a run that has not ended. All pictures in the periods before `known` must have been
-    /// recorded. The window ends with the requested end of the run.
+    /// Returns the result window so far, for a run that continues to the period `planned`. All pictures before the
+    /// period `known` must have been recorded.
     pub(crate) fn begun(ends: &PictureResults, every: Option<u64>, known: PeriodNumber, planned: PeriodNumber) -> Self {
         let steady_from = ends.steady_from();
         // The warm-up may take at most the first half of the requested run.
@@ -78,8 +76,8 @@ impl ResultWindow {
         Self { first_period: PeriodNumber(first), last_period, steady_from }
     }
 
-    /// Returns the result window without all intervals between due pictures that begin before the period `from`.
-    /// Returns `None` if nothing remains.
+    /// Moves the start of the window to `from` or later, by whole intervals between due pictures. Returns `None` if
+    /// nothing remains.
     pub(crate) fn not_before(self, from: Option<PeriodNumber>, every: Option<u64>) -> Option<Self> {
         let every = every.unwrap_or(1).max(1);
         let later = from.map_or(0, |from| from.0.saturating_sub(self.first_period.0).div_ceil(every) * every);
@@ -87,7 +85,7 @@ impl ResultWindow {
         (first_period <= self.last_period).then_some(Self { first_period, ..self })
     }
 
-    /// Returns true if a display period lies in the result window.
+    /// Returns true if the display period `period` lies in the result window.
     #[must_use]
     pub fn holds(&self, period: PeriodNumber) -> bool {
         (self.first_period..=self.last_period).contains(&period)
@@ -106,10 +104,10 @@ impl ResultWindow {
     }
 }
 
-/// Returns the period in which the first counted picture is due.
+/// Returns the due period of the first picture in the result window.
 ///
-/// The result is the first period between `start` and `end` whose due picture was not shown. If all due pictures were
-/// shown, the result is the first due period at or after `steady`.
+/// This picture is the first picture between `start` and `end` that was due but not shown. If there is none, the
+/// picture is the first due picture at or after `steady`.
 fn first_due(ends: &PictureResults, every: u64, [start, steady]: [u64; 2], end: u64) -> u64 {
     // The first picture defines in which periods pictures are due.
     let anchor = ends.first_from(start).unwrap_or(start);

@@ -30,8 +30,8 @@ impl Experiment {
         self.run_with(|_, _| {})
     }
 
-    /// Runs the experiment and reports progress. `progress` receives the number of simulated fields and the number of
-    /// all fields.
+    /// Runs the experiment and reports progress. `progress` receives the number of fields simulated so far and in
+    /// total.
     ///
     /// # Errors
     ///
@@ -43,10 +43,11 @@ impl Experiment {
         })
     }
 
-    /// Runs the experiment and calls `at` at the beginning of each field in `stops`, at every 60th field for progress
-    /// reports, and at the end of the run.
+    /// Runs the experiment and calls `at` at the start of each field in `stops`, at every 60th field, and at the end of
+    /// the run.
     ///
-    /// `at` receives the field and the machine before any event of this field. An error from `at` ends the run.
+    /// `at` receives the field and the machine, before the machine handles any event of this field. An error from `at`
+    /// ends the run.
     ///
     /// # Errors
     ///
@@ -59,11 +60,10 @@ impl Experiment {
         self.perform(self.prepare()?, stops, at)
     }
 
-    /// Builds and starts the machine, and returns a stepper, which runs the experiment in steps.
+    /// Builds and starts the machine, and returns a [`Stepper`], which runs the experiment in steps.
     ///
     /// If the head's pose is predicted, a dry run comes first. [`Stepper::finish`] returns the same result as
-    /// [`Experiment::run`]. With [`Experiment::record_traffic`], a stepper can also read the words in FIFOs and pixel
-    /// memory.
+    /// [`Experiment::run`]. With [`Experiment::record_traffic`], the stepper can also read FIFOs and pixel memory.
     ///
     /// # Errors
     ///

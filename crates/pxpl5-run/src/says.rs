@@ -17,7 +17,7 @@ impl Stepper {
         processors.chain((0..renderers).map(Board::Renderer)).chain((0..displays).map(Board::Display))
     }
 
-    /// Returns a description of a board's activity in one line. Returns `None` for the ring, and for a board that the
+    /// Returns one line of text about what a board does now. Returns `None` for the ring, and for a board that the
     /// machine does not have.
     #[must_use]
     pub fn says(&self, board: Board) -> Option<String> {
@@ -29,8 +29,8 @@ impl Stepper {
         }
     }
 
-    /// Returns details of a processor, one per line. Each line begins with the kind of the detail. Other boards have no
-    /// details.
+    /// Returns lines of text about a processor: its messages, memory, busy time and code. Returns no lines for boards
+    /// of other kinds.
     #[must_use]
     pub fn details(&self, board: Board) -> Vec<String> {
         let Some(look) = self.processor(board) else { return Vec::new() };
@@ -55,8 +55,7 @@ impl Stepper {
         lines
     }
 
-    /// Returns the last line of the first display's first surface that has begun to be lit in the current period.
-    /// Returns `None` before the first line.
+    /// Returns the line that the beam of the first display draws now. Returns `None` before the first line of a period.
     #[must_use]
     pub fn beam_line(&self) -> Option<u32> {
         let display = self.record().display();
@@ -65,9 +64,9 @@ impl Stepper {
         (0..lines).rev().find(lit)
     }
 
-    /// Returns the bit fields of one pixel's memory in a renderer's array, after all commands that have started.
+    /// Returns the memory of one pixel of a renderer, divided into bit fields, after all commands that have started.
     ///
-    /// Returns `None` under the same conditions as [`Stepper::array`], and for a position outside the array.
+    /// Returns `None` under the same conditions as [`Stepper::array`], and for `x` or `y` outside the array.
     #[must_use]
     pub fn pixel_fields(&self, renderer: usize, x: u32, y: u32) -> Option<Vec<PixelField>> {
         if x >= REGION_SIZE || y >= REGION_SIZE {
@@ -111,27 +110,25 @@ impl Stepper {
     }
 }
 
-/// A bit field of a pixel's memory, with its value.
+/// A group of successive bits in a pixel's memory, with its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PixelField {
-    /// Name of the bit field in the layout of pixel memory.
+    /// Name of the bits in the layout of pixel memory.
     pub name: String,
-    /// Index of the bit field's first bit, among the 208 bits of a pixel.
+    /// Index of the first bit, from 0 to 207.
     pub first: u32,
-    /// Width of the bit field in bits.
+    /// Number of bits.
     pub width: u32,
-    /// Value of the bit field. The first bit is the least significant bit.
+    /// Value of the bits. The first bit is the least significant bit.
     pub value: u128,
 }
 
-/// Returns one bit of a pixel. `plane` holds this bit of every pixel of a renderer's array. `x` is the column and `y`
-/// the row of the array.
+/// Returns the bit of the pixel in column `x` and row `y` of a renderer's array. `plane` holds one bit of every pixel.
 #[must_use]
 pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
     plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1
 }
 
-/// Returns a description of a processor's programs and of the messages that wait for these programs.
 fn processor_line(look: &GpSnapshot) -> String {
     let mut parts: Vec<String> = look.programs.iter().map(program).collect();
     if parts.is_empty() {

@@ -1,4 +1,4 @@
-//! Converts scenes to views for hosts.
+//! Converts scenes to views, which the firmware of a host requests.
 
 use crate::views::{Poses, Views, ViewsWanted};
 use pphigs::{EyeView, FrameView, ModelEdit};
@@ -8,7 +8,6 @@ use pxpl5_wire::ViewNumber;
 use pxpl5_wire::display::Display;
 use std::sync::Arc;
 
-/// Returns the view of a scene at a time, seen from a pose through the papers' head-mounted display.
 pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, time: Time, pose: &Pose) -> FrameView {
     let views = if eyes == 1 { vec![hmd.mono(pose)] } else { hmd.stereo(pose).to_vec() };
     let eye = |v: &pxpl5_scene::View| EyeView {
@@ -30,14 +29,13 @@ pub fn hmd_on(display: &dyn Display, hmd: &Hmd) -> Hmd {
     display.surfaces().first().map_or(*hmd, |surface| hmd.with_pixels(surface.width, surface.height))
 }
 
-/// Returns the poses of the scene's own head motion. The host follows this motion without any delay.
 pub(crate) fn poses(scene: &Scene, seed: u64) -> Poses {
     let motion: HeadMotion = scene.motion().with_seed(seed);
     Arc::new(move |known, _| motion.pose(known.0))
 }
 
 /// Returns two functions that give views of the scene's own head motion. The first function returns the view at the
-/// sample time. The second function returns the view at the time when the view is seen.
+/// time of the request. The second function returns the view at the later time when the view is seen.
 pub fn views(scene: &Arc<Scene>, seed: u64, hmd: Hmd, eyes: usize) -> (Views, ViewsWanted) {
     let motion: HeadMotion = scene.motion().with_seed(seed);
     let at = {

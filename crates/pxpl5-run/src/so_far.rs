@@ -29,7 +29,7 @@ impl Outcome {
 }
 
 impl Stepper {
-    /// Returns the observations up to now, with the shown pictures whose records are in memory ([`Keep`](crate::Keep)).
+    /// Returns the observations up to now, including the shown pictures in memory.
     #[must_use]
     pub fn so_far(&self) -> SoFar<'_> {
         let pictures = self.experiment().pipeline().pictures(self.record(), self.now());
@@ -62,7 +62,8 @@ impl SoFar<'_> {
         self.experiment.pipeline().as_ref()
     }
 
-    /// Returns the time spans of all stages of all pictures so far. The times of COPY are measured at the displays.
+    /// Returns the start and end of every stage of every picture so far. The times of COPY are measured at the
+    /// displays.
     #[must_use]
     pub fn stages(&self) -> Vec<StageSpan> {
         self.record.stages()
@@ -80,14 +81,13 @@ impl SoFar<'_> {
         self.end
     }
 
-    /// Returns the CPU time of the software that receives one message on a graphics processor.
+    /// Returns the time that a graphics processor needs to receive one message.
     #[must_use]
     pub const fn receive_span(&self) -> Span {
         Span::from_ns(self.experiment.config().gp.message_ns)
     }
 
-    /// Returns the latency parts of the last complete pictures. The list has at most `most` pictures, with the newest
-    /// last.
+    /// Returns the latency parts of the newest complete pictures, at most `most`. The newest picture is the last entry.
     #[must_use]
     pub fn last_latencies(&self, most: usize) -> Vec<LatencyParts> {
         let stages = self.stages();

@@ -20,7 +20,7 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::collections::BTreeSet;
 
-/// Reason for which a step of a run ended.
+/// Reason why a step of a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Pause {
     /// The step ended as requested: the requested instant was reached, or the awaited event happened.
@@ -34,9 +34,9 @@ pub enum Pause {
 }
 
 /// A running experiment that advances on request, for example by a field, a line or an event, or until a condition is
-/// met. [`Experiment::run`] is a stepper that runs to the end.
+/// met.
 ///
-/// Dividing a run into steps and reading its state change no result: trace, pictures and report stay the same.
+/// Steps change no result: trace, pictures and report are the same as those of [`Experiment::run`].
 #[derive(Debug)]
 pub struct Stepper {
     experiment: Experiment,
@@ -88,7 +88,7 @@ impl Stepper {
         self.reached(time)
     }
 
-    /// Handles events one after the other until `is_it` returns true for an event, or until the instant `limit`.
+    /// Handles events until `is_it` returns true for a handled event, or until the instant `limit`.
     pub fn run_until(&mut self, limit: Time, mut is_it: impl FnMut(&Self, &EventDescription) -> bool) -> Pause {
         let target = limit.min(self.end());
         loop {
@@ -130,8 +130,8 @@ impl Stepper {
         self.run_until(self.end(), |_, happening| happening.board == board)
     }
 
-    /// Runs until the next line of the first display's first surface begins to be lit. After the last line of a period,
-    /// runs to the next period.
+    /// Runs until the beam of the first display reaches the next line. After the last line of a period, runs to the
+    /// next period.
     pub fn step_line(&mut self) -> Pause {
         self.run_to(self.next_line())
     }
@@ -199,8 +199,8 @@ impl Stepper {
         self.record().display().period_at(self.now)
     }
 
-    /// Returns the instant at which the next line of the first surface begins to be lit. After the last line, returns
-    /// the beginning of the next period.
+    /// Returns the instant at which the beam of the first display reaches its next line. After the last line, returns
+    /// the start of the next period.
     #[must_use]
     pub fn next_line(&self) -> Time {
         let display = self.record().display();
@@ -232,7 +232,7 @@ impl Stepper {
         &mut self.run.machine
     }
 
-    /// Returns the observations so far. The hash in the record covers the trace up to now.
+    /// Returns the boards and all observations so far.
     #[must_use]
     pub const fn record(&self) -> &Record {
         self.run.machine.record()
@@ -259,7 +259,7 @@ impl Stepper {
 
     /// Returns the pixel memory of a renderer after all commands that have started.
     ///
-    /// Returns `None` unless [traffic is recorded](Experiment::record_traffic) and pixels are computed.
+    /// Returns `None` unless [messages are recorded](Experiment::record_traffic) and pixels are computed.
     #[must_use]
     pub fn array(&self, renderer: usize) -> Option<Lanes> {
         self.record().renderers().get(renderer)?.array_at(self.now)
@@ -271,8 +271,8 @@ impl Stepper {
         self.record().ring().channel_snapshots(self.now).collect()
     }
 
-    /// Returns the picture that the viewer of a surface sees now. Lines that the beam has already drawn are new. The
-    /// lines below remain from the previous picture.
+    /// Returns the picture on the screen of a surface now. Lines above the beam are new, and lines below the beam are
+    /// from the preceding scan.
     #[must_use]
     pub fn seen(&self, surface: SurfaceId) -> Option<RgbImage> {
         let mut left = surface.index();
@@ -292,8 +292,6 @@ impl Stepper {
         ideal_picture(&self.experiment, self.record(), self.run.head.as_deref(), surface, self.now)
     }
 
-    /// Sets the current instant. Adds all results that can no longer change to the sums of the run
-    /// ([`Tally`](crate::Tally)).
     fn advance_to(&mut self, now: Time) {
         self.now = now;
         self.last = None;
@@ -309,18 +307,16 @@ impl Stepper {
 
     /// Returns true if a machine at the end of the run may be in a deadlock.
     ///
-    /// A pipeline that waits for a swap has no pending work until the next display period begins, although the pipeline
-    /// is not in a deadlock. In a long run, the machine itself detects a deadlock. A deadlock can remain undetected
-    /// only in a short run, or if the last periods of a run had no work.
+    /// The machine itself detects a deadlock in a long run, but not in a short run or after a last period without work.
+    /// A pipeline that only waits for the next swap has the same state, so this test alone is not sufficient.
     fn may_be_deadlocked(&self) -> bool {
         let is_long = self.experiment.fields > SHORT_RUN && self.run.machine.idle_ticks() < IDLE_TICKS;
         self.run.machine.is_at_rest() && !is_long
     }
 
-    /// Returns a deadlock error if a machine without pending work at the end of the run would never continue.
+    /// Returns a deadlock error if the pipeline would never continue after the end of the run.
     ///
-    /// The method repeats the run with enough additional fields to detect a deadlock. The record of the original run
-    /// stays unchanged.
+    /// The method repeats the run with enough additional fields to detect a deadlock.
     fn deadlock(&self) -> Option<RunError> {
         let fields = self.experiment.fields + DEADLOCK_TICKS + 2;
         let longer = Experiment { fields, pixels: Pixels::Off, ..self.experiment.clone() };
@@ -343,10 +339,8 @@ fn too_short(experiment: &Experiment, partial: Outcome) -> ExperimentError {
     ExperimentError::TooShort { fields: experiment.fields, pictures, needed, partial: Box::new(partial) }
 }
 
-/// Estimates the number of fields until a picture after the warm-up is shown.
-///
-/// The estimate assumes that pictures keep their mean interval. For a single picture, the interval is the time until
-/// this picture was shown.
+/// Estimates the number of fields until a picture after the warm-up is shown, from the mean interval between the
+/// pictures so far. For a single picture, the interval is the time until this picture was shown.
 fn needed_by_run(partial: &Outcome) -> Option<u64> {
     let pictures = partial.pictures();
     if !pictures.iter().any(PictureTimes::is_shown) {
@@ -366,11 +360,12 @@ fn needed_by_run(partial: &Outcome) -> Option<u64> {
     Some((field + 1).max(partial.fields() + 1))
 }
 
-/// Returns the number of pictures of a run, including periods that show old cube faces in a new direction of the head.
+/// Returns the number of pictures of a run. A period that shows old pictures in a new direction of the head also
+/// counts.
 fn shown_in(outcome: &Outcome) -> u64 {
     outcome.tally().pictures.max(outcome.pipeline().turned_periods(outcome.record(), outcome.end()))
 }
 
-/// Number of fields below which a deadlock may remain undetected.
+/// Number of fields below which the machine may not detect a deadlock itself.
 const SHORT_RUN: u64 = 2 * DEADLOCK_TICKS;
 const IDLE_TICKS: u64 = 2;

@@ -1,16 +1,13 @@
-//! Fields at which a run pauses, to report progress and to call functions that the caller supplies.
+//! Fields at which a run pauses, to report progress and to call functions of the user.
 
 use crate::experiment::Experiment;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
 
-/// Number of fields between two progress reports. After each such interval, results that can no longer change are added
-/// to the sums of the run.
+/// Number of fields between two progress reports. At each report, a long run also discards old records.
 pub(crate) const PROGRESS_FIELDS: u64 = 60;
 
 impl Experiment {
-    /// Returns the fields at which a run stops: the requested fields, every [`PROGRESS_FIELDS`]-th field, and the end
-    /// of the run.
     pub(crate) fn stops(&self, asked: &[PeriodNumber]) -> impl Iterator<Item = PeriodNumber> {
         let end = self.end();
         let mut asked: BTreeSet<PeriodNumber> = asked.iter().copied().filter(|field| *field < end).collect();

@@ -1,10 +1,10 @@
-//! Summary of a run in a few numbers that all levels of modelling provide.
+//! The results of an experiment that are available at every level of detail.
 
 use crate::due::DuePictures;
 use pxpl5_sim::Samples;
 use pxpl5_sim::Statistics;
 
-/// Results of an experiment that all levels of modelling provide, over the pictures in the result window.
+/// Results of an experiment that are available at every level of detail, over the pictures in the result window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// Latency of every complete picture, by the pipeline's definition, in milliseconds.
@@ -22,18 +22,18 @@ pub struct Summary {
     /// Times from the start of an eye's TRANSFORM to the retrace at which its picture is swapped in, in milliseconds.
     /// Empty if the eyes share one TRANSFORM.
     pub eye_swap_latencies_ms: Samples,
-    /// Times from the start of an eye's TRANSFORM to the swap, counted in retraces. The retrace of the swap is
-    /// included.
+    /// Numbers of retraces from the start of an eye's TRANSFORM to the swap, including the retrace of the swap.
     pub eye_retraces: Samples,
-    /// Time for which a region of 15,360 pixels occupies its display port, in microseconds. NaN if no region arrived.
+    /// Time for which one region of 15,360 pixels occupies a port of the display, in microseconds. NaN if no region
+    /// arrived.
     pub region_copy_us: f64,
-    /// Mean time from the first to the last word of a picture's first copy, in milliseconds. See
-    /// [`PictureRules::copy_part`](crate::PictureRules::copy_part).
+    /// Mean duration of the first of a picture's copies, in milliseconds: the first eye, or the upper half of a field.
+    /// See [`PictureRules::copy_part`](crate::PictureRules::copy_part).
     pub first_copy_ms: f64,
-    /// Mean time from the first to the last word of a picture's second copy, in milliseconds. Zero if pictures have
-    /// only one copy. NaN if no picture was drawn.
+    /// Mean duration of the second of a picture's copies, in milliseconds. Zero if pictures have only one copy. NaN if
+    /// no picture was drawn.
     pub last_copy_ms: f64,
-    /// Mean time from the start of a picture to the first word of its first copy, in milliseconds.
+    /// Mean time from the start of TRANSFORM to the first word of the first copy, in milliseconds.
     pub copy_begins_ms: f64,
 }
 
@@ -51,8 +51,7 @@ impl Summary {
         self.eye_swap_latencies_ms.statistics()
     }
 
-    /// Returns the statistics of the times from the start of an eye's TRANSFORM to the swap, counted in retraces. The
-    /// retrace of the swap is included.
+    /// Returns the statistics of the numbers of retraces from the start of an eye's TRANSFORM to the swap.
     #[must_use]
     pub fn eye_retraces(&self) -> Statistics {
         self.eye_retraces.statistics()
@@ -66,12 +65,12 @@ impl Summary {
     }
 }
 
-/// Returns the number of retraces in a latency that ends with a retrace, including this last retrace. `field_ms` is the
+/// Returns the number of retraces in a latency that ends with a retrace, including this retrace. `field_ms` is the
 /// duration of a display period in milliseconds.
 #[must_use]
 pub fn retraces(latency_ms: f64, field_ms: f64) -> f64 {
-    /// Tolerance for rounding errors of the quotient (latency divided by duration of a period), in display periods. A
-    /// latency of a whole number of periods must give exactly this number.
+    /// Tolerance in display periods. Without this tolerance, rounding errors would change the result for a latency of a
+    /// whole number of periods.
     const ROUNDING: f64 = 1e-9;
     (latency_ms / field_ms - ROUNDING).ceil()
 }

@@ -1,13 +1,12 @@
-//! Sums of a run's results, updated during the run.
+//! Statistics of a run's results, updated during the run.
 //!
-//! Pictures are processed once, in the order in which the pictures are shown, after all records of a picture are
-//! complete. With a limit on samples, memory stays constant except for one byte per period ([`PictureResults`]).
+//! Each picture is processed once, after all its records are complete, in the order in which pictures are shown. Memory
+//! grows only by one byte per display period if the number of samples is limited.
 
 use crate::latency::{ENDS, LATENCY_PARTS, LATENCY_SURFACES, Pair, pair, parts};
 use crate::observers::FinalResults;
 use crate::picture_ends::PictureResults;
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::summary::retraces;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
@@ -19,8 +18,8 @@ use std::collections::BTreeMap;
 /// Largest number of late regions that a [`Tally`] lists individually.
 pub const LATE_REGIONS_LISTED: usize = 20;
 
-/// Sums of a run's results. Times are in milliseconds and cover the pictures in the run's result window
-/// ([`ResultWindow`](crate::ResultWindow)). Latencies cover only the complete pictures.
+/// Statistics of a run's results, over the pictures in the result window ([`ResultWindow`](crate::ResultWindow)). Times
+/// are in milliseconds. Latencies cover only the complete pictures.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// Number of pictures that were begun and evaluated, complete or not.
@@ -40,59 +39,49 @@ pub struct Tally {
     pub eye_ms: Samples,
     /// Times from the start of an eye's TRANSFORM to the swap that shows its picture.
     pub eye_swap_ms: Samples,
-    /// Times from the start of an eye's TRANSFORM to the swap, counted in retraces. The retrace of the swap is
-    /// included.
+    /// Numbers of retraces from the start of an eye's TRANSFORM to the swap, including the retrace of the swap.
     pub eye_retraces: Samples,
-    /// Times from the first to the last word of a picture's first copy and of its second copy, for all pictures in the
-    /// result window.
+    /// Durations of the first and of the second copy of each picture in the result window.
     pub copy_ms: [Samples; 2],
-    /// Times from the start of a picture to the first word of its first copy.
+    /// Times from the start of TRANSFORM to the first word of the first copy.
     pub copy_begins_ms: Samples,
     /// Durations of TRANSFORM and of RENDER, for all pictures in the result window.
     pub stage_ms: [(Stage, Samples); 2],
-    /// Number of updates in the result window that were shown, by display memory. Memories without updates have no
-    /// entry.
-    pub memory_updates: BTreeMap<usize, u64>,
+    /// Number of pictures in the result window, by layer of the display. Layers without pictures have no entry.
+    pub updates: BTreeMap<usize, u64>,
     /// Number of regions that arrived after their deadline.
     pub late_regions: u64,
     /// The first late regions, at most [`LATE_REGIONS_LISTED`].
     pub first_late_regions: Vec<LateRegion>,
-    /// Number of records (time stamps, arrivals, swaps) that were read to compute the sums. A record that is read twice
-    /// counts twice.
+    /// Number of records (time stamps, arrivals, swaps) that were read for these statistics. A record that is read
+    /// twice counts twice.
     pub records_read: u64,
-    /// Latencies by surface or pair of surfaces, in the order of [`LATENCY_SURFACES`] and [`ENDS`].
     surfaces_ms: Vec<Samples>,
     ends: PictureResults,
-    /// First period of the result window. `None` while the window is unknown.
     window_from: Option<PeriodNumber>,
-    /// Sum over all regions of the time for which a region occupies its display port, in milliseconds.
     region_ms: f64,
     region_pixels: u64,
-    /// First display period after the run.
     end: PeriodNumber,
     field_ms: f64,
-    /// Largest number of samples of each kind that are kept.
     limit: usize,
 }
 
-/// Latencies of one surface or of a pair of surfaces. The latency of a pair lasts from the first surface's start to the
-/// second surface's end.
+/// Latencies of one eye, or from the first eye of a pair to the second eye.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceLatency<'a> {
-    /// Surface whose TRANSFORM begins the latency.
+    /// Index of the eye whose TRANSFORM begins the latency.
     pub first: usize,
-    /// Surface whose event ends the latency.
+    /// Index of the eye whose event ends the latency.
     pub last: usize,
     /// Short name of the event that ends the latency: `end_of_copy`, `swap` or `light`.
     pub until: &'static str,
     /// Description of the event that ends the latency.
     pub event: &'static str,
-    /// Latencies from the start of TRANSFORM on the first surface to the event, in milliseconds.
+    /// Latencies from the start of TRANSFORM to the event, in milliseconds.
     pub ms: &'a Samples,
 }
 
-/// Times of the first and the last word of a copy. A copy transfers the regions of one eye under Rendering Control, and
-/// of half a field under Slats.
+/// The first and the last word of a copy: one eye under Rendering Control, half a field under Slats.
 struct CopySpan {
     begin: Time,
     end: Time,
@@ -101,8 +90,6 @@ struct CopySpan {
 type Copies = BTreeMap<(PictureNumber, u8), CopySpan>;
 
 impl Tally {
-    /// Creates empty sums for a run that ends at the beginning of the period `end`. At most `limit` samples of each
-    /// kind are kept.
     pub(crate) fn new(end: PeriodNumber, field_ms: f64, limit: usize) -> Self {
         let none = || Samples::keeping(limit);
         Self {
@@ -118,7 +105,7 @@ impl Tally {
             copy_ms: [none(), none()],
             copy_begins_ms: none(),
             stage_ms: [Stage::Transform, Stage::Render].map(|stage| (stage, none())),
-            memory_updates: BTreeMap::new(),
+            updates: BTreeMap::new(),
             late_regions: 0,
             first_late_regions: Vec::new(),
             records_read: 0,
@@ -133,13 +120,11 @@ impl Tally {
         }
     }
 
-    /// Moves the end of the run to an earlier period.
     pub(crate) fn end_early(&mut self, reached: PeriodNumber) {
         self.end = self.end.min(reached);
     }
 
-    /// Counts pictures in the order in which the pictures are shown. These counts cover the whole run, not only the
-    /// result window.
+    /// Counts pictures of the whole run, not only of the result window, in the order in which they are shown.
     pub(crate) fn count(&mut self, record: &Record, pictures: &[PictureTimes]) {
         for times in pictures {
             let period = record.display().period_at(times.shown_at);
@@ -152,10 +137,9 @@ impl Tally {
         }
     }
 
-    /// Adds the times of counted pictures that lie in the result window. All records of these pictures must be
-    /// complete.
+    /// Adds the times of pictures in the result window. All records of these pictures must be complete.
     pub(crate) fn take(&mut self, results: &FinalResults<'_>) {
-        let FinalResults { pipeline, record, notes, window, .. } = *results;
+        let FinalResults { pipeline, record, window, .. } = *results;
         let Some(window) = window else { return };
         if self.window_from != Some(window.first_period) {
             // The window begins later than assumed, so all samples so far lie before the window.
@@ -172,18 +156,11 @@ impl Tally {
         complete.clone().for_each(|times| self.take_complete(record, times, of_picture(&stages, times.picture)));
         self.take_eye_swaps(&stages, complete);
         self.take_stages(&stages, &steady);
-        self.take_memories(notes, &steady);
+        steady.iter().for_each(|times| *self.updates.entry(times.layer).or_default() += 1);
     }
 
-    fn take_memories(&mut self, notes: &RequestedUpdates, pictures: &[PictureTimes]) {
-        let memories: BTreeMap<PictureNumber, usize> =
-            notes.all().iter().map(|note| (note.picture, note.memory)).collect();
-        for memory in pictures.iter().filter_map(|times| memories.get(&times.picture)) {
-            *self.memory_updates.entry(*memory).or_default() += 1;
-        }
-    }
-
-    /// Clears the samples of the result window. Counts over the whole run keep their values.
+    /// Clears the samples after the result window has moved to a later start. Counts over the whole run keep their
+    /// values.
     fn restart(&mut self, first_period: PeriodNumber) {
         let fresh = Self::new(self.end, self.field_ms, self.limit);
         let before = std::mem::replace(self, fresh);
@@ -219,8 +196,8 @@ impl Tally {
         }
     }
 
-    /// Returns the latencies of each surface and of the pair of surfaces. The iterator is empty if the surfaces share
-    /// one TRANSFORM.
+    /// Returns the latencies of each eye and of the pair of eyes. The iterator is empty if the eyes share one
+    /// TRANSFORM.
     pub fn latencies_of_surfaces(&self) -> impl Iterator<Item = SurfaceLatency<'_>> {
         let latencies = LATENCY_SURFACES.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
         let with = self.surfaces_ms.iter().zip(latencies).filter(|(ms, _)| ms.count() > 0);
@@ -239,8 +216,7 @@ impl Tally {
         }
     }
 
-    /// Adds the times from the start of an eye's TRANSFORM on the first slave processor to the swap that shows the
-    /// picture.
+    /// Adds the times from the start of an eye's TRANSFORM on any slave to the swap that shows the picture.
     fn take_eye_swaps<'a>(&mut self, stages: &[StageSpan], complete: impl Iterator<Item = &'a PictureTimes>) {
         let shown: BTreeMap<PictureNumber, Time> = complete.map(|times| (times.picture, times.shown_at)).collect();
         let mut begins: BTreeMap<(PictureNumber, SurfaceId), Time> = BTreeMap::new();
@@ -277,8 +253,8 @@ impl Tally {
         }
     }
 
-    /// Adds regions that have arrived. Each region must be added once. `message` is the time for which one message
-    /// occupies a channel of the ring.
+    /// Adds the times for which arrived regions have occupied ports of the display. `message` is the duration of one
+    /// message on the ring.
     pub(crate) fn take_arrivals(&mut self, arrivals: &[Arrival], message: Span) {
         for arrival in arrivals {
             let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);
@@ -287,15 +263,14 @@ impl Tally {
         }
     }
 
-    /// Adds regions that arrived late. Each region must be added once.
     pub(crate) fn take_late(&mut self, late: &[LateRegion]) {
         self.late_regions += late.len() as u64;
         let room = LATE_REGIONS_LISTED - self.first_late_regions.len();
         self.first_late_regions.extend(late.iter().take(room));
     }
 
-    /// Returns the mean time for which a region occupies its display port, in microseconds, scaled to 15,360 pixels.
-    /// Returns NaN if no region arrived.
+    /// Returns the mean time for which 15,360 pixels of a region occupy a port of the display, in microseconds. Returns
+    /// NaN if no region arrived.
     #[must_use]
     pub fn region_copy_us(&self) -> f64 {
         self.region_ms * 1e3 * 15_360.0 / self.region_pixels as f64
@@ -306,7 +281,6 @@ impl Tally {
     }
 }
 
-/// Returns the part of `stages` that belongs to one picture. `stages` must be sorted by picture.
 pub(crate) fn of_picture(stages: &[StageSpan], picture: PictureNumber) -> &[StageSpan] {
     let first = stages.partition_point(|span| span.picture < picture);
     let count = stages[first..].iter().take_while(|span| span.picture == picture).count();

@@ -1,4 +1,4 @@
-//! Results of the tuning of predictors, which several runs share.
+//! A cache of tuned predictors, which several runs share.
 
 use crate::fingerprint::Fingerprint;
 use std::collections::BTreeMap;
@@ -7,21 +7,21 @@ use tracking::motion::Motion;
 use tracking::predict::{PredictorConfig, Tuned, training_seed, tune};
 use tracking::tracker::TrackerModel;
 
-/// Inputs of a tuning: a hash of motion, tracker and predictor, the interval in picoseconds, and the seed of the noise.
+/// Hash of motion, tracker and predictor; prediction interval in picoseconds; seed of the noise.
 type Key = (Fingerprint, u64, u64);
 
-/// A cache of tuned predictors. Heads with equal motions and settings are tuned once for each prediction interval.
+/// A cache of tuned predictors, by head motion, settings and prediction interval.
 ///
-/// The result of a tuning follows from its inputs alone, so the cache changes no result. Comparisons give one cache to
-/// all of their runs ([`Head::sharing_tunings`](crate::Head::sharing_tunings)).
+/// Equal inputs have equal results, so the cache changes no result. All runs of a comparison share one cache
+/// ([`Head::sharing_tunings`](crate::Head::sharing_tunings)).
 #[derive(Debug, Default)]
 pub struct Tunings {
     known: Mutex<BTreeMap<Key, Arc<OnceLock<Tuned>>>>,
 }
 
 impl Tunings {
-    /// Returns the tuned predictor, from the cache if the same tuning was done before. Threads that request the same
-    /// tuning wait for one result.
+    /// Returns the tuned predictor from the cache, or tunes it. Threads that request the same predictor wait for one
+    /// result.
     pub(crate) fn tuned(
         &self,
         motion: &(dyn Motion + Send + Sync),
@@ -41,20 +41,19 @@ impl Tunings {
         *place.get_or_init(|| tuned_once(motion, tracker, interval_ps, base, evaluated_seed))
     }
 
-    /// Returns the number of tunings in the cache.
+    /// Returns the number of predictors in the cache.
     #[must_use]
     pub fn len(&self) -> usize {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).len()
     }
 
-    /// Returns true if no head was tuned yet.
+    /// Returns true if the cache has no predictor.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// Tunes a predictor whose settings [`Head::new`](crate::Head::new) has checked.
 pub(crate) fn tuned_once(
     motion: &(dyn Motion + Send + Sync),
     tracker: &TrackerModel,

@@ -1,4 +1,4 @@
-//! Memory management of long runs: adds the results of old records to the sums of the run and discards the records.
+//! Bounded memory in long runs: adds final results to the statistics of the run, and discards their records.
 
 use crate::assembled::Assembled;
 use crate::experiment::Experiment;
@@ -6,7 +6,6 @@ use crate::head_views::HeadViews;
 use crate::keep::Keep;
 use crate::observers::{FinalResults, StreamingObserver};
 use crate::pipeline::{PictureTimes, Pipeline};
-use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::result_window::ResultWindow;
 use crate::tally::Tally;
 use pxpl5_machine::Record;
@@ -16,35 +15,32 @@ use pxpl5_wire::PeriodNumber;
 use std::any::Any;
 use std::sync::Arc;
 
-/// Number of records (time stamps, arrivals, swaps, poses and reports) below which no record is discarded. A record
-/// takes about 80 bytes.
+/// Number of records below which a run discards nothing. A record, such as an arrival or a swap, takes about 80 bytes.
 const LEAST_RECORDS: usize = 32_768;
 
-/// Number of newest pictures whose results can still change, because later records may belong to these pictures.
+/// Number of pictures after which the results of a picture are final. Records of a picture may arrive after those of
+/// later pictures.
 const PICTURES_HELD: usize = 32;
 const PERIODS_HELD: u64 = 32;
 
-/// The sums of a run's results so far, and the limits that separate needed records from records to discard.
+/// The statistics of a run so far, and the rule that decides which records are still needed.
 ///
-/// A picture is final (its results can no longer change) after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`]
-/// display periods. Records are discarded if the records are at least [`PERIODS_HELD`] periods older than the first
-/// picture that is not final. All earlier periods are final too. Records of the head are kept for [`PERIODS_HELD`] more
-/// periods, because views are predicted from older reports.
+/// A picture is final after [`PICTURES_HELD`] later pictures and [`PERIODS_HELD`] display periods. Records older than
+/// the first picture that is not final are kept for [`PERIODS_HELD`] periods. Requested head poses are kept twice as
+/// long, because views are predicted from older reports.
 #[derive(Debug)]
 pub(crate) struct Window {
     tally: Tally,
     sum: Option<Box<dyn StreamingObserver>>,
     forgets: bool,
     samples: usize,
-    /// Latest instant up to which all shown pictures are in the sums of the run.
     taken_to: Option<Time>,
-    /// Number of arrivals of regions in memory that are already in the sums of the run.
+    /// Number of arrivals in memory that are already part of the statistics.
     arrivals_taken: usize,
-    /// Number of records in memory at which results are added to the sums, and old records discarded, the next time.
+    /// Number of records in memory at which old records are discarded the next time.
     next_look: usize,
 }
 
-/// Results of a run that has ended: the sums of all results, and the pictures whose records are kept.
 #[derive(Debug)]
 pub(crate) struct Closed {
     pub(crate) tally: Tally,
@@ -68,8 +64,8 @@ impl Window {
         Self { tally, sum, forgets, samples, taken_to: None, arrivals_taken: 0, next_look: LEAST_RECORDS }
     }
 
-    /// Adds results that can no longer change to the sums of the run, and discards the records of these results. Does
-    /// nothing if the run has few records or must keep all records.
+    /// Adds final results to the statistics and discards their records. Does nothing if the run has few records or must
+    /// keep all records.
     pub(crate) fn look(&mut self, experiment: &Experiment, run: &mut Assembled, now: Time) {
         if !self.forgets || run.records() < self.next_look {
             return;
@@ -87,8 +83,7 @@ impl Window {
         self.next_look = LEAST_RECORDS.max(2 * run.records());
     }
 
-    /// Adds pictures whose results can no longer change to the sums of the run. Returns the instant from which records
-    /// are still needed for all other pictures.
+    /// Adds final pictures to the statistics. Returns the instant from which records are still needed.
     fn take_final(&mut self, experiment: &Experiment, run: &Assembled, now: Time) -> Option<Time> {
         let record = run.machine.record();
         let fresh = self.fresh(experiment.pipeline.as_ref(), record, now);
@@ -106,7 +101,7 @@ impl Window {
         let until = record.display().period_at(begin);
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let (next, samples) = (held.first(), self.samples);
-        let all = experiment.final_results(record, run.head.as_ref(), &run.notes);
+        let all = experiment.final_results(record, run.head.as_ref());
         // The counts are updated first, because the window depends on them.
         self.tally.count(record, pictures);
         let every = experiment.pipeline.periods_a_picture(record);
@@ -117,25 +112,24 @@ impl Window {
         Some(begin)
     }
 
-    /// Returns the pictures that are not in the sums of the run yet, in the order in which the pictures are shown.
+    /// Returns the pictures that are not yet part of the statistics, in the order in which they are shown.
     fn fresh(&self, pipeline: &dyn Pipeline, record: &Record, now: Time) -> Vec<PictureTimes> {
         let pictures = pipeline.pictures(record, now).into_iter();
         pictures.filter(|times| Some(times.shown_at) > self.taken_to).collect()
     }
 
-    /// Passes final results to all streaming observers.
     fn take(&mut self, results: &FinalResults<'_>) {
         self.tally.take_arrivals(results.arrivals, results.record.message_span());
         self.tally.take(results);
         self.sum.iter_mut().for_each(|sum| sum.take(results));
     }
 
-    /// Adds the remaining results of a run that ended in the period `reached`. Returns the complete results.
+    /// Adds all remaining results of a run that ended in the period `reached`.
     pub(crate) fn close(
         mut self,
         experiment: &Experiment,
         record: &Record,
-        (head, notes): (Option<&Arc<HeadViews>>, &RequestedUpdates),
+        head: Option<&Arc<HeadViews>>,
         reached: PeriodNumber,
     ) -> Closed {
         let pipeline = experiment.pipeline.as_ref();
@@ -148,7 +142,7 @@ impl Window {
         // All remaining pictures and arrivals are final at the end of the run.
         let arrivals = &record.observation().arrivals[self.arrivals_taken..];
         let samples = self.samples;
-        let all = experiment.final_results(record, head, notes);
+        let all = experiment.final_results(record, head);
         self.tally.count(record, &pictures);
         let every = pipeline.periods_a_picture(record);
         let window = ResultWindow::of(self.tally.ends(), every, reached, experiment.end());
@@ -158,13 +152,14 @@ impl Window {
     }
 }
 
-/// Returns the beginning of the period that is [`PERIODS_HELD`] periods earlier than the period of `instant`.
+/// Returns the start of the period that is [`PERIODS_HELD`] periods before `instant`.
 fn before(record: &Record, instant: Time) -> Option<Time> {
     let period = record.display().period_at(instant).before(PERIODS_HELD)?;
     Some(record.tick(period))
 }
 
-/// Returns the mean duration of a period of the first display over 60,000 periods, in milliseconds.
+/// Returns the mean duration of a period of the first display, in milliseconds. Successive periods of NTSC differ by a
+/// picosecond, so the mean covers 60,000 periods.
 pub(crate) fn field_ms(record: &Record) -> f64 {
     record.tick(PeriodNumber(60_000)).since(Time::ZERO).as_ms() / 60_000.0
 }

@@ -283,6 +283,6 @@ fn what_is_no_single_quadratic_is_refused() {
         let mut settings = settings();
         settings.set(path, text, "test").expect("a setting");
         let error = PixelPlanesRenderer::new(&settings, ArrayKind::Lanes).expect_err("not supported").to_string();
-        assert!(error.contains(part) && error.contains("--on pixel-planes"), "{error}");
+        assert!(error.contains(part) && error.contains("on Pixel-Planes 5"), "{error}");
     }
 }

@@ -30,7 +30,7 @@ mod light;
 mod surface;
 
 pub use aim::{Aim, LightTimes};
-pub use config::DisplayConfig;
+pub use config::{Coverage, DisplayConfig};
 pub use double_buffer::{BufferReceipt, DoubleBuffer};
 pub use light::{PixelLight, ScanOrder};
 pub use surface::{Counter, Surface};

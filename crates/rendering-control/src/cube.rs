@@ -9,10 +9,10 @@
 //!   renderers, display memories:              COPY u: colours, then depths          swap when all are there
 //! ```
 //!
-//! The division of work is the same as in Rendering Control (TR94). One graphics processor is the
-//! [`master`](fn@master). The other graphics processors are slaves with two programs each. A token for each region
-//! moves from slave to slave. The rules of TR94 for the start of a stage apply to updates instead of frames. An
-//! *update* draws one display memory: all six faces, in the grid of [`address_recalculation::region_grid`].
+//! The programs are those of Rendering Control ([`host`](crate::host()), [`master`](crate::master()),
+//! [`slave`](crate::slave())), which draw any kind of picture that implements [`Drawn`](crate::Drawn). [`Faces`] is such
+//! a kind. The rules of TR94 for the start of a stage apply to updates instead of frames. An *update* draws one display
+//! memory: all six faces, in the grid of [`address_recalculation::region_grid`].
 //!
 //! # Differences from Rendering Control
 //!
@@ -45,20 +45,12 @@
 
 mod config;
 mod faces;
-mod host;
-mod master;
-mod protocol;
-mod rules;
-mod slave;
 mod update;
 mod warp;
 mod warped_lists;
 
-pub use config::{CubeControlConfig, Faces};
-pub use faces::{CubePass, face_view};
-pub use host::{HostAction, host};
-pub use master::master;
-pub use slave::slave;
+pub use config::Faces;
+pub use faces::face_view;
 pub use update::FaceUpdate;
 pub use warp::FaceWarp;
 pub use warped_lists::WarpedLists;

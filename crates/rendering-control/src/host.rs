@@ -1,50 +1,88 @@
-//! Program of the host, which performs SEND.
+//! Program of the host, which chooses the next picture and performs SEND.
 
-use crate::config::RenderingControlConfig;
+use crate::drawn::{Drawn, RenderingControlConfig, Sent};
 use crate::protocol::StageOrder;
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
-/// Sends one frame after the other. For each frame, the program reads the tracker and sends the view and the edits over
-/// the host's link to all graphics processors. The program then waits for the end of EDIT.
+/// An action of the host. The host chooses an action whenever it is ready for a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HostAction<S> {
+    /// Send this picture now.
+    Send(S),
+    /// Call the function `plan` again at this time.
+    Wait(Time),
+    /// Send no more pictures.
+    Nothing,
+}
+
+/// Runs the host program, which sends one picture after the other over the host's link and the ring to all graphics
+/// processors.
 ///
-/// SEND of a frame must not begin before EDIT of the previous frame has finished (TR94).
+/// SEND of a picture begins after EDIT of the previous picture has finished (TR94). Whenever the host is ready for a
+/// picture, it calls `plan` with the number of the next picture and the current time.
+///
+/// # Errors
+///
+/// Returns [`Fault::Protocol`] if a message other than the master's answer arrives.
+pub async fn host<D: Drawn>(
+    gp: Gp,
+    config: RenderingControlConfig<D>,
+    timing: HostTiming,
+    mut plan: impl FnMut(PictureNumber, Time) -> HostAction<D::Sent>,
+) -> Result<(), Fault> {
+    let mut next = PictureNumber::FIRST;
+    loop {
+        let sent = match plan(next, gp.now()) {
+            HostAction::Send(sent) => sent,
+            HostAction::Wait(until) => {
+                gp.spend(until.since(gp.now())).await;
+                continue;
+            }
+            HostAction::Nothing => return Ok(()),
+        };
+        send(&gp, &config, timing, sent).await;
+        // The next SEND must not begin before these edits are applied.
+        let received = gp.receive().await;
+        if StageOrder::<D::Sent>::read(&received, gp.node())? != StageOrder::EditsDone(next) {
+            return Err(Fault::Protocol { node: gp.node(), found: format!("while picture {next} is being edited") });
+        }
+        next = next.next();
+    }
+}
+
+async fn send<D: Drawn>(gp: &Gp, config: &RenderingControlConfig<D>, timing: HostTiming, sent: D::Sent) {
+    let number = sent.number();
+    gp.begin(Stage::Sample, number, None);
+    gp.begin(Stage::Send, number, None);
+    let (words, body) = StageOrder::Send(sent).message();
+    // The words pass the slow link to the machine before they enter the ring.
+    gp.spend(timing.link_span(words)).await;
+    let receivers = config.slaves.iter().chain([&config.master]);
+    let ticket = gp.send_batch(receivers.map(|node| (*node, words, body.clone())).collect()).await;
+    gp.accepted(ticket).await;
+    gp.end(Stage::Send, number, None);
+}
+
+/// Returns the plan of a host that sends one frame after the other.
 ///
 /// The argument of `start_of` is the time at which the host is ready for a frame. `start_of` returns the time at which
 /// the frame begins, or `None` if no more frames begin. `view_of` returns a view whose pose is sampled at the given
 /// time.
-///
-/// # Errors
-///
-/// Returns [`Fault::Protocol`] if a message arrives that is not the master's answer.
-pub async fn host(
-    gp: Gp,
-    config: RenderingControlConfig,
-    timing: HostTiming,
+pub fn frames(
     start_of: impl Fn(Time) -> Option<Time>,
     mut view_of: impl FnMut(ViewNumber, Time) -> FrameView,
-) -> Result<(), Fault> {
-    for frame in PictureNumber::FIRST.onwards() {
-        let Some(start) = start_of(gp.now()) else { break };
-        // The sample is taken when SEND begins.
-        gp.spend(start.since(gp.now())).await;
-        gp.begin(Stage::Sample, frame, None);
-        gp.begin(Stage::Send, frame, None);
-        let (words, body) = StageOrder::Send(view_of(ViewNumber::taken_for(frame), gp.now())).message();
-        // The words pass the slow link to the machine before they enter the ring.
-        gp.spend(timing.link_span(words)).await;
-        let receivers = config.slaves.iter().chain([&config.master]);
-        let batch = receivers.map(|node| (*node, words, body.clone())).collect();
-        let sent = gp.send_batch(batch).await;
-        gp.accepted(sent).await;
-        gp.end(Stage::Send, frame, None);
-        // The next SEND must not begin before these edits are applied.
-        let received = gp.receive().await;
-        if StageOrder::read(&received, gp.node())? != StageOrder::EditsDone(frame) {
-            return Err(Fault::Protocol { node: gp.node(), found: format!("while frame {frame} is being edited") });
+) -> impl FnMut(PictureNumber, Time) -> HostAction<FrameView> {
+    let mut start = None;
+    move |frame, now| match start.take().or_else(|| start_of(now)) {
+        None => HostAction::Nothing,
+        Some(at) if at > now => {
+            start = Some(at);
+            HostAction::Wait(at)
         }
+        // The sample is taken when SEND begins.
+        Some(_) => HostAction::Send(view_of(ViewNumber::taken_for(frame), now)),
     }
-    Ok(())
 }

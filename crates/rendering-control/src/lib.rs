@@ -19,6 +19,9 @@
 //! the renderer keeps the region until the master sends the copy command. RENDER ends when the last commands are
 //! *accepted*.
 //!
+//! The programs draw any kind of picture that implements [`Drawn`]: [`Frames`] of one or two eyes, or the cube faces of
+//! [`cube`].
+//!
 //! An observer measures the latency from events in the trace. The latency starts with TRANSFORM of an eye's picture.
 //! Three ends are possible: the end of COPY of this picture, the retrace at which the picture becomes visible, or the
 //! display of its first line.
@@ -32,16 +35,18 @@
 //!
 //! Sources: TR94, I3D95.
 
-mod config;
 pub mod cube;
+mod drawn;
+mod frames;
 mod host;
 mod master;
 mod protocol;
 pub mod rules;
 mod slave;
 
-pub use config::RenderingControlConfig;
-pub use host::host;
+pub use drawn::{Drawn, RenderingControlConfig, Sent};
+pub use frames::Frames;
+pub use host::{HostAction, frames, host};
 pub use master::master;
 pub use slave::slave;
 

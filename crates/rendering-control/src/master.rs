@@ -1,12 +1,13 @@
 //! Program of the master, which synchronizes host, slaves, renderers and frame buffers.
 
-use crate::config::RenderingControlConfig;
+use crate::drawn::{Drawn, RenderingControlConfig, Sent};
 use crate::protocol::{RegionEnd, StageOrder, Token};
-use crate::rules::{Completed, EyeDrawing};
+use crate::rules::{Completed, Drawing};
 use pphigs::{PROGRAM_BYTES, copy_message};
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
-use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyPath, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
-use std::collections::VecDeque;
+use pxpl5_wire::{Body, CopyOrder, CopyPath, CopyTarget, NodeId, PictureNumber, RegionId, SurfaceId, Word};
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
 
 /// State of a renderer, derived from the messages that the master has received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,58 +16,80 @@ enum RendererUse {
     /// The slaves hold the token of a region that this renderer draws.
     Receiving,
     /// The renderer holds a finished region in pixel memory until the region's frame buffer is available.
-    Holding(EyeDrawing, RegionId),
+    Holding(Drawing, RegionId),
 }
 
 /// A copy that the rules permit now.
 #[derive(Clone, Copy, Debug)]
 struct AllowedCopy {
     renderer: usize,
-    drawing: EyeDrawing,
+    drawing: Drawing,
     region: RegionId,
     way: CopyPath,
 }
 
-/// Progress of the RENDER stage for one eye.
+/// Progress of a drawing that is not complete.
+#[derive(Debug)]
+struct DrawingProgress<S> {
+    drawing: Drawing,
+    sent: Arc<S>,
+    /// Number of earlier drawings in the same frame buffer. When the number of swaps of the frame buffer reaches this
+    /// value, its hidden half is free.
+    before: u64,
+    /// Number of slaves that have transformed the drawing.
+    slaves: usize,
+    /// Number of entries in each region's bin, summed over the slaves that have transformed the drawing.
+    entries: Vec<u64>,
+    announced: bool,
+    /// Number of regions that have not arrived in the frame buffer. `None` before RENDER begins.
+    missing: Option<u64>,
+}
+
+impl<S> DrawingProgress<S> {
+    /// Returns the regions to draw, in descending order of their bin entries. Without `empty` regions, a drawing
+    /// without primitives has one region, so that its end is detected.
+    fn regions(&self, empty: bool) -> VecDeque<RegionId> {
+        let mut regions: Vec<usize> = (0..self.entries.len()).filter(|i| empty || self.entries[*i] > 0).collect();
+        if regions.is_empty() {
+            regions.push(0);
+        }
+        regions.sort_by_key(|region| std::cmp::Reverse(self.entries[*region]));
+        regions.into_iter().map(|region| RegionId(region as u16)).collect()
+    }
+}
+
+/// Progress of RENDER for one drawing.
 #[derive(Debug)]
 struct RenderStage {
-    drawing: EyeDrawing,
-    /// Regions without an assigned renderer, in descending order of their bin entries.
+    drawing: Drawing,
+    /// Regions without a renderer, the regions with the most bin entries first.
     unassigned: VecDeque<RegionId>,
+    /// Number of regions that are drawn.
+    regions: u16,
     /// Number of tokens that have not returned from the slaves.
     tokens_out: u16,
 }
 
-/// Reports of the slaves about one drawing (picture of one eye) or one frame that not all slaves have finished.
-/// `slaves` is the number of reports, and `entries` the sum of the reported bin entries of each region.
-#[derive(Debug, Default)]
-struct SlaveReports {
-    slaves: usize,
-    entries: Vec<u64>,
-}
-
-struct RegionMaster {
+struct RegionMaster<D: Drawn> {
     gp: Gp,
-    config: RenderingControlConfig,
+    config: RenderingControlConfig<D>,
     completed: Completed,
-    /// The first frame for which the master has not ordered EDIT.
+    /// The first picture for which the master has not ordered EDIT.
     next_edit: PictureNumber,
     /// The first drawing for which the master has not permitted TRANSFORM.
-    next_transform: EyeDrawing,
-    /// The next frame for which a swap will be requested.
+    next_transform: Drawing,
+    /// The next picture for which a swap will be requested.
     next_swap: PictureNumber,
-    edited: SlaveReports,
-    /// Reports about the drawings (pictures of one eye) that not all slaves have transformed. The first element belongs
-    /// to the drawing with number `completed.transformed`.
-    transformed: VecDeque<SlaveReports>,
-    /// Weights of the regions (their numbers of bin entries), for drawings that are transformed but not rendered.
-    weights: VecDeque<Vec<u64>>,
+    /// Number of slaves that have applied the edits of the current picture.
+    edited: usize,
+    /// Drawings that the host has sent and that are not complete, in order.
+    under_way: VecDeque<DrawingProgress<D::Sent>>,
+    /// Number of drawings that the host has sent so far for each frame buffer.
+    of_buffers: BTreeMap<NodeId, u64>,
     rendering: Option<RenderStage>,
     renderers: Vec<RendererUse>,
-    /// Finished regions in the backing store of each renderer, which wait for their frame buffer, oldest first.
-    stored: Vec<VecDeque<(EyeDrawing, RegionId)>>,
-    /// Number of regions that have arrived in each frame buffer since the start.
-    copied_regions: Vec<u64>,
+    /// Finished regions in the backing store of each renderer, oldest first. The regions wait for their frame buffer.
+    stored: Vec<VecDeque<(Drawing, RegionId)>>,
     next_slave: usize,
 }
 
@@ -75,7 +98,7 @@ struct RegionMaster {
 /// # Errors
 ///
 /// Returns [`Fault::Protocol`] for an unknown message, or [`Fault::Memory`] if the program does not fit in memory.
-pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault> {
+pub async fn master<D: Drawn>(gp: Gp, config: RenderingControlConfig<D>) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     let mut master = RegionMaster::new(gp, config);
     loop {
@@ -87,20 +110,19 @@ pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault>
     }
 }
 
-impl RegionMaster {
-    fn new(gp: Gp, config: RenderingControlConfig) -> Self {
+impl<D: Drawn> RegionMaster<D> {
+    fn new(gp: Gp, config: RenderingControlConfig<D>) -> Self {
         Self {
-            completed: Completed::none(config.eyes()),
+            completed: Completed::none(config.drawn.eyes()),
             next_edit: PictureNumber::FIRST,
-            next_transform: EyeDrawing::default(),
+            next_transform: Drawing::default(),
             next_swap: PictureNumber::FIRST,
-            edited: SlaveReports::default(),
-            transformed: VecDeque::new(),
-            weights: VecDeque::new(),
+            edited: 0,
+            under_way: VecDeque::new(),
+            of_buffers: BTreeMap::new(),
             rendering: None,
             renderers: vec![RendererUse::Idle; config.renderers.len()],
             stored: vec![VecDeque::new(); config.renderers.len()],
-            copied_regions: vec![0; config.frame_buffers.len()],
             next_slave: 0,
             gp,
             config,
@@ -112,29 +134,48 @@ impl RegionMaster {
         self.gp.until("a message or a swap", || self.message_or_swap()).await
     }
 
-    /// Returns `Some(Some(message))` if a message has arrived. Returns `Some(None)` if the frame buffers have swapped
-    /// since the last call of `begin_one`. Otherwise returns `None`.
+    /// Returns `Some(Some(message))` if a message has arrived. Returns `Some(None)` if frame buffers have swapped since
+    /// the last call of `begin_one`. Otherwise returns `None`.
     fn message_or_swap(&self) -> Option<Option<Received>> {
         match self.gp.take_message() {
             Some(received) => Some(Some(received)),
-            None => (self.swaps_shown() > self.completed.swapped).then_some(None),
+            None => (self.config.drawn.swaps(&self.gp) > self.completed.swapped).then_some(None),
         }
     }
 
-    fn swaps_shown(&self) -> u64 {
-        self.config.frame_buffers.iter().map(|node| self.gp.status(*node)).min().unwrap_or(0)
+    fn progress(&self, drawing: Drawing) -> Option<&DrawingProgress<D::Sent>> {
+        self.under_way.get(self.place(drawing)?)
+    }
+
+    fn progress_mut(&mut self, drawing: Drawing) -> Option<&mut DrawingProgress<D::Sent>> {
+        let place = self.place(drawing)?;
+        self.under_way.get_mut(place)
+    }
+
+    fn place(&self, drawing: Drawing) -> Option<usize> {
+        drawing.0.checked_sub(self.under_way.front()?.drawing.0).map(|place| place as usize)
+    }
+
+    fn target(&self, one: &DrawingProgress<D::Sent>, region: RegionId) -> CopyTarget {
+        self.config.drawn.target(&one.sent, self.config.eye_of(one.drawing), region)
+    }
+
+    fn surface_of(&self, drawing: Drawing) -> SurfaceId {
+        SurfaceId(self.config.eye_of(drawing) as u16)
     }
 
     /// Begins the most urgent action that the rules permit. Returns false if the rules permit no action.
     async fn begin_one(&mut self) -> bool {
-        self.completed.swapped = self.swaps_shown();
+        self.completed.swapped = self.config.drawn.swaps(&self.gp);
         self.begin_render();
-        // In order of urgency: copies, tokens, the swap, EDIT, TRANSFORM of a later eye.
-        if let Some(copying) = self.next_allowed_copy() {
+        // In order of urgency: announcements, copies, tokens, the swap, EDIT, TRANSFORM of a later eye.
+        if let Some(place) = self.next_announcement() {
+            self.announce(place).await;
+        } else if let Some(copying) = self.next_allowed_copy() {
             self.copy(copying).await;
         } else if let Some((renderer, region)) = self.next_allowed_region() {
             self.send_token(renderer, region).await;
-        } else if self.completed.may_swap(self.next_swap) && self.completed.swapped == self.next_swap.0 {
+        } else if self.may_swap() {
             self.swap().await;
         } else if self.completed.may_edit(self.next_edit) {
             self.edit().await;
@@ -146,16 +187,46 @@ impl RegionMaster {
         true
     }
 
+    /// Returns the first drawing that the master can announce, as an index of `under_way`. All slaves must have
+    /// transformed the drawing, and its frame buffer must show its previous drawing.
+    fn next_announcement(&self) -> Option<usize> {
+        let may_begin = |one: &DrawingProgress<D::Sent>| {
+            let is_known = one.slaves == self.config.slaves.len();
+            is_known && !one.announced && self.gp.status(self.target(one, RegionId(0)).frame_buffer) >= one.before
+        };
+        self.under_way.iter().position(may_begin).filter(|_| D::ANNOUNCES)
+    }
+
+    /// Sends a frame buffer the list of regions that will arrive, and requests the swap.
+    async fn announce(&mut self, place: usize) {
+        self.under_way[place].announced = true;
+        let one = &self.under_way[place];
+        let messages = self.config.drawn.announcement(&one.sent, one.regions(false).make_contiguous());
+        let port = self.target(one, RegionId(0)).frame_buffer;
+        self.gp.send_groups(vec![(port, messages)]).await;
+    }
+
+    fn may_swap(&self) -> bool {
+        let picture = self.next_swap;
+        !D::ANNOUNCES && self.completed.may_swap(picture) && self.completed.swapped == picture.0
+    }
+
+    async fn swap(&mut self) {
+        let requests = self.config.drawn.swap_requests(self.next_swap);
+        self.next_swap = self.next_swap.next();
+        self.gp.send_batch(requests).await;
+    }
+
     async fn edit(&mut self) {
-        let frame = self.next_edit;
-        self.next_edit = frame.next();
-        self.next_transform = self.config.first_of(frame).after(1);
-        self.send_to_slaves(&StageOrder::Edit(frame)).await;
+        let picture = self.next_edit;
+        self.next_edit = picture.next();
+        self.next_transform = self.config.first_of(picture).after(1);
+        self.send_to_slaves(&StageOrder::Edit(picture)).await;
     }
 
     fn later_eye_may_transform(&self) -> bool {
         let drawing = self.next_transform;
-        self.config.eye_of(drawing) != SurfaceId(0) && self.completed.may_transform(drawing)
+        self.config.eye_of(drawing) != 0 && self.completed.may_transform(drawing)
     }
 
     async fn permit_transform(&mut self) {
@@ -164,24 +235,23 @@ impl RegionMaster {
         self.send_to_slaves(&StageOrder::Transform(drawing)).await;
     }
 
-    async fn send_to_slaves(&self, order: &StageOrder) {
+    async fn send_to_slaves(&self, order: &StageOrder<D::Sent>) {
         let (words, body) = order.message();
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Begins RENDER of the next drawing if the rules permit it. Sorts the drawing's regions in descending order of
-    /// their bin entries.
+    /// Begins RENDER of the next drawing if the rules permit it.
     fn begin_render(&mut self) {
-        let drawing = EyeDrawing(self.completed.rendered);
+        let drawing = Drawing(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(drawing) {
             return;
         }
-        let weights = self.weights.pop_front().unwrap_or_default();
-        let mut regions: Vec<_> = (0..self.config.grid().regions() as usize).collect();
-        regions.sort_by_key(|region| std::cmp::Reverse(weights.get(*region).copied().unwrap_or(0)));
-        let unassigned = regions.into_iter().map(|region| RegionId(region as u16)).collect();
-        self.gp.begin(Stage::Render, self.config.frame_of(drawing), Some(self.config.eye_of(drawing)));
-        self.rendering = Some(RenderStage { drawing, unassigned, tokens_out: 0 });
+        let Some(one) = self.progress_mut(drawing) else { return };
+        let unassigned = one.regions(!D::ANNOUNCES);
+        let regions = unassigned.len() as u16;
+        one.missing = Some(regions.into());
+        self.gp.begin(Stage::Render, self.config.picture_of(drawing), Some(self.surface_of(drawing)));
+        self.rendering = Some(RenderStage { drawing, unassigned, regions, tokens_out: 0 });
     }
 
     fn next_allowed_region(&self) -> Option<(usize, RegionId)> {
@@ -196,31 +266,37 @@ impl RegionMaster {
         let Some(rendering) = &mut self.rendering else { return };
         rendering.unassigned.pop_front();
         rendering.tokens_out += 1;
-        let drawing = rendering.drawing;
+        let RenderStage { drawing, regions: of, .. } = *rendering;
         self.renderers[renderer] = RendererUse::Receiving;
         // Each token starts at another slave, so that the slaves share the work.
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
-        let token = Token {
-            drawing,
-            region,
-            renderer: renderer as u16,
-            slaves_left: self.config.slaves.len() as u16,
-            end: self.end_of(renderer, drawing),
-        };
-        let (words, body) = StageOrder::Token(token).message();
+        let slaves_left = self.config.slaves.len() as u16;
+        let end = self.end_of(renderer, drawing);
+        let token = Token { drawing, region, renderer: renderer as u16, slaves_left, of, end };
+        let (words, body) = StageOrder::<D::Sent>::Token(token).message();
         self.gp.send(slave, words, body).await;
     }
 
+    /// Returns true if COPY of a drawing may begin: after the announcement, or by the rules.
+    fn may_copy(&self, drawing: Drawing) -> bool {
+        if D::ANNOUNCES {
+            self.progress(drawing).is_none_or(|one| one.announced)
+        } else {
+            self.completed.may_copy(drawing)
+        }
+    }
+
     /// Returns the destination of a region's pixels after the region's last commands.
-    fn end_of(&self, renderer: usize, drawing: EyeDrawing) -> RegionEnd {
-        if self.completed.may_copy(drawing) {
+    fn end_of(&self, renderer: usize, drawing: Drawing) -> RegionEnd {
+        let room = self.config.drawn.regions_stored();
+        if self.may_copy(drawing) {
             RegionEnd::Copied
-        } else if self.stored[renderer].len() < self.config.regions_stored {
+        } else if self.stored[renderer].len() < room {
             RegionEnd::Stored
         } else {
             // Under the other rule, finished regions wait in pixel memory, whatever the capacity of the store is.
-            if self.config.regions_stored > 0 {
+            if room > 0 {
                 self.gp.note_full_store();
             }
             RegionEnd::Held
@@ -236,61 +312,74 @@ impl RegionMaster {
                 (None, RendererUse::Holding(drawing, region)) => (drawing, region, CopyPath::ThroughBacking),
                 _ => return None,
             };
-            self.completed.may_copy(drawing).then_some(AllowedCopy { renderer, drawing, region, way })
+            self.may_copy(drawing).then_some(AllowedCopy { renderer, drawing, region, way })
         })
     }
 
-    /// Sends the copy command of a region. The region's token was sent before the rules permitted COPY.
+    /// Sends the copy command of a region. When the token of this region was sent, the rules did not permit COPY.
     async fn copy(&mut self, AllowedCopy { renderer, drawing, region, way }: AllowedCopy) {
         match way {
             CopyPath::FromBacking => drop(self.stored[renderer].pop_front()),
             _ => self.renderers[renderer] = RendererUse::Idle,
         }
-        let order = copy_order(&self.config, drawing, region, way);
-        let list = copy_message(self.config.picture.layout, vec![order], self.config.picture.pixels);
+        let Some(one) = self.progress(drawing) else { return };
+        let order = self.config.copy_order(self.target(one, region), way);
+        let picture = self.config.drawn.picture();
+        let list = copy_message(picture.layout, vec![order], picture.pixels);
         self.gp.send(self.config.renderers[renderer], list.words(), Body::Commands(list)).await;
-    }
-
-    async fn swap(&mut self) {
-        let buffer = RenderingControlConfig::buffer_of(self.next_swap);
-        self.next_swap = self.next_swap.next();
-        let requests = self.config.frame_buffers.iter().map(|node| (*node, 2, Body::Words(swap_request(buffer))));
-        self.gp.send_batch(requests.collect()).await;
     }
 
     async fn note(&mut self, received: &Received) -> Result<(), Fault> {
         match StageOrder::read(received, self.gp.node())? {
-            StageOrder::Send(view) => self.completed.sent = view.number.picture_taken_for().next().0,
-            StageOrder::Edited(frame) => self.note_edited(frame).await,
+            StageOrder::Send(sent) => self.note_sent(sent),
+            StageOrder::Edited(picture) => self.note_edited(picture).await,
             StageOrder::Transformed(drawing, entries) => self.note_transformed(drawing, &entries),
             StageOrder::Accepted(token) => self.note_accepted(token),
-            StageOrder::Copied { frame_buffer } => self.note_copied(frame_buffer),
+            StageOrder::Copied { picture, frame_buffer } => self.note_copied(picture, frame_buffer),
             other => return Err(Fault::Protocol { node: self.gp.node(), found: format!("at the master: {other:?}") }),
         }
         Ok(())
     }
 
-    async fn note_edited(&mut self, frame: PictureNumber) {
-        self.edited.slaves += 1;
-        if self.edited.slaves == self.config.slaves.len() {
-            self.edited = SlaveReports::default();
-            self.completed.edited = frame.next().0;
-            let (words, body) = StageOrder::EditsDone(frame).message();
+    fn note_sent(&mut self, sent: D::Sent) {
+        let first = self.config.first_of(sent.number());
+        self.completed.sent = sent.number().next().0;
+        let sent = Arc::new(sent);
+        let entries = vec![0; usize::from(self.config.drawn.regions())];
+        for drawing in (0..self.config.drawn.eyes()).map(|eye| first.after(eye)) {
+            let mut one = DrawingProgress {
+                drawing,
+                sent: Arc::clone(&sent),
+                before: 0,
+                slaves: 0,
+                entries: entries.clone(),
+                announced: false,
+                missing: None,
+            };
+            let of_buffer = self.of_buffers.entry(self.target(&one, RegionId(0)).frame_buffer).or_default();
+            one.before = *of_buffer;
+            *of_buffer += 1;
+            self.under_way.push_back(one);
+        }
+    }
+
+    async fn note_edited(&mut self, picture: PictureNumber) {
+        self.edited += 1;
+        if self.edited == self.config.slaves.len() {
+            self.edited = 0;
+            self.completed.edited = picture.next().0;
+            let (words, body) = StageOrder::<D::Sent>::EditsDone(picture).message();
             self.gp.send(self.config.host, words, body).await;
         }
     }
 
     // Slaves may report a later drawing before all slaves have reported the current one.
-    fn note_transformed(&mut self, drawing: EyeDrawing, entries: &[u32]) {
-        let place = (drawing.0 - self.completed.transformed) as usize;
-        while self.transformed.len() <= place {
-            self.transformed.push_back(SlaveReports { slaves: 0, entries: vec![0; entries.len()] });
-        }
-        let reports = &mut self.transformed[place];
-        reports.slaves += 1;
-        reports.entries.iter_mut().zip(entries).for_each(|(sum, n)| *sum += u64::from(*n));
-        while self.transformed.front().is_some_and(|reports| reports.slaves == self.config.slaves.len()) {
-            self.weights.extend(self.transformed.pop_front().map(|reports| reports.entries));
+    fn note_transformed(&mut self, drawing: Drawing, entries: &[u32]) {
+        let slaves = self.config.slaves.len();
+        let Some(one) = self.progress_mut(drawing) else { return };
+        one.slaves += 1;
+        one.entries.iter_mut().zip(entries).for_each(|(sum, n)| *sum += u64::from(*n));
+        while self.progress(Drawing(self.completed.transformed)).is_some_and(|one| one.slaves == slaves) {
             self.completed.transformed += 1;
         }
     }
@@ -310,40 +399,69 @@ impl RegionMaster {
         rendering.tokens_out -= 1;
         if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {
             let drawing = rendering.drawing;
-            self.gp.end(Stage::Render, self.config.frame_of(drawing), Some(self.config.eye_of(drawing)));
+            self.gp.end(Stage::Render, self.config.picture_of(drawing), Some(self.surface_of(drawing)));
             self.completed.rendered += 1;
             self.rendering = None;
+            self.remove_finished();
         }
     }
 
-    fn note_copied(&mut self, frame_buffer: NodeId) {
-        if let Some(eye) = self.config.eye_at(frame_buffer) {
-            self.copied_regions[eye] += 1;
+    /// Records that a region has arrived. `low` is the low word of the picture's number.
+    fn note_copied(&mut self, low: Word, frame_buffer: NodeId) {
+        let Some(eye) = self.config.drawn.eye_at(frame_buffer) else { return };
+        let config = &self.config;
+        let is_of = |one: &&mut DrawingProgress<D::Sent>| {
+            one.sent.number().to_words()[0] == low && config.eye_of(one.drawing) == eye
+        };
+        if let Some(missing) = self.under_way.iter_mut().find(is_of).and_then(|one| one.missing.as_mut()) {
+            *missing = missing.saturating_sub(1);
         }
-        while self.is_copied(EyeDrawing(self.completed.copied)) {
+        while self.progress(Drawing(self.completed.copied)).is_some_and(|one| one.missing == Some(0)) {
             self.completed.copied += 1;
         }
+        self.remove_finished();
     }
 
-    /// Returns true if all regions of a drawing (the picture of one eye) have been copied. A count of regions is
-    /// sufficient, because the drawings reach a frame buffer in order.
-    fn is_copied(&self, drawing: EyeDrawing) -> bool {
-        let regions = u64::from(self.config.grid().regions());
-        self.copied_regions[self.config.eye_of(drawing).index()] >= regions * self.config.frame_of(drawing).next().0
+    /// Removes drawings that are complete: all their commands have been accepted, and all their regions have arrived.
+    fn remove_finished(&mut self) {
+        let complete = Drawing(self.completed.rendered.min(self.completed.copied));
+        while self.under_way.front().is_some_and(|one| one.drawing < complete) {
+            self.under_way.pop_front();
+        }
     }
 }
 
-pub(crate) fn copy_order(
-    config: &RenderingControlConfig,
-    drawing: EyeDrawing,
-    region: RegionId,
-    way: CopyPath,
-) -> CopyOrder {
-    CopyOrder {
-        target: config.target(drawing, region),
-        context: 0,
-        way,
-        acknowledge: Some(config.master),
-        content: CopyContent::Colour,
+impl<D: Drawn> RenderingControlConfig<D> {
+    pub(crate) fn copy_order(&self, target: CopyTarget, way: CopyPath) -> CopyOrder {
+        CopyOrder { target, context: 0, way, acknowledge: Some(self.master), content: self.drawn.content() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::slave::tests::{TOKEN, config, update};
+    use pxpl5_gp::{GpBoard, GpTiming, Priority};
+    use pxpl5_sim::Span;
+
+    /// The last region can arrive before the message that its commands were accepted.
+    #[test]
+    fn a_drawing_is_over_when_its_regions_have_arrived_and_its_commands_were_accepted() {
+        for accepted_first in [true, false] {
+            let board = GpBoard::new(NodeId(1), GpTiming::PAPERS, Span(25_000));
+            let mut master = RegionMaster::new(board.handle_for(Priority::Foreground), config());
+            master.note_sent(update(0));
+            master.note_transformed(Drawing(0), &[1, 0, 0, 0, 0, 0]);
+            master.begin_render();
+            let rendering = master.rendering.as_mut().expect("it is transformed");
+            // This is the state after the token of the drawing's single region was sent.
+            (rendering.unassigned, rendering.tokens_out) = (VecDeque::new(), 1);
+            for is_token in [accepted_first, !accepted_first] {
+                assert_eq!(master.under_way.len(), 1, "{accepted_first}");
+                if is_token { master.note_accepted(TOKEN) } else { master.note_copied(0, NodeId(4)) }
+            }
+            assert_eq!((master.completed.rendered, master.completed.copied), (1, 1));
+            assert!(master.under_way.is_empty());
+        }
     }
 }

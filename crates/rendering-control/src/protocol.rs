@@ -1,10 +1,9 @@
-//! Messages between host, master, slaves and renderers, encoded as words.
+//! Messages between host, master, slaves and renderers, as words on the ring.
 
-use crate::rules::EyeDrawing;
-use pphigs::FrameView;
+use crate::drawn::Sent;
+use crate::rules::Drawing;
 use pxpl5_gp::{Fault, Received};
 use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CopyPath, NodeId, PictureNumber, RegionId, Word};
-use std::sync::Arc;
 
 const SEND: Word = 1;
 const EDIT: Word = 2;
@@ -18,12 +17,15 @@ const EDITS_DONE: Word = 8;
 /// A token. While a slave holds the token, it may send its commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
-    pub(crate) drawing: EyeDrawing,
+    pub(crate) drawing: Drawing,
+    /// Index of the region, counted through all views of the drawing.
     pub(crate) region: RegionId,
     /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
     /// Number of slaves that have not sent their bins yet, including the slave that holds the token.
     pub(crate) slaves_left: u16,
+    /// Number of tokens of this drawing, one for each region that is drawn.
+    pub(crate) of: u16,
     /// Destination of the region's pixels after the region's last commands. The last slave adds the command for this
     /// destination.
     pub(crate) end: RegionEnd,
@@ -53,51 +55,51 @@ impl RegionEnd {
     }
 }
 
-/// A message between host, master, slaves and renderers.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum StageOrder {
-    /// From host to all graphics processors: view and edits of a frame.
-    Send(FrameView),
-    /// From master to slaves: apply the edits of a frame.
+pub(crate) enum StageOrder<S> {
+    /// From host to all graphics processors: view and edits of a picture.
+    Send(S),
+    /// From master to slaves: apply the edits of a picture, and transform its first drawing.
     Edit(PictureNumber),
-    /// From slave to master: the edits of a frame are applied.
+    /// From slave to master: the edits of a picture are applied.
     Edited(PictureNumber),
-    /// From master to host: all slaves have applied the edits of a frame.
+    /// From master to host: all slaves have applied the edits of a picture.
     EditsDone(PictureNumber),
-    /// From master to slaves: TRANSFORM of a drawing (the picture of one eye) may begin.
-    Transform(EyeDrawing),
+    /// From master to slaves: TRANSFORM of a later drawing of a picture may begin.
+    Transform(Drawing),
     /// From slave to master: a drawing is transformed. The message contains the number of entries in each region's bin.
-    Transformed(EyeDrawing, Vec<u32>),
+    Transformed(Drawing, Vec<u32>),
     /// From master to slave, or from slave to slave: a token.
     Token(Token),
     /// From the last slave to the master: all commands of a region have been accepted.
     Accepted(Token),
-    /// From renderer to master: a region has arrived in the frame buffer at the ring port `frame_buffer`.
-    Copied { frame_buffer: NodeId },
+    /// From renderer to master: a region has arrived in the frame buffer at the ring port `frame_buffer`. `picture` is
+    /// the low word of the picture's number.
+    Copied { picture: Word, frame_buffer: NodeId },
 }
 
-impl StageOrder {
-    /// Returns the length in words and the body of the message.
+impl<S: Sent> StageOrder<S> {
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
-        (words.len() as u32, Body::Words(words))
+        (words.len() as u32, Body::Words(words.into()))
     }
 
-    fn words(&self) -> Arc<[Word]> {
+    fn words(&self) -> Vec<Word> {
         match self {
-            Self::Send(view) => [vec![SEND], view.to_words()].concat().into(),
-            Self::Edit(frame) => numbered(EDIT, frame.0).into(),
-            Self::Edited(frame) => numbered(EDITED, frame.0).into(),
-            Self::EditsDone(frame) => numbered(EDITS_DONE, frame.0).into(),
-            Self::Transform(drawing) => numbered(TRANSFORM, drawing.0).into(),
-            Self::Transformed(drawing, entries) => [&numbered(TRANSFORMED, drawing.0)[..], entries].concat().into(),
-            Self::Token(token) => token.words(TOKEN).into(),
-            Self::Accepted(token) => token.words(ACCEPTED).into(),
-            Self::Copied { frame_buffer } => [COPY_ACKNOWLEDGEMENT, 0, 0, Word::from(frame_buffer.0)].into(),
+            Self::Send(sent) => [vec![SEND], sent.to_words()].concat(),
+            Self::Edit(picture) => numbered(EDIT, picture.0),
+            Self::Edited(picture) => numbered(EDITED, picture.0),
+            Self::EditsDone(picture) => numbered(EDITS_DONE, picture.0),
+            Self::Transform(drawing) => numbered(TRANSFORM, drawing.0),
+            Self::Transformed(drawing, entries) => [&numbered(TRANSFORMED, drawing.0)[..], entries].concat(),
+            Self::Token(token) => token.words(TOKEN),
+            Self::Accepted(token) => token.words(ACCEPTED),
+            Self::Copied { picture, frame_buffer } => {
+                vec![COPY_ACKNOWLEDGEMENT, 0, *picture, Word::from(frame_buffer.0)]
+            }
         }
     }
 
-    /// Decodes a received message.
     pub(crate) fn read(received: &Received, at: NodeId) -> Result<Self, Fault> {
         let Body::Words(words) = &received.body else {
             return Err(Fault::Protocol { node: at, found: "of commands or pixels at a processor".to_owned() });
@@ -106,55 +108,52 @@ impl StageOrder {
             .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
     }
 
-    /// Decodes words. Returns `None` if the words are not a message of this protocol.
     fn from_words(words: &[Word]) -> Option<Self> {
-        match words.first() {
-            Some(&SEND) => FrameView::from_words(&words[1..]).ok().map(Self::Send),
-            Some(&EDIT) => number_of(words).map(PictureNumber).map(Self::Edit),
-            Some(&EDITED) => number_of(words).map(PictureNumber).map(Self::Edited),
-            Some(&EDITS_DONE) => number_of(words).map(PictureNumber).map(Self::EditsDone),
-            Some(&TRANSFORM) => number_of(words).map(EyeDrawing).map(Self::Transform),
-            Some(&TRANSFORMED) => number_of(words).map(|n| Self::Transformed(EyeDrawing(n), words[3..].to_vec())),
-            Some(&TOKEN) => Token::read(words).map(Self::Token),
-            Some(&ACCEPTED) => Token::read(words).map(Self::Accepted),
-            Some(&COPY_ACKNOWLEDGEMENT) => words.get(3).map(|node| Self::Copied { frame_buffer: NodeId(*node as u16) }),
+        match *words.first()? {
+            SEND => S::from_words(&words[1..]).map(Self::Send),
+            EDIT => number_of(words).map(PictureNumber).map(Self::Edit),
+            EDITED => number_of(words).map(PictureNumber).map(Self::Edited),
+            EDITS_DONE => number_of(words).map(PictureNumber).map(Self::EditsDone),
+            TRANSFORM => number_of(words).map(Drawing).map(Self::Transform),
+            // The entries of bins follow the tag and the number.
+            TRANSFORMED => number_of(words).map(|n| Self::Transformed(Drawing(n), words[3..].to_vec())),
+            TOKEN => Token::read(words).map(Self::Token),
+            ACCEPTED => Token::read(words).map(Self::Accepted),
+            COPY_ACKNOWLEDGEMENT => {
+                let [_, _, picture, port] = *words else { return None };
+                Some(Self::Copied { picture, frame_buffer: NodeId(port as u16) })
+            }
             _ => None,
         }
     }
 }
 
-/// Encodes a message that consists of a tag and the number of a frame or drawing.
-fn numbered(tag: Word, number: u64) -> [Word; 3] {
-    [tag, number as Word, (number >> 32) as Word]
+/// Encodes a message that consists of a tag and the number of a picture or drawing.
+fn numbered(tag: Word, number: u64) -> Vec<Word> {
+    vec![tag, number as Word, (number >> 32) as Word]
 }
 
-/// Decodes the frame or drawing number of a message that [`numbered`] has encoded.
+/// Decodes the picture or drawing number of a message that [`numbered`] has encoded.
 fn number_of(words: &[Word]) -> Option<u64> {
-    let low = *words.get(1)?;
-    let high = *words.get(2)?;
+    let [_, low, high] = *words.first_chunk()?;
     Some(u64::from(low) | u64::from(high) << 32)
 }
 
 impl Token {
-    fn words(self, tag: Word) -> [Word; 6] {
-        let regions = u32::from(self.region.0) | u32::from(self.renderer) << 16;
-        [
-            tag,
-            self.drawing.0 as Word,
-            (self.drawing.0 >> 32) as Word,
-            regions,
-            u32::from(self.slaves_left),
-            self.end as Word,
-        ]
+    fn words(self, tag: Word) -> Vec<Word> {
+        let places = u32::from(self.region.0) | u32::from(self.renderer) << 16;
+        let counts = u32::from(self.slaves_left) | u32::from(self.of) << 16;
+        [numbered(tag, self.drawing.0), vec![places, counts, self.end as Word]].concat()
     }
 
     fn read(words: &[Word]) -> Option<Self> {
-        let [_, low, high, regions, slaves_left, end] = *words else { return None };
+        let [_, _, _, places, counts, end] = *words else { return None };
         Some(Self {
-            drawing: EyeDrawing(u64::from(low) | u64::from(high) << 32),
-            region: RegionId(regions as u16),
-            renderer: (regions >> 16) as u16,
-            slaves_left: slaves_left as u16,
+            drawing: Drawing(number_of(words)?),
+            region: RegionId(places as u16),
+            renderer: (places >> 16) as u16,
+            slaves_left: counts as u16,
+            of: (counts >> 16) as u16,
             end: *RegionEnd::ALL.get(end as usize)?,
         })
     }
@@ -163,10 +162,11 @@ impl Token {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pphigs::FrameView;
     use pxpl5_sim::Time;
     use pxpl5_wire::ViewNumber;
 
-    fn through_words(order: &StageOrder) -> StageOrder {
+    fn through_words(order: &StageOrder<FrameView>) -> StageOrder<FrameView> {
         let (_, body) = order.message();
         let received = Received { arrived: Time::ZERO, source: NodeId(1), body };
         StageOrder::read(&received, NodeId(0)).expect("our own words")
@@ -174,24 +174,20 @@ mod tests {
 
     #[test]
     fn every_order_survives_its_words() {
-        let token = Token {
-            drawing: EyeDrawing(1 << 33),
-            region: RegionId(19),
-            renderer: 4,
-            slaves_left: 12,
-            end: RegionEnd::Stored,
-        };
+        let drawing = Drawing(1 << 33);
+        let token =
+            Token { drawing, region: RegionId(95), renderer: 4, slaves_left: 12, of: 96, end: RegionEnd::Stored };
         let view = FrameView { number: ViewNumber(3), eyes: Vec::new(), edits: Vec::new() };
         let orders = [
             StageOrder::Send(view),
             StageOrder::Edit(PictureNumber(1)),
             StageOrder::Edited(PictureNumber(2)),
             StageOrder::EditsDone(PictureNumber(1 << 40)),
-            StageOrder::Transform(EyeDrawing(3)),
-            StageOrder::Transformed(EyeDrawing(4), vec![7; 20]),
+            StageOrder::Transform(Drawing(3)),
+            StageOrder::Transformed(Drawing(4), vec![7; 96]),
             StageOrder::Token(token),
             StageOrder::Accepted(token),
-            StageOrder::Copied { frame_buffer: NodeId(20) },
+            StageOrder::Copied { picture: 20, frame_buffer: NodeId(20) },
         ];
         orders.iter().for_each(|order| assert_eq!(&through_words(order), order));
     }
@@ -199,7 +195,7 @@ mod tests {
     #[test]
     fn unknown_words_are_a_fault_that_shows_them() {
         let received = Received { arrived: Time::ZERO, source: NodeId(7), body: Body::Words([0xBAD].into()) };
-        let fault = StageOrder::read(&received, NodeId(3)).expect_err("not an order");
+        let fault = StageOrder::<FrameView>::read(&received, NodeId(3)).expect_err("not an order");
         assert_eq!(fault.to_string(), "node 3: unexpected message [bad] from node 7");
     }
 }

@@ -3,13 +3,14 @@
 
 use pxpl5_wire::PictureNumber;
 
-/// Number of a *drawing*: the picture of one eye in a stereo frame, or the whole picture of a mono frame.
+/// Number of a *drawing*: the picture of one eye in a stereo frame, the whole picture of a mono frame, or an update of a
+/// display memory.
 ///
 /// Drawings are numbered in order through all frames. Number 0 is the left eye of frame 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct EyeDrawing(pub u64);
+pub struct Drawing(pub u64);
 
-impl EyeDrawing {
+impl Drawing {
     /// Returns the first drawing of a frame. `eyes` is the number of eyes of each frame.
     #[must_use]
     pub const fn first_of(frame: PictureNumber, eyes: u64) -> Self {
@@ -18,7 +19,7 @@ impl EyeDrawing {
 
     /// Returns the frame that contains the drawing. `eyes` is the number of eyes of each frame.
     #[must_use]
-    pub const fn frame(self, eyes: u64) -> PictureNumber {
+    pub const fn picture(self, eyes: u64) -> PictureNumber {
         PictureNumber(self.0 / eyes)
     }
 
@@ -26,6 +27,11 @@ impl EyeDrawing {
     #[must_use]
     pub const fn eye(self, eyes: u64) -> u64 {
         self.0 % eyes
+    }
+
+    /// Returns the context of the drawing: which of the two sets of bins of a slave it uses.
+    pub(crate) const fn context(self) -> usize {
+        (self.0 % 2) as usize
     }
 
     /// Returns the drawing that comes `count` drawings later.
@@ -72,7 +78,7 @@ impl Completed {
     /// If RENDER or COPY were not complete, the earlier drawings would still use the buffers.
     #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
-        let first = EyeDrawing::first_of(frame, self.eyes);
+        let first = Drawing::first_of(frame, self.eyes);
         self.sent > frame.0 && self.transformed >= first.0 && self.buffers_free(first)
     }
 
@@ -82,44 +88,44 @@ impl Completed {
     /// of drawing n - 2 and COPY of drawing n - 3 must be complete. These conditions are only for the later eyes of a
     /// frame. Each slave begins TRANSFORM of the first eye when its own edits are done.
     #[must_use]
-    pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
-        self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)
+    pub const fn may_transform(&self, drawing: Drawing) -> bool {
+        self.edited > drawing.picture(self.eyes).0 && self.buffers_free(drawing)
     }
 
-    /// Returns true if a drawing can use a bin context of the slaves and a region context of the renderers. Each
-    /// processor and each renderer has two contexts.
-    const fn buffers_free(&self, drawing: EyeDrawing) -> bool {
+    /// Returns true if the slaves have a free set of bins for a drawing, and the renderers have a free part of pixel
+    /// memory. Each slave has two sets of bins, and each renderer has two parts.
+    const fn buffers_free(&self, drawing: Drawing) -> bool {
         self.rendered + 1 >= drawing.0 && self.copied + 2 >= drawing.0
     }
 
     /// Returns true if RENDER of a drawing (the picture of one eye) may begin. All slaves must have finished TRANSFORM
     /// of this drawing, and RENDER of the previous drawing must be complete.
     #[must_use]
-    pub const fn may_render(&self, drawing: EyeDrawing) -> bool {
+    pub const fn may_render(&self, drawing: Drawing) -> bool {
         self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
-    /// Returns true if the hidden half of the drawing's frame buffer is free. The half is free when the previous frame
-    /// has become visible.
+    /// Returns true if the hidden buffer for a drawing is free. The buffer is free when the previous frame has become
+    /// visible.
     #[must_use]
-    pub const fn frame_buffer_available(&self, drawing: EyeDrawing) -> bool {
-        self.swapped >= drawing.frame(self.eyes).0
+    pub const fn frame_buffer_available(&self, drawing: Drawing) -> bool {
+        self.swapped >= drawing.picture(self.eyes).0
     }
 
-    /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden half of the frame buffer must
-    /// be free, and COPY of the previous drawing must be complete.
+    /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden buffer must be free, and COPY
+    /// of the previous drawing must be complete.
     ///
     /// Each frame buffer has its own ring port. Nevertheless, the rule of TR94 permits copies to only one frame buffer
     /// at a time, one eye after the other.
     #[must_use]
-    pub const fn may_copy(&self, drawing: EyeDrawing) -> bool {
+    pub const fn may_copy(&self, drawing: Drawing) -> bool {
         self.frame_buffer_available(drawing) && self.copied >= drawing.0
     }
 
     /// Returns true if a swap may make a frame visible. COPY of all eyes of the frame must be complete.
     #[must_use]
     pub const fn may_swap(&self, frame: PictureNumber) -> bool {
-        self.copied >= EyeDrawing::first_of(frame.next(), self.eyes).0
+        self.copied >= Drawing::first_of(frame.next(), self.eyes).0
     }
 }
 
@@ -146,33 +152,33 @@ mod tests {
     fn stereo_transform_waits_for_the_second_and_third_previous_eye() {
         // The right eye of frame 4 is drawing 9, which needs RENDER of drawing 7 and COPY of drawing 6.
         let ready = Completed { eyes: 2, sent: 5, edited: 5, transformed: 9, rendered: 8, copied: 7, swapped: 0 };
-        assert!(ready.may_transform(EyeDrawing(9)));
-        assert!(!Completed { rendered: 7, ..ready }.may_transform(EyeDrawing(9)));
-        assert!(!Completed { copied: 6, ..ready }.may_transform(EyeDrawing(9)));
-        assert!(!Completed { edited: 4, ..ready }.may_transform(EyeDrawing(9)));
+        assert!(ready.may_transform(Drawing(9)));
+        assert!(!Completed { rendered: 7, ..ready }.may_transform(Drawing(9)));
+        assert!(!Completed { copied: 6, ..ready }.may_transform(Drawing(9)));
+        assert!(!Completed { edited: 4, ..ready }.may_transform(Drawing(9)));
     }
 
     #[test]
     fn a_frame_buffer_is_free_again_when_the_frame_before_is_shown() {
         let state = Completed { swapped: 3, ..Completed::none(2) };
-        assert!(state.frame_buffer_available(EyeDrawing(6)) && state.frame_buffer_available(EyeDrawing(7)));
-        assert!(!state.frame_buffer_available(EyeDrawing(8)));
+        assert!(state.frame_buffer_available(Drawing(6)) && state.frame_buffer_available(Drawing(7)));
+        assert!(!state.frame_buffer_available(Drawing(8)));
     }
     #[test]
     fn copy_of_the_right_eye_waits_for_copy_of_the_left() {
         // Frame 3 consists of drawings 6 and 7. Frame 2 has become visible, so both frame buffers are free.
         let state = Completed { swapped: 3, copied: 6, ..Completed::none(2) };
-        assert!(state.may_copy(EyeDrawing(6)));
-        assert!(state.frame_buffer_available(EyeDrawing(7)) && !state.may_copy(EyeDrawing(7)));
+        assert!(state.may_copy(Drawing(6)));
+        assert!(state.frame_buffer_available(Drawing(7)) && !state.may_copy(Drawing(7)));
         let left_copied = Completed { copied: 7, ..state };
-        assert!(left_copied.may_copy(EyeDrawing(7)));
-        assert!(!left_copied.may_copy(EyeDrawing(8)), "frame 4 has no buffer before frame 3 has been swapped in");
+        assert!(left_copied.may_copy(Drawing(7)));
+        assert!(!left_copied.may_copy(Drawing(8)), "frame 4 has no buffer before frame 3 has been swapped in");
     }
 
     #[test]
     fn a_mono_copy_waits_for_nothing_but_its_frame_buffer() {
         // Frame 2 has become visible, so it was copied.
         let state = Completed { swapped: 3, copied: 3, ..Completed::none(1) };
-        assert!(state.may_copy(EyeDrawing(3)) && !state.may_copy(EyeDrawing(4)));
+        assert!(state.may_copy(Drawing(3)) && !state.may_copy(Drawing(4)));
     }
 }

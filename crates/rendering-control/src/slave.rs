@@ -1,274 +1,294 @@
 //! Programs of a slave: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
 
-use crate::config::RenderingControlConfig;
-use crate::master::copy_order;
+use crate::drawn::{Drawn, RenderingControlConfig, Sent};
 use crate::protocol::{StageOrder, Token};
-use crate::rules::EyeDrawing;
+use crate::rules::Drawing;
 use pphigs::{
-    BIN_ENTRY_BYTES, BinHandoffWork, EditWork, FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, TransformWork,
-    region_messages,
+    BIN_ENTRY_BYTES, BinHandoffWork, DisplayList, EditWork, PROGRAM_BYTES, Pass, RegionEnvelope, Share, region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Received, Stage};
-use pxpl5_wire::{Body, NodeId, PictureNumber, RegionId};
+use pxpl5_wire::{Body, CommandList, NodeId, PictureNumber, RegionId, SurfaceId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// State that the two programs of a slave share.
-#[derive(Debug, Default)]
-struct SlaveState {
-    views: VecDeque<FrameView>,
-    /// The first frame for which the master has not permitted EDIT.
+/// The data that the two programs of a slave share.
+#[derive(Debug)]
+struct SlaveState<S> {
+    sent: VecDeque<S>,
+    /// The first picture for which the master has not permitted EDIT.
     next_edit: PictureNumber,
-    next_transform: EyeDrawing,
-    /// The bins of both contexts. A context is one of two sets of bins. An empty context has the value `None`.
-    bins: [Option<Arc<Pass>>; 2],
-    regions_left: [u32; 2],
+    next_transform: Drawing,
+    /// The two sets of bins. `None` stands for an empty set.
+    bins: [Option<Bins<S>>; 2],
+    /// For each context, the number of tokens that this slave has received for its bins.
+    tokens: [u16; 2],
 }
 
-impl SlaveState {
-    /// Fills a context with the bins of a pass. The bins stay until the slave has received a token for each region.
-    fn fill(&mut self, context: usize, pass: Arc<Pass>, regions: u32) {
-        self.bins[context] = Some(pass);
-        self.regions_left[context] = regions;
+/// The bins of a drawing: one pass for each view.
+#[derive(Debug)]
+struct Bins<S> {
+    sent: Arc<S>,
+    passes: Vec<Arc<Pass>>,
+}
+
+impl<S> SlaveState<S> {
+    const fn new() -> Self {
+        let (next_edit, next_transform) = (PictureNumber::FIRST, Drawing(0));
+        Self { sent: VecDeque::new(), next_edit, next_transform, bins: [None, None], tokens: [0; 2] }
     }
 
-    /// Counts a token for the bins of a context. After the last token, the function empties the context and returns
-    /// true.
-    fn count_token(&mut self, context: usize) -> bool {
-        self.regions_left[context] -= 1;
-        let is_last = self.regions_left[context] == 0;
+    /// Counts a token for the set of bins `context`. After the last of the drawing's `of` tokens, the function empties the
+    /// set and returns true.
+    fn count_token(&mut self, context: usize, of: u16) -> bool {
+        self.tokens[context] += 1;
+        let is_last = self.tokens[context] == of;
         if is_last {
+            self.tokens[context] = 0;
             self.bins[context] = None;
         }
         is_last
     }
 }
 
-type SharedSlaveState = Rc<RefCell<SlaveState>>;
+impl<S: Sent> SlaveState<S> {
+    /// Returns the next picture if it was sent and the master has permitted EDIT.
+    fn next_picture(&mut self) -> Option<S> {
+        let may_begin = self.sent.front()?.number() < self.next_edit;
+        if may_begin { self.sent.pop_front() } else { None }
+    }
+}
 
-/// Returns the programs of the slave with index `index`, for both priorities of its board.
+/// One of the two programs of a slave.
+struct Slave<D: Drawn> {
+    gp: Gp,
+    config: RenderingControlConfig<D>,
+    share: Share,
+    index: usize,
+    state: Rc<RefCell<SlaveState<D::Sent>>>,
+}
+
+/// Returns the programs of a slave, for both priorities of its board. `index` is the index of the slave.
 ///
 /// Each program fails with [`Fault::Memory`] if the display list, commands or bins do not fit into memory. A program
 /// fails with [`Fault::Protocol`] for an unknown message.
-pub fn slave(
+pub fn slave<D: Drawn>(
     gp: &Gp,
-    config: &RenderingControlConfig,
+    config: &RenderingControlConfig<D>,
     share: Share,
     index: usize,
-) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
-    let state = SharedSlaveState::default();
+) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<D>); 2] {
+    let state = Rc::new(RefCell::new(SlaveState::new()));
+    // Tokens interrupt TRANSFORM.
     [Priority::Interrupt, Priority::Foreground].map(|level| {
-        let gp = gp.at_priority(level);
-        let config = config.clone();
-        let share = share.clone();
-        let state = Rc::clone(&state);
+        let (gp, config, share, state) = (gp.at_priority(level), config.clone(), share.clone(), Rc::clone(&state));
+        let slave = Slave { gp, config, share, index, state };
         let program = async move {
             match level {
-                Priority::Foreground => transform_program(gp, config, share, state).await,
-                Priority::Interrupt => token_program(gp, config, index, state).await,
+                Priority::Foreground => slave.transform_all().await,
+                Priority::Interrupt => slave.answer_messages().await,
             }
         };
         (level, program)
     })
 }
 
-async fn transform_program(
-    gp: Gp,
-    config: RenderingControlConfig,
-    share: Share,
-    state: SharedSlaveState,
-) -> Result<(), Fault> {
-    // Reserve memory and load the display list before the first frame.
-    gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
-    gp.reserve(Account::DisplayList, share.bytes(), None)?;
-    gp.install(|processor| share.install(processor))?;
-    for frame in PictureNumber::FIRST.onwards() {
-        let view = edit(&gp, &config, &state, frame).await?;
-        // Each eye waits for the master's permission.
-        for eye in 0..config.eyes() {
-            let drawing = config.first_of(frame).after(eye);
-            gp.until("leave to TRANSFORM", || (state.borrow().next_transform > drawing).then_some(())).await;
-            transform(&gp, &config, &share, &state, &view, drawing).await?;
-        }
-    }
-    Ok(())
-}
-
-/// Performs EDIT: applies the edits of a frame and reports this to the master.
-async fn edit(
-    gp: &Gp,
-    config: &RenderingControlConfig,
-    state: &SharedSlaveState,
-    frame: PictureNumber,
-) -> Result<FrameView, Fault> {
-    gp.until("leave to EDIT", || (state.borrow().next_edit > frame).then_some(())).await;
-    let view = gp.until("SEND of the frame", || state.borrow_mut().views.pop_front()).await;
-    gp.begin(Stage::Edit, frame, None);
-    gp.work(&EditWork(&view)).await?;
-    gp.end(Stage::Edit, frame, None);
-    send_to_master(gp, config, &StageOrder::Edited(frame)).await;
-    Ok(view)
-}
-
-/// Performs TRANSFORM. The slave makes the commands of all its primitives, and puts the commands into bins.
-///
-/// If the bins of two drawings do not fit into memory together, TRANSFORM waits until RENDER of the previous drawing
-/// has freed its bins. The simulated program has the number of entries in advance. A real program would estimate this
-/// number from the previous drawing.
-async fn transform(
-    gp: &Gp,
-    config: &RenderingControlConfig,
-    share: &Share,
-    state: &SharedSlaveState,
-    view: &FrameView,
-    drawing: EyeDrawing,
-) -> Result<(), Fault> {
-    let frame = config.frame_of(drawing);
-    let eye = config.eye_of(drawing);
-    let pass = share.transform(view, eye.index(), config.picture);
-    let context = (drawing.0 % 2) as u8;
-    // Bins alternate between two contexts, one of which may still be in use by RENDER.
-    wait_for_bins(gp, state, &pass, context).await;
-    gp.begin(Stage::Transform, frame, Some(eye));
-    reserve_bins(gp, &pass, context)?;
-    let passes = std::slice::from_ref(&pass);
-    gp.work(&TransformWork { passes, context, begins: true }).await?;
-    // The master sorts regions by these numbers of entries.
-    let regions = config.grid().regions() as u16;
-    let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
-    state.borrow_mut().fill(usize::from(context), pass, config.grid().regions());
-    gp.end(Stage::Transform, frame, Some(eye));
-    send_to_master(gp, config, &StageOrder::Transformed(drawing, entries)).await;
-    Ok(())
-}
-
-/// Waits until the bins of a pass fit in memory, or until the slave's second bin context is empty. `context` is the bin
-/// context (set of bins) of the pass.
-async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: u8) {
-    let regions = (0..pass.picture().viewport.grid().regions() as u16).map(RegionId);
-    let bytes = regions.map(|region| u64::from(pass.counts(region).total()) * BIN_ENTRY_BYTES).sum();
-    let other = usize::from(context ^ 1);
-    let fits = || gp.has_room_for_bins(context, bytes) || state.borrow().bins[other].is_none();
-    gp.until("room in the bins", || fits().then_some(())).await;
-}
-
-/// Reserves memory for commands and bins. If the bins do not fit, the error contains the region whose bin was too
-/// large.
-fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
-    gp.reserve(Account::Commands(context), pass.command_bytes(), None)?;
-    let mut bytes = 0;
-    for region in 0..pass.picture().viewport.grid().regions() as u16 {
-        bytes += u64::from(pass.counts(RegionId(region)).total()) * BIN_ENTRY_BYTES;
-        gp.reserve(Account::Bins(context), bytes, Some(RegionId(region)))?;
-    }
-    Ok(())
-}
-
-/// Runs the interrupt program. The program stores views and permissions, and handles tokens.
-async fn token_program(
-    gp: Gp,
-    config: RenderingControlConfig,
-    index: usize,
-    state: SharedSlaveState,
-) -> Result<(), Fault> {
-    loop {
-        let received = gp.next_message().await;
-        let order = StageOrder::read(&received, gp.node());
-        // `walk` spends the software cost of a token. The software cost of other messages is spent here.
-        if let Ok(StageOrder::Token(token)) = order {
-            walk(&gp, &config, index, &state, &received, token).await?;
-            continue;
-        }
-        gp.pay_for(&received).await;
-        match order? {
-            StageOrder::Send(view) => state.borrow_mut().views.push_back(view),
-            StageOrder::Edit(frame) => {
-                let state = &mut *state.borrow_mut();
-                state.next_edit = frame.next();
-                state.next_transform = config.first_of(frame).after(1);
+impl<D: Drawn> Slave<D> {
+    async fn transform_all(self) -> Result<(), Fault> {
+        // Reserve memory and load the display list before the first picture.
+        self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
+        self.gp.reserve(Account::DisplayList, self.share.bytes(), None)?;
+        self.gp.install(|processor| self.share.install(processor))?;
+        let mut installed = Arc::clone(self.share.list());
+        loop {
+            let sent = Arc::new(self.edit().await?);
+            let share = self.config.drawn.placed(&self.share, &sent);
+            place_vertices(&self.gp, &share, &mut installed)?;
+            // Each eye waits for the master's permission.
+            let first = self.config.first_of(sent.number());
+            for drawing in (0..self.config.drawn.eyes()).map(|eye| first.after(eye)) {
+                let may_begin = || self.state.borrow().next_transform > drawing;
+                self.gp.until("leave to TRANSFORM", || may_begin().then_some(())).await;
+                self.transform(&share, &sent, drawing).await?;
             }
-            StageOrder::Transform(drawing) => state.borrow_mut().next_transform = drawing.after(1),
-            other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
         }
+    }
+
+    /// Performs EDIT: applies the edits of the next picture and reports this to the master.
+    async fn edit(&self) -> Result<D::Sent, Fault> {
+        let next = || self.state.borrow_mut().next_picture();
+        let sent = self.gp.until("SEND and leave to EDIT", next).await;
+        let number = sent.number();
+        self.gp.begin(Stage::Edit, number, None);
+        self.gp.work(&EditWork(sent.view())).await?;
+        self.gp.end(Stage::Edit, number, None);
+        self.send_to_master(&StageOrder::Edited(number)).await;
+        Ok(sent)
+    }
+
+    /// Performs TRANSFORM. The slave makes the commands of all its primitives, and puts the commands into bins.
+    ///
+    /// If the bins of two drawings do not fit into memory together, TRANSFORM waits until RENDER of the previous drawing
+    /// has freed its bins. The simulated program has the number of entries in advance. A real program would estimate
+    /// this number from the previous drawing.
+    async fn transform(&self, share: &Share, sent: &Arc<D::Sent>, drawing: Drawing) -> Result<(), Fault> {
+        let drawn = &self.config.drawn;
+        let (picture, eye) = (self.config.picture_of(drawing), self.config.eye_of(drawing));
+        let surface = Some(SurfaceId(eye as u16));
+        let passes = drawn.passes(share, sent, eye);
+        let entries = drawn.entries(&passes);
+        // Bins alternate between two contexts, one of which may still be in use by RENDER.
+        let context = drawing.context();
+        let bytes = entries.iter().map(|entries| u64::from(*entries) * BIN_ENTRY_BYTES).sum();
+        let other_is_empty = || self.state.borrow().bins[context ^ 1].is_none();
+        let has_room = || self.gp.has_room_for_bins(context as u8, bytes) || other_is_empty();
+        self.gp.until("room in the bins", || has_room().then_some(())).await;
+        self.gp.begin(Stage::Transform, picture, surface);
+        self.reserve_bins(&passes, &entries, context)?;
+        self.gp.work(&drawn.work(share, sent, &passes, context as u8)).await?;
+        self.state.borrow_mut().bins[context] = Some(Bins { sent: Arc::clone(sent), passes });
+        self.gp.end(Stage::Transform, picture, surface);
+        // The master sorts regions by these numbers of entries.
+        self.send_to_master(&StageOrder::Transformed(drawing, entries)).await;
+        Ok(())
+    }
+
+    /// Reserves memory for commands and bins. If the bins do not fit, the error contains the region whose bin was too
+    /// large.
+    fn reserve_bins(&self, passes: &[Arc<Pass>], entries: &[u32], context: usize) -> Result<(), Fault> {
+        let commands = passes.iter().map(|pass| pass.command_bytes()).sum();
+        self.gp.reserve(Account::Commands(context as u8), commands, None)?;
+        let mut bytes = 0;
+        for (region, entries) in (0..).map(RegionId).zip(entries) {
+            bytes += u64::from(*entries) * BIN_ENTRY_BYTES;
+            self.gp.reserve(Account::Bins(context as u8), bytes, Some(region))?;
+        }
+        Ok(())
+    }
+
+    /// Runs the interrupt program. The program stores views and permissions, and handles tokens.
+    async fn answer_messages(self) -> Result<(), Fault> {
+        loop {
+            let received = self.gp.next_message().await;
+            let order = StageOrder::read(&received, self.gp.node());
+            // `walk` spends the software cost of a token. The software cost of other messages is spent here.
+            if let Ok(StageOrder::Token(token)) = order {
+                self.walk(&received, token).await?;
+                continue;
+            }
+            self.gp.pay_for(&received).await;
+            let state = &mut *self.state.borrow_mut();
+            match order? {
+                StageOrder::Send(sent) => state.sent.push_back(sent),
+                StageOrder::Edit(picture) => {
+                    state.next_edit = picture.next();
+                    state.next_transform = self.config.first_of(picture).after(1);
+                }
+                StageOrder::Transform(drawing) => state.next_transform = drawing.after(1),
+                other => return Err(Fault::Protocol { node: self.gp.node(), found: format!("at a slave: {other:?}") }),
+            }
+        }
+    }
+
+    /// Sends this slave's bin for the token's region, then sends the token to the next slave.
+    async fn walk(&self, received: &Received, token: Token) -> Result<(), Fault> {
+        let renderer = self.config.renderers[usize::from(token.renderer)];
+        let bin = self.bin_of(token);
+        let lists = bin.as_ref().map_or_else(Vec::new, TokenBin::messages);
+        let messages = lists.into_iter().map(|list| (renderer, list.words(), Body::Commands(list)));
+        let handing = bin.as_ref().map(TokenBin::handing);
+        // Spend the cost of the token, send the bin, and pass the token on in the background.
+        self.gp.answer(received, handing.as_ref(), messages, self.passed_on(token)).await?;
+        self.free_bins(token)
+    }
+
+    /// Returns the bin of a token's region, or `None` if this slave has no bins for the view that contains the region.
+    fn bin_of(&self, token: Token) -> Option<TokenBin> {
+        let drawn = &self.config.drawn;
+        let context = token.drawing.context();
+        let (view, region) = drawn.on_view(token.region);
+        let state = self.state.borrow();
+        let bins = state.bins[context].as_ref()?;
+        let target = drawn.target(&bins.sent, self.config.eye_of(token.drawing), token.region);
+        // The first slave begins the region, and the last slave ends it.
+        let last = token.slaves_left == 1;
+        let envelope = RegionEnvelope {
+            begin: usize::from(token.slaves_left) == self.config.slaves.len(),
+            shade: last,
+            copy: token.end.way().filter(|_| last).map(|way| self.config.copy_order(target, way)),
+        };
+        // A region of one of several views has no place on a surface.
+        let frame_buffer = (D::VIEWS == 1).then_some(target.frame_buffer);
+        Some(TokenBin { pass: Arc::clone(bins.passes.get(view)?), context, view, region, envelope, frame_buffer })
+    }
+
+    /// Returns the message that passes a token to the next slave. The last slave's message reports to the master that
+    /// the region is finished.
+    fn passed_on(&self, token: Token) -> (NodeId, u32, Body) {
+        let next = Token { slaves_left: token.slaves_left - 1, ..token };
+        let (receiver, order) = if next.slaves_left == 0 {
+            (self.config.master, StageOrder::<D::Sent>::Accepted(next))
+        } else {
+            (self.config.slaves[(self.index + 1) % self.config.slaves.len()], StageOrder::Token(next))
+        };
+        let (words, body) = order.message();
+        (receiver, words, body)
+    }
+
+    /// Frees a drawing's commands and bins after the last token of the drawing.
+    fn free_bins(&self, token: Token) -> Result<(), Fault> {
+        let context = token.drawing.context();
+        if self.state.borrow_mut().count_token(context, token.of) {
+            self.gp.reserve(Account::Commands(context as u8), 0, None)?;
+            self.gp.reserve(Account::Bins(context as u8), 0, None)?;
+        }
+        Ok(())
+    }
+
+    async fn send_to_master(&self, order: &StageOrder<D::Sent>) {
+        let (words, body) = order.message();
+        self.gp.send(self.config.master, words, body).await;
     }
 }
 
-/// Sends this slave's bin for the token's region, then passes the token on.
-async fn walk(
-    gp: &Gp,
-    config: &RenderingControlConfig,
-    index: usize,
-    state: &SharedSlaveState,
-    received: &Received,
-    token: Token,
-) -> Result<(), Fault> {
-    let renderer = config.renderers[usize::from(token.renderer)];
-    let context = (token.drawing.0 % 2) as u8;
-    // Get the bins of this drawing's context.
-    let pass = state.borrow().bins[usize::from(context)].clone();
-    let envelope = envelope(config, token);
-    let handing = pass.as_ref().map(|pass| BinHandoffWork { pass, context, view: 0, region: token.region, envelope });
-    let lists = pass.as_ref().map_or_else(Vec::new, |pass| region_messages(pass, token.region, 0, envelope));
-    // The frame buffer in the message shows observers for which eye the renderer draws.
-    let frame_buffer = config.target(token.drawing, token.region).frame_buffer;
-    let lists = lists.into_iter().map(|list| list.for_frame_buffer(frame_buffer));
-    let messages = lists.map(|list| (renderer, list.words(), Body::Commands(list)));
-    // Spend the cost of the token, send the bin, and pass the token on in the background.
-    gp.answer(received, handing.as_ref(), messages, passed_on(config, index, token)).await?;
-    free_bins(gp, state, token.drawing)
-}
-
-/// Returns the message that passes a token to the next slave. The last slave's message reports to the master that the
-/// region is finished.
-fn passed_on(config: &RenderingControlConfig, index: usize, token: Token) -> (NodeId, u32, Body) {
-    let last = token.slaves_left == 1;
-    let next = Token { slaves_left: token.slaves_left - 1, ..token };
-    let (receiver, order) = if last {
-        (config.master, StageOrder::Accepted(next))
-    } else {
-        (config.slaves[(index + 1) % config.slaves.len()], StageOrder::Token(next))
-    };
-    let (words, body) = order.message();
-    (receiver, words, body)
-}
-
-/// Frees a drawing's commands and bins after the slave has received the tokens of all regions.
-fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(), Fault> {
-    let context = (drawing.0 % 2) as u8;
-    if state.borrow_mut().count_token(usize::from(context)) {
-        gp.reserve(Account::Commands(context), 0, None)?;
-        gp.reserve(Account::Bins(context), 0, None)?;
+/// Stores the vertices of a picture in the board's memory if they were displaced. The displacement takes no simulated
+/// time.
+fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> Result<(), Fault> {
+    if !Arc::ptr_eq(installed, share.list()) {
+        gp.install(|processor| share.install(processor))?;
+        *installed = Arc::clone(share.list());
     }
     Ok(())
 }
 
-/// Returns the commands that this slave adds to its bin. The first slave begins the region, and the last slave ends it.
-fn envelope(config: &RenderingControlConfig, token: Token) -> RegionEnvelope {
-    let last = token.slaves_left == 1;
-    RegionEnvelope {
-        begin: usize::from(token.slaves_left) == config.slaves.len(),
-        shade: last,
-        copy: token.end.way().filter(|_| last).map(|way| copy_order(config, token.drawing, token.region, way)),
-    }
+/// A slave's bin for a token's region, with the commands that begin and end the region.
+struct TokenBin {
+    pass: Arc<Pass>,
+    context: usize,
+    view: usize,
+    region: RegionId,
+    envelope: RegionEnvelope,
+    /// Frame buffer of the region, which shows observers for which eye the renderer draws.
+    frame_buffer: Option<NodeId>,
 }
 
-async fn send_to_master(gp: &Gp, config: &RenderingControlConfig, order: &StageOrder) {
-    let (words, body) = order.message();
-    gp.send(config.master, words, body).await;
+impl TokenBin {
+    fn handing(&self) -> BinHandoffWork<'_> {
+        let Self { pass, region, envelope, .. } = self;
+        let (context, view) = (self.context as u8, self.view as u8);
+        BinHandoffWork { pass, context, view, region: *region, envelope: *envelope }
+    }
+
+    fn messages(&self) -> Vec<CommandList> {
+        let lists = region_messages(&self.pass, self.region, 0, self.envelope).into_iter();
+        let named = |list: CommandList| match self.frame_buffer {
+            Some(frame_buffer) => list.for_frame_buffer(frame_buffer),
+            None => list,
+        };
+        lists.map(named).collect()
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_context_is_empty_when_a_token_of_each_of_its_regions_has_been_here() {
-        let mut state = SlaveState { regions_left: [3, 2], ..SlaveState::default() };
-        let tokens = [(0, false), (1, false), (0, false), (0, true), (1, true)];
-        for (context, is_last) in tokens {
-            assert_eq!(state.count_token(context), is_last, "{context}");
-        }
-    }
-}
+pub(crate) mod tests;

@@ -1,19 +1,19 @@
-//! Assignment of regions to renderers and contexts, and the order in which regions are copied.
+//! Assignment of regions to renderers, and the order in which regions are copied.
 
 use crate::schedule::CopySchedule;
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{Eye, RegionGrid, RegionId};
 
-/// A region of one eye's field. One context of one renderer holds this region for the whole run.
+/// A region of one eye's field, with the renderer that draws this region in every field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BoundRegion {
     /// Eye whose picture contains the region.
     pub eye: Eye,
     /// Index of the region in [`RegionGrid::FIELD`].
     pub region: RegionId,
-    /// Index of the renderer in [`crate::SlatsConfig::renderers`].
+    /// Index of the renderer in the list [`crate::SlatsConfig::renderers`].
     pub renderer: usize,
-    /// Index of the context in the renderer's pixel memory that holds the region.
+    /// Index of the part of the renderer's pixel memory that holds the region. A renderer has up to four such contexts.
     pub context: u8,
 }
 
@@ -25,7 +25,7 @@ impl BoundRegion {
     }
 }
 
-/// All regions of both eyes, each with a renderer that is fixed for the whole run.
+/// The regions of both eyes, each with a fixed renderer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
     regions: Vec<BoundRegion>,
@@ -68,11 +68,10 @@ impl Binding {
         &self.regions
     }
 
-    /// Returns the regions of a renderer in the order of copying. The eyes alternate.
+    /// Returns the regions that a renderer copies, in the order of copying. The eyes alternate.
     ///
-    /// A copy that is not split includes both halves of the picture and begins with the left eye. A split copy includes
-    /// only the top half (`top`) or only the bottom half. Renderers with an odd index begin a split copy with the right
-    /// eye.
+    /// A whole copy begins with the left eye. A split copy has only the top half if `top` is true, otherwise only the
+    /// bottom half. In a split copy, renderers with an odd index begin with the right eye.
     #[must_use]
     pub fn copies(&self, renderer: usize, top: bool) -> Vec<BoundRegion> {
         let of_renderer = self.regions.iter().filter(|b| b.renderer == renderer);
@@ -83,15 +82,13 @@ impl Binding {
         alternate(mine)
     }
 
-    /// Returns the number of renderers.
     #[must_use]
     pub const fn renderers(&self) -> usize {
         self.renderers
     }
 }
 
-/// Reorders regions so that the eyes alternate as long as both eyes have regions left. The region that was first stays
-/// first.
+/// Reorders regions so that left and right eye alternate. The first region stays first.
 fn alternate(regions: Vec<BoundRegion>) -> Vec<BoundRegion> {
     let Some(first) = regions.first().map(|b| b.eye) else { return regions };
     let (mut ours, mut others): (Vec<_>, Vec<_>) = regions.into_iter().partition(|b| b.eye == first);

@@ -1,4 +1,4 @@
-//! Configuration of Slats: the boards, and the variant of the pipeline.
+//! Settings of Slats: the boards, and the variant of the pipeline.
 
 use crate::bind::Binding;
 use crate::schedule::CopySchedule;
@@ -15,18 +15,18 @@ pub struct SlatsConfig {
     pub host: NodeId,
     /// Ring ports of the graphics processors. The first graphics processor is the leader.
     pub processors: Vec<NodeId>,
-    /// Ring ports of the renderers. [`crate::BoundRegion`] uses the indices of this list.
+    /// Ring ports of the renderers.
     pub renderers: Vec<NodeId>,
     /// Ring ports of the left and the right eye's frame buffer.
     pub frame_buffers: [NodeId; 2],
-    /// Schedule for copying the regions of a field.
+    /// Order and time of the copies of a field's regions.
     pub copy: CopySchedule,
-    /// Binning mode: the regions that receive the commands of a clump.
+    /// Choice of the regions to which a clump is sent.
     pub binning: RegionBinning,
-    /// Shading mode: precomputed vertex colours ([`Shading::Precomputed`]) or lighting on the graphics processors
+    /// Precomputed colours of vertices ([`Shading::Precomputed`]), or lighting on the graphics processors
     /// ([`Shading::Gouraud`]).
     pub shading: Shading,
-    /// Division of pixel memory among contexts.
+    /// Use of the bits of a pixel's memory, for up to four regions.
     pub layout: Layout,
     /// True if the run can compute pixels. If false, no command words are made, but all times stay the same.
     pub pixels: bool,
@@ -56,11 +56,10 @@ impl SlatsConfig {
         }
     }
 
-    /// Returns the destination of a region's pixels: the frame buffer of the eye, pixel buffer `buffer`, and the lines
-    /// of field `field`.
+    /// Returns the place in a frame buffer to which a region is copied. `buffer` is the index of the buffer.
     ///
-    /// While a field is written into its lines, the beam scans the other lines of the frame. Interlace thus acts as a
-    /// double buffer. Without a backup buffer, only buffer 0 is needed.
+    /// A field needs only buffer 0, because the beam scans the lines of the other field during the copy. Only
+    /// [`CopySchedule::Backup`] uses two buffers.
     pub(crate) fn target(&self, bound: &crate::BoundRegion, field: PeriodNumber, buffer: u8) -> CopyTarget {
         CopyTarget {
             frame_buffer: self.frame_buffers[bound.eye.index()],

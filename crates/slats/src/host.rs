@@ -1,4 +1,4 @@
-//! Program of the host, which performs SEND for every new report of the tracker.
+//! Program of the host, which sends a view for every new report of the tracker.
 
 use crate::config::SlatsConfig;
 use pphigs::{FrameView, send_as_tracked};
@@ -6,14 +6,13 @@ use pxpl5_gp::{Fault, Gp, HostTiming};
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 
-/// Sends the viewing transforms of both eyes to the leading graphics processor.
+/// Sends the viewing transforms of both eyes to the first graphics processor.
 ///
-/// The host sends the first message at the start of the run, so that the graphics processor can draw the first field.
-/// Then a message follows for every report of the tracker ([`send_as_tracked`]). The graphics processor uses the newest
-/// view when it begins a field.
+/// The host sends the first message at the start of the run, and then a message for every report of the tracker
+/// ([`send_as_tracked`]). The graphics processor uses the newest view when it begins a field.
 ///
-/// `next_report` returns the time at which the first report after a given time arrives. `view_of` returns a view whose
-/// pose is sampled at the given time.
+/// `next_report` returns the arrival time of the first report after a time. `view_of` returns the view for a number and
+/// for the time at which the pose is sampled.
 ///
 /// # Errors
 ///

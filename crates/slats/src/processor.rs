@@ -18,51 +18,47 @@ use std::sync::Arc;
 /// Largest number of primitives in a clump. The commands of a clump for one region fit into one message (TR94).
 pub const CLUMP: usize = 30;
 
-/// First word of a message to the leading graphics processor. With this message, the sender reports that all of its
-/// clumps of a field were accepted. The number of the field follows this word.
+/// First word of a message to the first graphics processor: all clumps of the sender were accepted. The number of the
+/// field follows.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 
-/// First word of the message by which the leading graphics processor begins a field on the other graphics processors.
-/// The number and the view of the field follow this word.
+/// First word of a message from the first graphics processor to the others: begin a field. The number and the view of
+/// the field follow.
 const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
 struct ProcessorState {
-    /// The newest view from the host. Only the leading graphics processor stores this view.
+    /// The newest view from the host, on the first graphics processor.
     newest: Option<FrameView>,
-    /// Fields that the leading graphics processor has begun. Only the other graphics processors store these fields.
+    /// Fields that this graphics processor must still draw. Empty on the first graphics processor.
     begun: VecDeque<(PeriodNumber, FrameView)>,
-    /// Number of renderers that have acknowledged the copy of their last region since the last copy order.
+    /// Number of renderers that have reported the end of their copies since the newest copy order.
     copied: usize,
-    /// The prepared copies of the bottom regions. These copies wait until all top regions are copied.
+    /// The copies of the bottom regions, which wait until all top regions are copied.
     bottom: Option<Bottom>,
-    /// For even and for odd lines: index of the buffer with the last complete field of these lines.
+    /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],
-    /// For each unfinished field: the number of graphics processors that have finished their share of the field, not
-    /// counting the leading graphics processor.
+    /// For each unfinished field, the number of graphics processors that have reported the end of their work.
     finished: Vec<(PeriodNumber, usize)>,
 }
 
-/// A prepared chain of messages that copies the bottom regions of a field.
+/// The copies of a field's bottom regions, as a chain of messages that is ready to start.
 #[derive(Debug)]
 struct Bottom {
     chain: Chain,
-    /// Field of the bottom regions.
     field: PeriodNumber,
-    /// Earliest field period in which the copies may start. Without a backup buffer, the copies may start in the period
-    /// that shows the field.
+    /// Earliest period in which the copies may start. Without a second buffer, this is the period that shows the field.
     not_before: PeriodNumber,
-    /// Number of renderers that copy top regions. The bottom copies start after all these renderers have acknowledged
-    /// their copies.
+    /// Number of renderers that must acknowledge the copies of their top regions before the chain starts.
     copiers: usize,
-    /// True while the interrupt program or the foreground program is about to start the chain. The other program must
-    /// then not start the chain again.
+    /// True if one of the board's two programs is about to start the chain. The other program must then not start the
+    /// chain.
     is_taken: bool,
 }
 
 type SharedState = Rc<RefCell<ProcessorState>>;
 
-/// Returns the programs of the graphics processor with index `index`, for both priorities of its board.
+/// Returns the two programs of a graphics processor, with their priorities. `index` is the index of the processor.
 ///
 /// Each program fails with [`Fault::Memory`] if the display list does not fit into memory. A program fails with
 /// [`Fault::Protocol`] for an unknown message.
@@ -95,24 +91,21 @@ pub fn processor(
     })
 }
 
-/// The frame buffers of both eyes under [`CopySchedule::Backup`]. The leading graphics processor requests that the
-/// frame buffers show the last complete field.
+/// The frame buffers of both eyes under [`CopySchedule::Backup`].
 #[derive(Clone, Copy, Debug)]
 struct Backup {
     frame_buffers: [NodeId; 2],
 }
 
-/// An event that ends the wait of the interrupt program.
 enum Event {
     Message(Received),
     Retrace(PeriodNumber),
 }
 
-/// Runs the interrupt program. The program stores the newest view and counts the graphics processors that have finished
-/// a field. When the top regions are copied, the program starts the copies of the bottom regions.
+/// Runs the interrupt program, which receives all messages. When the top regions are copied, the program starts the
+/// copies of the bottom regions.
 ///
-/// With a backup buffer, the program also sends a request after every retrace. This request selects the field that the
-/// frame buffers show in the next period.
+/// With a backup buffer, the program also selects the buffer that the displays show in each period.
 async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<(), Fault> {
     let mut present = gp.field();
     loop {
@@ -146,11 +139,9 @@ async fn listen(gp: Gp, state: SharedState, backup: Option<Backup>) -> Result<()
 }
 
 impl Backup {
-    /// Records that a field is complete, because all of its top regions are copied. If the field is due at the next
-    /// retrace, the function requests its display.
+    /// Records that a field is complete, and shows the field at the next retrace if this is the field's period.
     ///
-    /// The field counts as complete before the copies of its bottom regions, because these copies are faster than the
-    /// beam.
+    /// The field counts as complete before its bottom regions are copied, because the copies are faster than the beam.
     async fn show_next(self, gp: &Gp, state: &SharedState, field: PeriodNumber) {
         {
             let state = &mut *state.borrow_mut();
@@ -162,8 +153,8 @@ impl Backup {
         }
     }
 
-    /// Requests that, from the start of `period` on, the frame buffers show the last complete field with the same lines
-    /// (even or odd) as `period`. If the period has already begun, the function requests nothing.
+    /// Requests that the frame buffers show the last complete field with the lines (even or odd) of `period`. If
+    /// `period` has already begun, the function requests nothing.
     ///
     /// A later request replaces an earlier request.
     async fn ask(self, gp: &Gp, state: &SharedState, period: PeriodNumber) {
@@ -176,11 +167,11 @@ impl Backup {
     }
 }
 
-/// Starts the copies of a field's bottom regions if two conditions hold. All top regions of the field are copied, and
-/// the period [`Bottom::not_before`] has begun.
+/// Starts the copies of a field's bottom regions, if all top regions are copied and the period [`Bottom::not_before`]
+/// has begun.
 ///
-/// With a backup buffer, the function first requests the display of the field. The copies then occupy the ports of the
-/// frame buffers, so a later request would have to wait.
+/// With a backup buffer, the function first requests the display of the field. The copies would otherwise delay this
+/// request at the ports of the frame buffers.
 async fn copy_bottom_when_due(gp: &Gp, state: &SharedState, backup: Option<Backup>) {
     // Decide within one borrow, and mark the chain as taken. In the steps below, the program can wait while the other
     // program runs.
@@ -248,8 +239,8 @@ impl SlatsProcessor {
         if self.index == 0 { self.lead().await } else { self.follow().await }
     }
 
-    /// Runs the leading graphics processor's program. At each retrace, the program begins a new field if the previous
-    /// field is finished.
+    /// Runs the program of the first graphics processor. At each retrace, the program begins a new field, if the
+    /// previous field is finished.
     async fn lead(self) -> Result<(), Fault> {
         self.gp.until("the first view from the host", || self.state.borrow().newest.as_ref().map(|_| ())).await;
         let mut begin_at = self.gp.field().next();
@@ -292,30 +283,29 @@ impl SlatsProcessor {
         }
     }
 
-    /// Waits until the copies of the previous field's bottom regions have started. The first messages of the next field
-    /// clear these regions, so these messages must not be sent earlier.
+    /// Waits until the bottom regions of the previous field are being copied. The first clump of the next field clears
+    /// these regions.
     async fn bottom_started(&self) {
         self.gp.until("the copies of the top regions", || self.state.borrow().bottom.is_none().then_some(())).await;
     }
 
-    /// Returns the next field to draw: the field that begins at the retrace after field `now`.
+    /// Returns the next field to draw, which is normally the field after `now`.
     ///
-    /// With a backup buffer, the function skips a field with the same lines as the field `last`. Even and odd lines are
-    /// then renewed in turn even if fields are late.
+    /// With a backup buffer, a field with the same lines as the field `last` is skipped. Even and odd lines are then
+    /// renewed in turn, even if fields are late.
     fn next_field(&self, now: PeriodNumber, last: Option<PeriodNumber>) -> PeriodNumber {
         let field = now.next();
         let same_lines = last.is_some_and(|last| FieldParity::of_field(last) == FieldParity::of_field(field));
         if self.config.copy == CopySchedule::Backup && same_lines { field.next() } else { field }
     }
 
-    /// Returns the index of the buffer into which a field is written.
     fn buffer(&self, field: PeriodNumber) -> u8 {
         let complete = self.state.borrow().complete[FieldParity::of_field(field) as usize];
         if self.config.copy == CopySchedule::Backup { 1 - complete } else { 0 }
     }
 
-    /// Runs the program of the other graphics processors. The program draws this graphics processor's share of every
-    /// field that the leading graphics processor begins.
+    /// Runs the program of the other graphics processors, which draw their share of each field that the first graphics
+    /// processor begins.
     async fn follow(self) -> Result<(), Fault> {
         loop {
             let (field, view) =
@@ -329,16 +319,16 @@ impl SlatsProcessor {
         }
     }
 
-    /// Returns true if there is only one graphics processor. The first clump of a single graphics processor clears the
+    /// Returns true if there is only one graphics processor. The first clump of a single processor also clears the
     /// regions.
     fn is_alone(&self) -> bool {
         self.config.processors.len() == 1
     }
 
-    /// Clears all regions by a separate chain of messages, which is needed if there are several graphics processors.
+    /// Clears all regions before the other graphics processors send their clumps.
     ///
-    /// The other graphics processors send their clumps only after this chain, so the chain cannot clear pixels of these
-    /// clumps.
+    /// With several graphics processors, the first clump of one processor cannot clear the regions, because clumps of
+    /// another processor may arrive earlier.
     async fn clear(&self, field: PeriodNumber, view: &FrameView) {
         let picture = self.config.picture(FieldParity::of_field(field));
         let nothing = self.share.nothing();
@@ -354,7 +344,7 @@ impl SlatsProcessor {
         self.gp.send_batch(messages.collect()).await;
     }
 
-    /// Draws this graphics processor's share of a field. The field is shown from the retrace of `field` on.
+    /// Draws this graphics processor's share of `field`.
     async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);
@@ -385,8 +375,8 @@ impl SlatsProcessor {
         Ok(())
     }
 
-    /// Sends a clump to all its regions as one chain of messages. If `begin` is true, the messages also clear the
-    /// regions. Returns `None` if no region needs a message.
+    /// Sends a clump to its regions. If `begin` is true, the messages also clear the regions. Returns `None` if no
+    /// region needs a message.
     async fn send(&self, passes: &[Arc<Pass>; 2], begin: bool) -> Option<Ticket> {
         let envelope = RegionEnvelope { begin, ..RegionEnvelope::default() };
         let lists = self.binding.regions().iter().flat_map(|bound| {
@@ -402,8 +392,8 @@ impl SlatsProcessor {
         (self.config.renderers[renderer], list.words(), Body::Commands(list))
     }
 
-    /// Returns the copy commands of the top regions if `top` is true, and of the bottom regions if `top` is false. If
-    /// copies are not split, the commands for the top regions include the bottom regions.
+    /// Returns the copy commands for the top regions if `top` is true, otherwise for the bottom regions. If copies are
+    /// not split, the commands for the top regions also copy the bottom regions.
     fn copies(&self, field: PeriodNumber, top: bool) -> Vec<(NodeId, u32, Body)> {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);

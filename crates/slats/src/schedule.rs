@@ -1,22 +1,19 @@
 //! Schedules for copying finished regions.
 
-/// Copy schedule: when the regions of a field are copied to the frame buffers.
+/// The order and the time of the copies of a field's regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CopySchedule {
-    /// Copies all regions before the retrace.
+    /// All regions are copied before the retrace.
     Whole,
-    /// Copies the top regions before the retrace and the bottom regions right after the retrace (the COPY
-    /// optimization).
+    /// The top regions are copied before the retrace, and the bottom regions right after the retrace.
     Split,
-    /// Copies top regions, then bottom regions. The regions go into the buffer that does not hold the last complete
-    /// field of the same lines.
+    /// The top regions are copied first, then the bottom regions, into a second buffer.
     ///
-    /// A field is shown at its retrace if its top regions are ready. Otherwise the last complete field is shown again,
-    /// and the late field appears at the next retrace of its lines.
+    /// If the top regions are late, the display shows the last complete field of the same lines again. The late field
+    /// appears at the next retrace of its lines.
     ///
-    /// This schedule is not in the prototype. TR94 proposes a backup field as future work, with a copy that uses the
-    /// spare bandwidth of the frame buffers. With two alternating buffers no such copy is needed, because the last
-    /// complete field stays in its buffer.
+    /// This schedule is not in the prototype. TR94 proposes to copy a backup field as future work. With two buffers in
+    /// turn no such copy is needed, because the last complete field stays in its buffer.
     Backup,
 }
 

@@ -1,5 +1,4 @@
-//! Ideal pictures: colours and depths of pixels, and the pixels at which several primitives have the same smallest
-//! depth.
+//! Ideal pictures: colours and depths of pixels, and pixels at which several primitives are nearest.
 
 use crate::oracle::shade::Paint;
 use image::{Rgb, RgbImage};
@@ -17,20 +16,20 @@ pub struct IdealPicture {
     ties: BTreeMap<[u32; 2], Vec<[u8; 3]>>,
 }
 
-/// A pixel at which two or more primitives have exactly the same depth and no other primitive is nearer.
+/// A pixel at which two or more primitives are nearest, with exactly the same depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tie<'a> {
     /// Column, counted from the left.
     pub x: u32,
     /// Row of the picture, counted from the top.
     pub y: u32,
-    /// Red, green and blue of each primitive with this smallest depth, in the order of the display list.
+    /// Colours of the nearest primitives at this pixel, in the order of the display list.
     pub colours: &'a [[u8; 3]],
 }
 
 impl IdealPicture {
-    /// Returns the image. If several primitives have the same smallest depth at a pixel, the pixel has the colour of
-    /// the first of these primitives in the display list.
+    /// Returns the image. If several primitives are nearest at a pixel, the image has the colour of the first in the
+    /// display list.
     #[must_use]
     pub const fn image(&self) -> &RgbImage {
         &self.image
@@ -43,14 +42,14 @@ impl IdealPicture {
         &self.depths
     }
 
-    /// Returns the pixels at which several primitives have the same smallest depth, row by row. On the machine, the
-    /// order in which commands arrive determines the colours of these pixels.
+    /// Returns the pixels at which several primitives are nearest, row by row. On the machine, the order in which
+    /// commands arrive determines the colours of these pixels.
     pub fn ties(&self) -> impl ExactSizeIterator<Item = Tie<'_>> {
         self.ties.iter().map(|([y, x], colours)| Tie { x: *x, y: *y, colours })
     }
 
-    /// Returns the pixels (x, y) of the image `other` whose colour is wrong, row by row. At a pixel with several
-    /// nearest primitives, the colour of each of these primitives is right.
+    /// Returns the pixels (x, y) of the image `other` whose colour is wrong, row by row. If several primitives are
+    /// nearest at a pixel, each of their colours is right.
     ///
     /// If `other` has a different size, all its pixels are returned.
     #[must_use]
@@ -67,7 +66,6 @@ impl IdealPicture {
     }
 }
 
-/// The nearest primitive at a pixel, with its depth, its index, and its colour or surface.
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
     depth: u32,
@@ -75,27 +73,25 @@ struct Nearest {
     paint: Paint,
 }
 
-/// A buffer with the nearest primitive drawn so far at each pixel.
+/// The nearest primitive so far at each pixel.
 #[derive(Debug)]
 pub(crate) struct DepthBuffer {
     width: u32,
     far: u32,
     nearest: Vec<Option<Nearest>>,
-    /// Colours or surfaces of the other primitives that have the same depth as the nearest primitive, by row and
-    /// column.
+    /// Colours or surfaces of further primitives with the same depth as the nearest primitive, by row and column.
     tied: BTreeMap<[u32; 2], Vec<Paint>>,
 }
 
 impl DepthBuffer {
-    /// Creates an empty buffer. A pixel with a depth of `far` or more is not drawn.
+    /// Creates a buffer in which pixels with a depth of `far` or more are not drawn.
     pub(crate) fn new(width: u32, height: u32, far: u32) -> Self {
         Self { width, far, nearest: vec![None; (width * height) as usize], tied: BTreeMap::new() }
     }
 
     /// Draws one pixel of a primitive. `primitive` is the index of the primitive in the order of drawing.
     ///
-    /// The function calls `paint` only if the primitive is nearer than the pixel's nearest primitive so far, or has the
-    /// same depth.
+    /// The function calls `paint` only if no nearer primitive has been drawn at this pixel.
     pub(crate) fn draw(&mut self, pixel: [i32; 2], primitive: usize, depth: u32, paint: impl FnOnce() -> Paint) {
         let [x, y] = pixel.map(i32::cast_unsigned);
         let place = &mut self.nearest[(y * self.width + x) as usize];
@@ -108,8 +104,8 @@ impl DepthBuffer {
         }
     }
 
-    /// Returns the finished picture. Pixels without a primitive get the background colour. `colour` converts the stored
-    /// value of a pixel to its colour. `depth` converts a stored depth to 24 bits.
+    /// Returns the picture. `colour` converts a stored value to a colour, and `depth` converts a stored depth to 24
+    /// bits.
     pub(crate) fn finish(
         self,
         background: [u8; 3],

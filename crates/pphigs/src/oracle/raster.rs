@@ -1,4 +1,4 @@
-//! Ideal pictures of display lists. Primitives are drawn in the order of the list, pixel by pixel.
+//! Ideal pictures of display lists, drawn primitive by primitive.
 
 use crate::oracle::picture::{DepthBuffer, IdealPicture};
 use crate::oracle::shade::{Paint, Surface, component, normal};
@@ -24,8 +24,7 @@ pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: 
     ideal_picture_of(list, |_| true, view, eye, picture)
 }
 
-/// Returns the ideal picture of only the chosen structures. `chosen` gets a structure's index in the list, and returns
-/// true if the structure is drawn.
+/// Returns the ideal picture of some structures. `chosen` returns true for the index of a structure that is drawn.
 ///
 /// # Panics
 ///
@@ -61,7 +60,6 @@ struct Raster<'a> {
     widths: Widths,
 }
 
-/// A structure to draw, with its transform.
 struct Placed<'a> {
     place: &'a PlacedStructure,
     transform: &'a Transform,
@@ -127,7 +125,7 @@ impl Raster<'_> {
         self.widths.stored_depth(plane.at(x, y) as u32)
     }
 
-    /// Calls `sink` for each pixel inside all three edges. The arguments are the pixel's column and row in the picture.
+    /// Calls `sink` with the column and row of each pixel inside all three edges.
     fn inside(&self, outline: &Outline, edges: &[Linear; 3], mut sink: impl FnMut(i32, i32)) {
         let viewport = &self.picture.viewport;
         let grid = viewport.grid();
@@ -142,7 +140,7 @@ impl Raster<'_> {
         }
     }
 
-    /// Calls `sink` for each pixel of the regions in `regions`. A sphere lies within these regions.
+    /// Calls `sink` for each pixel of `regions`, which contain a sphere.
     fn around(&self, regions: RegionMask, mut sink: impl FnMut(i32, i32)) {
         let grid = self.picture.viewport.grid();
         for region in regions.iter() {
@@ -154,7 +152,7 @@ impl Raster<'_> {
     }
 }
 
-/// Returns the range of columns or rows that a triangle can cover, with one additional column or row at each end.
+/// Returns the columns or rows that a triangle may cover, and one more at each end.
 ///
 /// `corners` are the positions of the triangle's corners in subpixels. Row r is line `first + r * step` of the frame.
 /// The picture has `count` rows.

@@ -1,16 +1,14 @@
-//! Colours of pixels. A pixel holds its final colour, or the normal of a surface that is shaded after all primitives
-//! are drawn.
+//! Colours of pixels. With Phong shading, a pixel stores a surface, whose colour is computed after all primitives are
+//! drawn.
 
 use pxpl5_renderer::Shade;
 use pxpl5_wire::Linear;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
 
-/// The value that a primitive stores at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Paint {
     /// The final colour: red, green and blue.
     Lit([u8; 3]),
-    /// A surface whose colour is computed after all primitives are drawn.
     Surface(Surface),
 }
 
@@ -31,30 +29,27 @@ impl Paint {
     }
 }
 
-/// Largest value of a cosine, which is a number of 10 bits. The value 1024 would stand for 1.0.
+/// Largest cosine, a number of 10 bits. The value 1024 would stand for 1.0.
 const COSINE_MAX: i32 = 1023;
 
-/// Number of times that the cosine of a highlight is squared. The repeated squaring makes the highlight small.
+/// Number of times that the cosine of a highlight is squared, which makes the highlight small.
 const SQUARINGS: usize = 5;
 
-/// Returns a colour component at a pixel, truncated to 8 bits. `plane` is the linear expression of the component.
 pub(crate) fn component(plane: &Linear, x: i32, y: i32) -> u8 {
     (plane.at(x, y) >> COLOUR_FRACTION_BITS) as u8
 }
 
-/// Returns a component of a normal at a pixel, truncated to its bits in two's complement. `plane` is the component's
-/// linear expression.
 pub(crate) fn normal(plane: &Linear, x: i32, y: i32) -> i32 {
     two_s_complement(plane.at(x, y) >> NORMAL_FRACTION_BITS, NORMAL_BITS)
 }
 
-/// Returns the value of the lowest `bits` bits of a number, as a number in two's complement.
+/// Returns the lowest `bits` bits of a number as a signed number.
 pub(crate) fn two_s_complement(value: i32, bits: u32) -> i32 {
     value << (32 - bits) >> (32 - bits)
 }
 
 impl Surface {
-    /// Returns the surface's colour under a light source, by the formula of [`Shade`].
+    /// Returns the colour under a light source, by the formula of [`Shade`].
     fn lit(&self, shade: &Shade) -> [u8; 3] {
         let diffuse = self.cosine(shade.light);
         let highlight = (0..SQUARINGS).fold(self.cosine(shade.half), |cosine, _| (cosine * cosine) >> 10);
@@ -64,8 +59,8 @@ impl Surface {
         self.colour.map(|component| (((i32::from(component) * intensity) >> 8) + white).min(255) as u8)
     }
 
-    /// Returns the cosine of the angle between the normal and a vector, or 0 if the angle is obtuse. Returns the
-    /// largest cosine if the normal is zero.
+    /// Returns the cosine of the angle between the normal and a vector, in units of 1/1024. Returns 0 for an obtuse
+    /// angle, and the largest cosine for a zero normal.
     fn cosine(&self, vector: [i16; 3]) -> i32 {
         let square: i32 = self.normal.iter().map(|n| n * n).sum();
         let length = square.isqrt();

@@ -5,21 +5,21 @@ use crate::oracle::widths::{ROOT_BITS, Widths};
 use pxpl5_geometry::{GouraudSphere, SphereSetup};
 use pxpl5_wire::format::COLOUR_FRACTION_BITS;
 
-/// Number of upper bits of the square root that contribute to a colour.
+/// Number of upper bits of the square root from which a colour is computed.
 const COLOUR_ROOT_BITS: u32 = 8;
 const NORMAL_ROOT_BITS: u32 = 10;
 
-/// Depth and square root of a sphere at a pixel that the sphere covers.
+/// Depth of a sphere at a pixel, and the square root from which depth and shading are computed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpherePoint {
     pub(crate) depth: u32,
-    /// Square root of the silhouette expression, rounded down to an integer of `root_bits` bits.
+    /// Square root of the silhouette expression, rounded down.
     root: u32,
     root_bits: u32,
 }
 
 impl SpherePoint {
-    /// Returns the sphere's values at a pixel, or `None` if the pixel is outside the sphere.
+    /// Returns the values at a pixel, or `None` if the pixel is outside the sphere.
     pub(crate) fn at(setup: &SphereSetup, x: i32, y: i32, widths: Widths) -> Option<Self> {
         let silhouette = u64::try_from(setup.silhouette.at(x, y)).ok()?;
         let missing = ROOT_BITS - widths.root_bits;
@@ -34,8 +34,8 @@ impl SpherePoint {
         (self.root >> (self.root_bits - bits)) as i32
     }
 
-    /// Returns the colour at a pixel: limit(linear + (upper root x factor >> 8)). Here, `limit` limits a sum of 10 bits
-    /// to 8 bits.
+    /// Returns the colour at a pixel: limit(linear + (upper bits of the root x factor >> 8)). A sum of 10 bits is
+    /// limited to 8 bits.
     pub(crate) fn colour(&self, sphere: &GouraudSphere, x: i32, y: i32) -> [u8; 3] {
         let root = self.upper_root(COLOUR_ROOT_BITS);
         std::array::from_fn(|i| {

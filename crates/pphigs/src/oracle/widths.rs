@@ -1,14 +1,13 @@
-//! Numbers of bits of a pixel's values, as far as the layout of pixel memory determines them.
+//! Numbers of bits in which pixel memory stores depths and square roots.
 
 use pxpl5_renderer::Layout;
 use pxpl5_wire::format::{Z_BITS, Z_FRACTION_BITS};
 
-/// Numbers of bits of a pixel's values, as far as the layout of pixel memory determines them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Widths {
     z_bits: u32,
-    /// Bits of a sphere's square root, 10 to 12. A layout of pixel memory without bits for the root cannot draw
-    /// spheres. The value is then 12.
+    /// Bits of a sphere's square root, 10 to 12. The value is 12 if pixel memory has no bits for the root and cannot
+    /// draw spheres.
     pub(crate) root_bits: u32,
 }
 
@@ -17,16 +16,16 @@ impl Widths {
         Self { z_bits: layout.plan().z.width.into(), root_bits: layout.root_bits().map_or(ROOT_BITS, u32::from) }
     }
 
-    /// Returns a depth with the bits that pixel memory stores. `depth` has all bits that a renderer computes.
+    /// Returns the bits of a depth that pixel memory stores.
     pub(crate) const fn stored_depth(self, depth: u32) -> u32 {
         depth >> (Z_FRACTION_BITS + Z_BITS - self.z_bits)
     }
 
-    /// Returns a stored depth in 24 bits, as a display receives it. Bits that the layout does not store are 0.
+    /// Returns a stored depth as 24 bits, as a display receives it. Bits that are not stored are 0.
     pub(crate) const fn sent_depth(self, stored: u32) -> u32 {
         stored << (Z_BITS - self.z_bits)
     }
 }
 
-/// Number of bits of the square root that the computation of a sphere's operands assumes.
+/// Number of bits of the square root for which the operands of a sphere's command are computed.
 pub(crate) const ROOT_BITS: u32 = 12;

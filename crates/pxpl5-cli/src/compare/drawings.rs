@@ -85,7 +85,7 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAx
 /// Name of a table column, with the function that formats the column's cell for a row.
 type Column = (&'static str, fn(&ComparisonRow) -> String);
 
-const COLUMNS: [Column; 28] = [
+const COLUMNS: [Column; 29] = [
     ("pipeline", |row| row.pipeline.clone()),
     ("settings", |row| row.settings.clone()),
     ("latency_ms.mean", |row| number(row.latency_ms.mean)),
@@ -113,6 +113,7 @@ const COLUMNS: [Column; 28] = [
     ("error.n", |row| row.error.n.to_string()),
     ("seeds", |row| row.seeds.to_string()),
     ("triangles_possible", |row| row.triangles_possible.map_or_else(String::new, |n| n.to_string())),
+    ("has_no_limit", |row| row.has_no_limit.to_string()),
     ("failure", |row| row.failure.clone().unwrap_or_default()),
 ];
 

@@ -171,7 +171,11 @@ fn line(comparison: &Comparison, row: &ComparisonRow) -> String {
         number(row.error.pixels.p99, 2),
         row.error.n.to_string(),
         row.best_predictor().map_or_else(|| "-".to_owned(), |best| format!("{} {:.2}", best.kind.name(), best.mean_px)),
-        row.triangles_possible.map_or_else(|| "-".to_owned(), |n| n.to_string()),
+        match row.triangles_possible {
+            Some(n) => n.to_string(),
+            None if row.has_no_limit => "no limit".to_owned(),
+            None => "-".to_owned(),
+        },
     ];
     let shown = COLUMNS.iter().zip(values).filter(|((name, ..), _)| is_shown(comparison, name));
     let cells: String = shown.map(|((_, _, width), value)| format!(" {value:>width$}")).collect();

@@ -12,14 +12,12 @@ use clap::Args;
 use pxpl5::sweep::{Header, PointResults, SceneCache, SweepSpace, Swept, leaves};
 use pxpl5::volume::spatialgl::{CommandBuffer, OneThread, Threads};
 use pxpl5::volume::{Volume, VolumeSettings};
-use pxpl5::{Fingerprint, SettingError};
+use pxpl5::{Fingerprint, SettingError, StopFlag, StudyError};
 use pxpl5_sim::parameters::{PathSettings, assignment_of, text_of};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use toml::Table;
 
 /// Draw a volume at every point of a parameter space.
@@ -189,10 +187,10 @@ impl Swept for VolumeSweep {
         &self.space
     }
 
-    fn simulate(&self, point: u64, _stop: &Arc<AtomicBool>) -> Result<PointResults, String> {
+    fn simulate(&self, point: u64, _stop: &StopFlag) -> Result<PointResults, StudyError> {
         let mut all = self.settings.clone();
         all.extend(self.space.settings(point));
-        let volume = self.draw(&all, point).map_err(|error| error.message().to_owned())?;
+        let volume = self.draw(&all, point).map_err(|error| SettingError::combination(error.message()))?;
         let report = serde_json::to_value(volume.report()).unwrap_or_default();
         let of = |name: &String| (name.clone(), value_of(&report, name).and_then(Value::as_f64));
         let named: Vec<String> = all.iter().map(|(path, value)| format!("{path}={}", plain(value))).collect();

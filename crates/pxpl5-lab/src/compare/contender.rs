@@ -2,6 +2,7 @@
 
 use pxpl5_measure::Showing;
 use pxpl5_run::Registry;
+use pxpl5_sim::parameters::SettingError;
 
 /// One row of a comparison: a pipeline, with the settings that differ from the shared settings.
 #[derive(Clone, Debug)]
@@ -44,17 +45,53 @@ impl ComparedPipeline {
 /// This error cannot be ranked with the errors of other rows.
 pub(super) const DELAYED_VIDEO: &str = "delayed-video";
 
-/// Returns the names of the rows in a short comparison: one or two for each family of pipelines
-/// ([`Registry::is_usual`]). Rows that are variants of a pipeline are always included.
-#[must_use]
-pub fn usual_rows(registry: &Registry) -> Vec<String> {
-    let is_usual = |name: &str| registry.pipeline(name).map_or(true, |entry| registry.is_usual(entry));
-    compared_pipelines(registry).into_iter().map(|contender| contender.name).filter(|name| is_usual(name)).collect()
+/// Choice of the rows (pipelines with settings) that a comparison runs.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum RowChoice {
+    /// One or two rows for each family of pipelines ([`Registry::is_usual`]), and all rows that are variants of a
+    /// pipeline.
+    #[default]
+    Usual,
+    /// All rows.
+    All,
+    /// The rows with these names.
+    Named(Vec<String>),
+}
+
+/// Chooses the rows with these names, or the usual rows if there are no names.
+impl From<Vec<String>> for RowChoice {
+    fn from(names: Vec<String>) -> Self {
+        if names.is_empty() { Self::Usual } else { Self::Named(names) }
+    }
+}
+
+impl RowChoice {
+    /// Returns the chosen rows, in the order of the registry.
+    ///
+    /// # Errors
+    ///
+    /// Returns a [`SettingError`] for the first name that no row has.
+    pub(super) fn of(&self, registry: &Registry) -> Result<Vec<ComparedPipeline>, SettingError> {
+        let mut rows = compared_pipelines(registry);
+        match self {
+            Self::Usual => {
+                rows.retain(|row| registry.pipeline(&row.name).map_or(true, |entry| registry.is_usual(entry)))
+            }
+            Self::All => {}
+            Self::Named(names) => {
+                if let Some(found) = names.iter().find(|name| rows.iter().all(|row| row.name != **name)) {
+                    return Err(SettingError::unknown("row", found, rows.iter().map(|row| &row.name)));
+                }
+                rows.retain(|row| names.contains(&row.name));
+            }
+        }
+        Ok(rows)
+    }
 }
 
 /// Returns a row for every compared pipeline of the registry, in the order of the registry. The variants of Slats
 /// (touched regions, raster offset, delayed video, ideal pictures) follow Slats.
-pub(super) fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
+fn compared_pipelines(registry: &Registry) -> Vec<ComparedPipeline> {
     let mut all = Vec::new();
     for entry in registry.pipelines().iter().filter(|entry| entry.compared) {
         all.push(ComparedPipeline::plain(entry.name));

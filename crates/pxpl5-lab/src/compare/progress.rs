@@ -1,23 +1,22 @@
 //! The number of finished runs of a comparison, and the flag by which another thread stops the runs.
 
-use crate::Workstation;
 use crate::error::StudyError;
+use crate::{StopFlag, Workstation};
 use pxpl5_machine::PixelWorker;
 use pxpl5_run::Host;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Number of finished runs of a comparison, and number of all runs. The number of all runs grows when seeds are added.
 pub(super) struct Progress<'a> {
     done: AtomicU64,
     all: AtomicU64,
-    /// True when another thread has asked the comparison to stop.
-    stop: &'a Arc<AtomicBool>,
+    /// Set when another thread has asked the comparison to stop.
+    stop: &'a StopFlag,
     finished: &'a (dyn Fn(u64, u64) + Sync),
 }
 
 impl<'a> Progress<'a> {
-    pub(super) fn new(all: u64, stop: &'a Arc<AtomicBool>, finished: &'a (dyn Fn(u64, u64) + Sync)) -> Self {
+    pub(super) fn new(all: u64, stop: &'a StopFlag, finished: &'a (dyn Fn(u64, u64) + Sync)) -> Self {
         Self { done: AtomicU64::new(0), all: AtomicU64::new(all), stop, finished }
     }
 
@@ -32,12 +31,17 @@ impl<'a> Progress<'a> {
 
     /// Returns an error if another thread has stopped the comparison.
     pub(super) fn check_stopped(&self) -> Result<(), StudyError> {
-        if self.stop.load(Ordering::Relaxed) { Err(StudyError::Stopped) } else { Ok(()) }
+        if self.stop.is_stopped() { Err(StudyError::Stopped) } else { Ok(()) }
+    }
+
+    /// Returns the flag by which another thread stops the comparison.
+    pub(super) fn stop_flag(&self) -> StopFlag {
+        self.stop.clone()
     }
 
     /// Returns a host on which the comparison's runs can be stopped.
     pub(super) fn host(&self) -> impl Host + use<> {
-        StoppableWorkstation { workstation: Workstation::new(), stop: Arc::clone(self.stop) }
+        StoppableWorkstation { workstation: Workstation::new(), stop: self.stop.clone() }
     }
 }
 
@@ -45,7 +49,7 @@ impl<'a> Progress<'a> {
 #[derive(Debug)]
 struct StoppableWorkstation {
     workstation: Workstation,
-    stop: Arc<AtomicBool>,
+    stop: StopFlag,
 }
 
 impl Host for StoppableWorkstation {
@@ -54,7 +58,7 @@ impl Host for StoppableWorkstation {
     }
 
     fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.stop.is_stopped()
     }
 
     fn pixel_worker(&self) -> Box<dyn PixelWorker> {

@@ -1,20 +1,21 @@
 //! Definition and execution of a comparison of pipelines.
 
-use super::contender::{ComparedPipeline, DELAYED_VIDEO, compared_pipelines};
+use super::contender::{ComparedPipeline, DELAYED_VIDEO, RowChoice};
+use super::interval::CONFIDENCE;
 use super::precision::UntilPrecise;
 use super::predictors::predictor_means;
 use super::progress::Progress;
 use super::row::{ComparisonRow, Sampling};
 use super::store::CompareStore;
 use super::trial::{Trial, common_window_from};
+use crate::StopFlag;
 use crate::error::StudyError;
 use crate::experiment_file::{ExperimentFile, Plan, plain};
-use crate::limit::LimitQuery;
+use crate::limit::{CEILING, LimitQuery};
 use crate::parallel;
 use pxpl5_measure::Showing;
 use pxpl5_run::{Experiment, Goal, Head, Pixels, Tunings, WARM_UP_PERIODS};
 use pxpl5_scene::{HmdConfig, Scene};
-use pxpl5_sim::parameters::nearest;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::sync::Arc;
@@ -37,8 +38,8 @@ pub struct CompareQuery {
     /// Machine, scene, head and number of fields, without a pipeline. The compared pipelines come from the registry of
     /// the experiment file. If `head.motion` is `synthetic`, every seed has a different motion.
     pub shared: ExperimentFile,
-    /// Names of the rows (pipelines with settings) to run. An empty list runs all rows.
-    pub only: Vec<String>,
+    /// The rows (pipelines with settings) to run.
+    pub only: RowChoice,
     /// Seeds of the random numbers of tracker, host and motion. Every row has one run for each seed.
     pub seeds: Vec<u64>,
     /// True if the comparison also searches for the largest number of triangles that each row can draw.
@@ -113,6 +114,22 @@ impl Common<'_> {
 }
 
 impl CompareQuery {
+    /// Creates a comparison of the usual rows with [`LEAST_SEEDS`] seeds. `shared` has the settings that all rows share.
+    #[must_use]
+    pub fn new(shared: ExperimentFile) -> Self {
+        Self {
+            shared,
+            only: RowChoice::Usual,
+            seeds: (1..=LEAST_SEEDS as u64).collect(),
+            limits: false,
+            causes: false,
+            predictors: false,
+            pictures: false,
+            confidence: CONFIDENCE,
+            until: None,
+        }
+    }
+
     /// Runs every row with every seed. After each run, `finished` is called with the number of finished runs and the
     /// number of all runs.
     ///
@@ -152,12 +169,11 @@ impl CompareQuery {
         finished: impl Fn(u64, u64) + Sync,
         ended: impl Fn(&ComparisonRow) + Sync,
     ) -> Result<Comparison, StudyError> {
-        self.run_stoppable(store, &Arc::default(), finished, ended)
+        self.run_stoppable(store, &StopFlag::default(), finished, ended)
     }
 
-    /// Runs every row as [`CompareQuery::run_into`] does, until another thread sets `stop` to true. Runs in progress
-    /// then end after at most 60 fields, and their rows are not stored. A search for the largest number of triangles
-    /// runs to its end.
+    /// Runs every row as [`CompareQuery::run_into`] does, until another thread sets `stop`. Runs in progress then
+    /// end after at most 60 fields, and their rows are not stored.
     ///
     /// # Errors
     ///
@@ -165,7 +181,7 @@ impl CompareQuery {
     pub fn run_stoppable(
         &self,
         store: Option<&CompareStore>,
-        stop: &Arc<AtomicBool>,
+        stop: &StopFlag,
         finished: impl Fn(u64, u64) + Sync,
         ended: impl Fn(&ComparisonRow) + Sync,
     ) -> Result<Comparison, StudyError> {
@@ -251,16 +267,7 @@ impl CompareQuery {
 
     /// Returns the pipelines to compare, in the order of the registry.
     fn compared_pipelines(&self) -> Result<Vec<ComparedPipeline>, StudyError> {
-        let mut chosen = compared_pipelines(self.shared.registry());
-        let names: Vec<String> = chosen.iter().map(|contender| contender.name.clone()).collect();
-        for found in &self.only {
-            if !names.contains(found) {
-                let nearest = nearest(found, names.iter().map(String::as_str)).unwrap_or_default().to_owned();
-                return Err(StudyError::Row { expected: names.join(", "), found: found.clone(), nearest });
-            }
-        }
-        chosen.retain(|contender| self.only.is_empty() || self.only.contains(&contender.name));
-        Ok(chosen)
+        Ok(self.only.of(self.shared.registry())?)
     }
 
     /// Returns the plan (checked experiment) of the first row with the first seed. The number of fields is not checked.
@@ -373,7 +380,10 @@ impl CompareQuery {
         }
         if self.limits && !contender.is_reference() {
             row.triangles_definition = definition(&plan);
-            row.triangles_possible = LimitQuery::of_plan(&plan).search_triangles().ok();
+            let query = LimitQuery { stop: common.progress.stop_flag(), ..LimitQuery::of_plan(&plan) };
+            let triangles = query.search_triangles().ok();
+            row.has_no_limit = triangles == Some(CEILING);
+            row.triangles_possible = triangles.filter(|triangles| *triangles < CEILING);
         }
         let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
         // A row that showed no picture explains the reason.

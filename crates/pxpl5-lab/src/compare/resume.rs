@@ -32,14 +32,14 @@ impl CompareQuery {
         let mut settings: BTreeMap<String, String> =
             self.shared.settings.iter().map(|(key, setting)| (key.clone(), plain(&setting.value))).collect();
         let mut put = |key: &str, value: String| drop(settings.insert(key.to_owned(), value));
-        // Options of the comparison are named as on the command line.
-        put("--seeds", format!("{:?}", self.seeds));
-        put("--limits", self.limits.to_string());
-        put("--causes", self.causes.to_string());
-        put("--predictors", self.predictors.to_string());
-        put("--confidence", self.confidence.to_string());
-        put("--until-precision", self.until.map_or_else(|| "none".to_owned(), |until| until.width.to_string()));
-        put("--max-seeds", self.until.map_or_else(|| "none".to_owned(), |until| until.max_seeds.to_string()));
+        // The query's own settings have the names of its fields.
+        put("seeds", format!("{:?}", self.seeds));
+        put("limits", self.limits.to_string());
+        put("causes", self.causes.to_string());
+        put("predictors", self.predictors.to_string());
+        put("confidence", self.confidence.to_string());
+        put("until_precision", self.until.map_or_else(|| "none".to_owned(), |until| until.width.to_string()));
+        put("max_seeds", self.until.map_or_else(|| "none".to_owned(), |until| until.max_seeds.to_string()));
         put("pictures", self.pictures.to_string());
         // The scene itself, because a model can name further files.
         put("contents of the scene", Fingerprint::of_scene(&*plan.load_scene()?).to_string());
@@ -54,31 +54,24 @@ impl CompareQuery {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::CONFIDENCE;
+    use crate::StopFlag;
+    use crate::compare::RowChoice;
     use crate::experiment_file::ExperimentFile;
-    use std::sync::Arc;
-    use std::sync::atomic::{AtomicBool, Ordering};
 
     #[test]
     fn a_stopped_comparison_stores_no_row_of_stopped_runs_and_can_be_resumed() {
         let text = "scene = \"full-screen:2\"\nfields = 24\nmachine.preset = \"small-hmd\"\n\
                     head.motion = \"synthetic\"\nhead.tracker = \"optical\"\n";
         let query = CompareQuery {
-            shared: ExperimentFile::parse(text, "test").expect("TOML"),
-            only: vec!["slats".to_owned(), "ideal".to_owned()],
+            only: RowChoice::Named(vec!["slats".to_owned(), "ideal".to_owned()]),
             seeds: vec![1, 2],
-            limits: false,
-            causes: false,
-            predictors: false,
-            pictures: false,
-            confidence: CONFIDENCE,
-            until: None,
+            ..CompareQuery::new(ExperimentFile::parse(text, "test").expect("TOML"))
         };
         let folder = std::env::temp_dir().join(format!("pxpl5-compare-{}-stopped", std::process::id()));
         let _ = std::fs::remove_dir_all(&folder);
-        let stop = Arc::new(AtomicBool::new(false));
+        let stop = StopFlag::default();
         // The first finished run stops the comparison, so each row has at least one run without a result.
-        let stop_soon = |_, _| stop.store(true, Ordering::Relaxed);
+        let stop_soon = |_, _| stop.stop();
         let store = query.open_store(&folder, true).expect("a folder");
         let stopped = query.run_stoppable(Some(&store), &stop, stop_soon, |row| panic!("{} ended", row.pipeline));
         assert!(matches!(stopped, Err(StudyError::Stopped)), "{stopped:?}");

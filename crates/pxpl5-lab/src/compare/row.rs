@@ -112,8 +112,10 @@ pub struct ComparisonRow {
     /// the row `ideal`, whose pictures no predictor changes.
     pub predictors: Vec<PredictorMean>,
     /// Largest number of triangles that meets the pipeline's own criterion. `None` if the query did not ask for a
-    /// search, or the search failed.
+    /// search, if the search failed, or if the pipeline has no limit.
     pub triangles_possible: Option<u32>,
+    /// True if the search found no limit: [`CEILING`](crate::limit::CEILING) triangles meet the criterion.
+    pub has_no_limit: bool,
     /// Criterion of `triangles_possible`, in words.
     pub triangles_definition: String,
     /// Reason for missing results, with the number of triangles that the pipeline could draw. `None` if all results are
@@ -175,6 +177,7 @@ impl ComparisonRow {
             causes: causes(trials, sampling),
             predictors: Vec::new(),
             triangles_possible: None,
+            has_no_limit: false,
             triangles_definition: String::new(),
             failure: None,
             host_seconds: trials.iter().map(|trial| trial.host_seconds).sum(),

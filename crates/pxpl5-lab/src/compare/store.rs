@@ -162,7 +162,7 @@ impl Header {
             ("version", self.version.clone(), found.version.clone()),
         ];
         let last = [
-            ("--only", self.rows.join(","), found.rows.join(",")),
+            ("rows", self.rows.join(","), found.rows.join(",")),
             ("the hash of all settings", self.config_hash.clone(), found.config_hash.clone()),
         ];
         match pairs.into_iter().chain(settings).chain(last).find(|(_, expected, found)| expected != found) {

@@ -4,7 +4,7 @@ use super::contender::ComparedPipeline;
 use super::gallery::LastPicture;
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing, tracking_and_rendering_ms};
-use pxpl5_run::{DryRun, DuePictures, Experiment, Outcome, ResultWindow, WARM_UP_PERIODS};
+use pxpl5_run::{Coverage, DryRun, DuePictures, Experiment, Outcome, ResultWindow, WARM_UP_PERIODS};
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeSet;
@@ -98,7 +98,7 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
 /// faces, this orientation is chosen at scan-out. Any other picture shows the orientation of the pose for which the
 /// picture was drawn.
 fn turns_ms(outcome: &Outcome) -> Vec<f64> {
-    if !outcome.pipeline().draws_faces() {
+    if outcome.pipeline().coverage() == Coverage::View {
         return Budget::totals_ms(outcome);
     }
     outcome.rotation_latencies().iter().map(|turn| turn.total().as_ms()).collect()

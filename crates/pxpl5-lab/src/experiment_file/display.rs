@@ -115,7 +115,7 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
         // The message names the number of the table; the place is the place of the key that sets this number.
         let name = error.name.rsplit('.').next().unwrap_or_default();
         let (key, setting) = given.iter().find(|(key, _)| key.parameter == name).unwrap_or(first);
-        return Err(error.at(format_args!("{}: {}", setting.place, key.key.name)));
+        return Err(error.at(setting.place_of(key.key.name)));
     }
     Ok(Some(config))
 }

@@ -210,6 +210,6 @@ fn evaluated(file: &ExperimentFile, head: Head) -> Result<Head, SettingError> {
 }
 
 fn refused(file: &ExperimentFile, key: &str, error: &dyn std::error::Error) -> SettingError {
-    let place = file.get(key).map_or_else(|| key.to_owned(), |setting| format!("{}: {key}", setting.place));
+    let place = file.get(key).map_or_else(|| key.to_owned(), |setting| setting.place_of(key));
     SettingError::combination(error).at(place)
 }

@@ -2,7 +2,7 @@
 
 use super::ExperimentFile;
 use super::read::{not_applicable, wrong};
-use pxpl5_run::Pipeline;
+use pxpl5_run::{Coverage, Pipeline};
 use pxpl5_scene::{Hmd, HmdConfig};
 use pxpl5_sim::parameters::{Key, KeyValues, SettingError};
 use toml::Value;
@@ -100,7 +100,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
     let mut config = HmdConfig::unc();
     for (key, set, _) in KEYS {
         let (Some(value), Some(setting)) = (file.number(key.name)?, file.get(key.name)) else { continue };
-        if pipeline.draws_faces() {
+        if pipeline.coverage() == Coverage::Surroundings {
             let applies_to = "pipelines that draw a picture for each eye";
             return Err(not_applicable(key.name, pipeline.name(), applies_to).at(&setting.place));
         }

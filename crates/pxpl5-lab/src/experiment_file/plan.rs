@@ -12,7 +12,7 @@ use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{HeadSum, Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, Host, Level, LimitCriterion, Pipeline, PipelineEntry, PipelineSettings, Pixels,
-    Registry, check_faces, out_of_range, warning_without_code,
+    Registry, check_coverage, out_of_range, warning_without_code,
 };
 use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::parameters::{Parameter, SettingError, Value as Number};
@@ -55,7 +55,7 @@ impl Published {
 
 fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, SettingError> {
     Measure::named(name).map_err(|error| match file.get(key) {
-        Some(setting) => error.at(format_args!("{}: {key}", setting.place)),
+        Some(setting) => error.at(setting.place_of(key)),
         None => SettingError::missing("measure", "quantities that are measured"),
     })
 }
@@ -192,7 +192,7 @@ impl ExperimentFile {
         if let Some(display) = display::read(self)? {
             machine.displays = vec![display];
             let place = self.get("display").map_or("display", |setting| &setting.place);
-            check_faces(&machine, pipeline).map_err(|error| error.at(place))?;
+            check_coverage(&machine, pipeline).map_err(|error| error.at(place))?;
         }
         // The pipeline adapts the machine to its needs.
         let mut machine = pipeline.adapt(machine);

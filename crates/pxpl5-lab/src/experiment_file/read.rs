@@ -91,7 +91,7 @@ pub(super) fn unknown<'a>(key: &str, setting: &Setting, valid: impl IntoIterator
     let found: String = plain(&setting.value).chars().take(60).collect();
     let names: Vec<&str> = valid.into_iter().collect();
     let error = head_names::unknown(what, &found, names.iter().copied(), &format!("one of {}", names.join(", ")));
-    error.at(format_args!("{}: {key}", setting.place))
+    error.at(setting.place_of(key))
 }
 
 /// Creates the error of a key that the chosen pipeline does not have. `applies_to` names the pipelines that have the

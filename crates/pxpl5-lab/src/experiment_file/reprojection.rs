@@ -3,7 +3,7 @@
 
 use super::ExperimentFile;
 use super::read::{not_applicable, wrong};
-use pxpl5_run::{Every, Pipeline, Raster, Reprojection, Warp};
+use pxpl5_run::{Coverage, Every, Pipeline, Raster, Reprojection, Warp};
 use pxpl5_sim::parameters::SettingError;
 use toml::Value;
 
@@ -39,7 +39,7 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Ras
         Named::Raster(Raster::Vdrt) if !pipeline.has_one_pose() => {
             refused("rendering-control, slats and jitp-field, whose pictures are of one pose")
         }
-        Named::Device(Warp::Depth) if pipeline.draws_faces() => refused(
+        Named::Device(Warp::Depth) if pipeline.coverage() == Coverage::Surroundings => refused(
             "pipelines whose pictures are of one eye; faces around the head are several pictures, of which the turn is left: rotation",
         ),
         Named::Raster(raster) => {

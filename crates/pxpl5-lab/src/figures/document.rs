@@ -1,6 +1,6 @@
 //! The document ACCURACY.md, generated from the published figures and the model's values.
 
-use super::{Basis, FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
+use super::{Alternatives, Basis, FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
 use crate::application_time::{ApplicationTime, FlyThroughLatency, published};
 use crate::intervals::{Interval, SAMPLES};
 use crate::levels::deviation_percent;
@@ -13,18 +13,18 @@ use std::fmt::Write as _;
 
 /// Returns the text of ACCURACY.md: a table of all figures, then each miss with its cause.
 #[must_use]
-pub fn markdown(figures: &Figures) -> String {
+pub fn markdown(figures: &Figures, alternatives: &Alternatives) -> String {
     let mut text = String::new();
     let rows = &figures.rows;
     // The order of sections: table, misses, then the comparisons that qualify the table.
     head(&mut text, rows);
     text.push_str(&table(&COLUMNS, rows));
     misses(&mut text, rows);
-    of_code(&mut text, rows, &figures.of_code);
+    of_code(&mut text, rows, &alternatives.of_code);
     figures.groups.iter().for_each(|group| text.push_str(&group.markdown()));
     figures.families.iter().for_each(|family| text.push_str(&family.markdown()));
-    of_readings(&mut text, &figures.readings);
-    of_application(&mut text, &figures.application_times);
+    of_readings(&mut text, &alternatives.readings);
+    of_application(&mut text, &alternatives.application_times);
     sensitivity(&mut text, &figures.intervals);
     let _ = write!(text, "\n## Experiments\n\n{}", table(&[NUMBER, EXPERIMENT, DETAILS], rows));
     text

@@ -97,11 +97,13 @@ fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
     for triangles in TRIANGLES {
         let faces = FacePipeline::new(FacePolicy::Full);
         let machine = faces.adapt(bench.machine("small-hmd")?);
-        let latencies = turned(Experiment::new(machine, faces, scene_named(&format!("sphere:{triangles}"))?))?;
+        let experiment = Experiment::new(machine, faces, scene_named(&format!("sphere:{triangles}"))?);
+        let latencies = turned(experiment.host(bench.stop.clone()))?;
         turns.push(totals_ps(&latencies.rotation_latencies()));
         let scene = scene_named(&format!("sphere:{triangles}"))?;
         let drawn = Experiment::new(bench.machine("small-hmd")?, RenderingControl::stereo(), scene);
-        drawn_ms.push(drawn.fields(FIELDS).pixels(Pixels::Off).run()?.latency_ms().mean);
+        let drawn = drawn.fields(FIELDS).pixels(Pixels::Off).host(bench.stop.clone());
+        drawn_ms.push(drawn.run()?.latency_ms().mean);
     }
     let same =
         "greatest difference between the latencies of a turn with 10, 100, 1,000 and 10,000 triangles, field by field";

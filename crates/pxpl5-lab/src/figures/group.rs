@@ -81,9 +81,14 @@ impl FigureGroup {
 }
 
 impl Measurement {
+    fn measured(&self, bench: &Bench) -> Result<FigureValue> {
+        bench.stop.check()?;
+        (self.measure)(bench)
+    }
+
     fn row(&self, bench: &Bench) -> std::result::Result<FigureRow, FigureError> {
         let id = self.figure.id;
-        let measured = (self.measure)(bench);
+        let measured = self.measured(bench);
         let measured = measured.map_err(|error| FigureError { id: id.to_owned(), reason: error.to_string() })?;
         let interval = self.interval(bench, measured.value);
         Ok(FigureRow { interval, ..self.figure.row(measured) })
@@ -104,7 +109,7 @@ impl Measurement {
             if bench.has_machines_of(&moved) {
                 return nominal;
             }
-            (self.measure)(&moved).map_or(nominal, |measured| measured.value)
+            self.measured(&moved).map_or(nominal, |measured| measured.value)
         });
         let bounds = values.into_iter().fold([nominal; 2], |[low, high], value: f64| [low.min(value), high.max(value)]);
         (!ends.is_empty()).then_some(bounds)

@@ -2,10 +2,12 @@
 
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::Reading;
+use crate::StopFlag;
+use crate::error::StudyError;
 use crate::rig::Rig;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Budget, LatencyCurve};
-use pxpl5_run::{Experiment, ExperimentError, Head, Pipeline, Pixels, RenderingControl, Statistics};
+use pxpl5_run::{Experiment, ExperimentError, Head, Pipeline, Pixels, Statistics};
 use std::sync::Arc;
 use tracking::motion::Synthetic;
 use tracking::predict::PredictorKind;
@@ -27,9 +29,9 @@ pub(super) struct RigLines {
 impl RigLines {
     /// Measures the latency with a pendulum and a photodiode. Also returns true if a full backing store has changed the
     /// run.
-    pub(super) fn measure(machine: &MachineConfig, pipeline: RenderingControl) -> Result<(Self, bool)> {
+    pub(super) fn measure(machine: &MachineConfig, reading: &Reading, stop: &StopFlag) -> Result<(Self, bool)> {
         let lines = photodiode_lines();
-        let (measured, met_full_store) = under_lines(machine, pipeline, lines)?;
+        let (measured, met_full_store) = under_lines(machine, (reading, stop), lines)?;
         let mut lines = lines.into_iter();
         let measured = measured.map(|measured| (lines.next().unwrap_or_default(), Arc::new(measured)));
         Ok((Self { measured }, met_full_store))
@@ -67,8 +69,8 @@ fn photodiode_lines() -> [u32; 3] {
 }
 
 /// Measures the latency with the photodiode on the line `line` of the screen.
-pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, line: u64) -> Result<RigMeasurement> {
-    let ([measured], _) = under_lines(machine, pipeline, [u32::try_from(line).unwrap_or(u32::MAX)])?;
+pub(super) fn under_line(machine: &MachineConfig, of: (&Reading, &StopFlag), line: u64) -> Result<RigMeasurement> {
+    let ([measured], _) = under_lines(machine, of, [u32::try_from(line).unwrap_or(u32::MAX)])?;
     Ok(measured)
 }
 
@@ -76,12 +78,15 @@ pub(super) fn under_line(machine: &MachineConfig, pipeline: RenderingControl, li
 /// store has changed the run.
 fn under_lines<const N: usize>(
     machine: &MachineConfig,
-    pipeline: RenderingControl,
+    (reading, stop): (&Reading, &StopFlag),
     lines: [u32; N],
 ) -> Result<([RigMeasurement; N], bool)> {
-    let rig = Rig::assumed(TrackerConfig::optical_ceiling());
-    let measured = rig.measure_lines(machine, Arc::new(pipeline), lines);
-    let (measured, outcome) = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    let rig = Rig { stop: stop.clone(), ..Rig::assumed(TrackerConfig::optical_ceiling()) };
+    let measured = rig.measure_lines(machine, Arc::new(reading.pipeline()), lines);
+    let (measured, outcome) = measured.map_err(|error| match error {
+        StudyError::Experiment(error) => error,
+        error => ExperimentError::Scene(error.to_string()),
+    })?;
     Ok((measured, outcome.record().met_full_store()))
 }
 
@@ -123,14 +128,14 @@ const FIELDS: u64 = 600;
 pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,
-    reading: &Reading,
+    (reading, stop): (&Reading, &StopFlag),
 ) -> Result<FigureValue> {
     let motion = Arc::new(Synthetic::recorded_use(1));
     let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
     let experiment = Experiment::new(machine, pipeline, scene_named("full-screen:12")?);
     // One run gives all stages from head to light.
-    let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
+    let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).host(stop.clone()).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, .. } =
         Budget::of(&outcome);
     // The paper adds its own mean latencies, so rendering is measured like figure 4. Eyes of Slats have no TRANSFORM

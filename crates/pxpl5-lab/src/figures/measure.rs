@@ -4,6 +4,7 @@ use super::applications::{Applications, key_of};
 use super::heads::{self, PHOTODIODE_LINE, RigLines};
 use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::{LatencySamples, Reading};
+use crate::StopFlag;
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
 use crate::parallel;
@@ -38,6 +39,8 @@ pub struct Bench {
     pub frames: u64,
     /// Interpretation of the papers: the answers to the questions that the papers leave open about Rendering Control.
     pub reading: Reading,
+    /// Flag by which another thread stops the measurements.
+    pub stop: StopFlag,
     pub(crate) applications: Arc<Applications>,
 }
 
@@ -68,6 +71,7 @@ impl Bench {
             seeds: 10,
             frames: 150,
             reading: Reading::USUAL,
+            stop: StopFlag::default(),
             applications: Arc::default(),
         }
     }
@@ -76,6 +80,12 @@ impl Bench {
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
+    }
+
+    /// Returns the same settings with a flag by which another thread stops the measurements.
+    #[must_use]
+    pub fn with_stop(self, stop: StopFlag) -> Self {
+        Self { stop, ..self }
     }
 
     /// Returns the same settings, but with times per triangle and sphere that were measured in executed code. Each
@@ -102,8 +112,10 @@ impl Bench {
     ///
     /// # Errors
     ///
-    /// Returns [`ExperimentError`] if the experiment fails, and [`ExperimentError::Scene`] for an unknown figure.
+    /// Returns [`ExperimentError`] if the experiment fails, [`ExperimentError::Scene`] for an unknown figure, and
+    /// [`ExperimentError::Stopped`] if another thread sets the flag.
     pub fn measure(&self, id: &str) -> Result<FigureValue> {
+        self.stop.check()?;
         // Experiments that several figures need are cached.
         match id {
             "1" => Ok(self.trivial()?.region_copy_us.into()),
@@ -135,9 +147,9 @@ impl Bench {
             "18" => Ok(heads::ratio_of_errors()),
             "19" => {
                 let machine = self.reading.on(self.machine("small-hmd")?)?;
-                heads::tracker_and_rendering(machine, self.reading.pipeline(), &self.reading)
+                heads::tracker_and_rendering(machine, self.reading.pipeline(), (&self.reading, &self.stop))
             }
-            "19b" => heads::tracker_and_rendering(self.machine("slats")?, Slats::split(), &self.reading),
+            "19b" => heads::tracker_and_rendering(self.machine("slats")?, Slats::split(), (&self.reading, &self.stop)),
             _ => Err(ExperimentError::Scene(format!("there is no figure {id}"))),
         }
     }
@@ -189,7 +201,8 @@ impl Bench {
     /// Runs an experiment and returns its summary. The boolean is true if a backing store was full at some time of the
     /// run, or if that is unknown.
     fn summarise(&self, experiment: &Experiment) -> Result<(Summary, bool)> {
-        let experiment = experiment.clone().pixels(Pixels::Off).level(self.level);
+        self.stop.check()?;
+        let experiment = experiment.clone().pixels(Pixels::Off).level(self.level).host(self.stop.clone());
         if self.level == Level::Analytic {
             return Ok((summarise(&crate::registry(), &experiment)?, true));
         }
@@ -254,7 +267,7 @@ impl Bench {
             return Ok(measured);
         }
         let machine = self.reading.on(self.machine("small-hmd")?)?;
-        heads::under_line(&machine, self.reading.pipeline(), line).map(Arc::new)
+        heads::under_line(&machine, (&self.reading, &self.stop), line).map(Arc::new)
     }
 
     fn photodiode_line(&self) -> Option<u64> {
@@ -268,8 +281,7 @@ impl Bench {
         // The line does not change the run, so it is no part of the key.
         let changes = self.changes.iter().filter(|(path, _)| path != PHOTODIODE_LINE).cloned().collect();
         let key = (self.reading.finished, changes);
-        let pipeline = self.reading.pipeline();
-        self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, pipeline))
+        self.applications.rig(key, self.reading.kept, || RigLines::measure(&machine, &self.reading, &self.stop))
     }
 
     /// Returns a machine and a scene for which TRANSFORM and RENDER of one eye each take `ms` milliseconds.
@@ -388,7 +400,8 @@ impl Bench {
     }
 
     fn limit_query(&self, preset: &str, pipeline: Slats) -> Result<LimitQuery> {
-        Ok(LimitQuery { level: self.level, ..LimitQuery::of_papers(self.machine(preset)?, pipeline)? })
+        let (level, stop) = (self.level, self.stop.clone());
+        Ok(LimitQuery { level, stop, ..LimitQuery::of_papers(self.machine(preset)?, pipeline)? })
     }
 
     /// Returns the largest number of triangles that Slats draws in time. The result is cached, because two figures need

@@ -3,6 +3,7 @@
 use super::random::{compared_ms, experiment};
 use super::record::{LevelRecord, LevelReport, LevelSpeed, SCHEMA, Spread};
 use super::{deviation_percent, summarise};
+use crate::StopFlag;
 use crate::figures::{Bench, FIGURES, Figure, FigureRow, mean_error_percent};
 use crate::parallel;
 use pxpl5_run::{Experiment, ExperimentError, Level, Pixels};
@@ -34,17 +35,19 @@ const MIG: (u64, u64) = (2, 60);
 const TIMED: u64 = 16;
 
 /// Parameters of a comparison of levels of modelling.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct LevelQuery {
     /// Number of random experiments for which each level is compared with the cycle level.
     pub experiments: u64,
     /// True if simulation speeds are measured as well. Speeds are meaningful only on an otherwise idle computer.
     pub speeds: bool,
+    /// Flag by which another thread stops the comparison.
+    pub stop: StopFlag,
 }
 
 impl Default for LevelQuery {
     fn default() -> Self {
-        Self { experiments: 200, speeds: true }
+        Self { experiments: 200, speeds: true, stop: StopFlag::default() }
     }
 }
 
@@ -53,7 +56,7 @@ impl Default for LevelQuery {
 ///
 /// # Errors
 ///
-/// Returns the first [`ExperimentError`].
+/// Returns the first [`ExperimentError`], and [`ExperimentError::Stopped`] if another thread sets the query's flag.
 pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Result<LevelRecord, ExperimentError> {
     let of_variant = FIGURES.len() as u64 + query.experiments;
     let steps = VARIANTS.len() as u64 * of_variant;
@@ -64,7 +67,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     // Run the random experiments at every level first. The last level, cycle, is the reference for the deviations.
     for variant in VARIANTS {
         let values = parallel::map(&numbers, |number| {
-            let value = value(variant, *number);
+            let value = value(variant, *number, &query.stop);
             step();
             value
         });
@@ -73,7 +76,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     let of_cycle = of_experiments.last().cloned().unwrap_or_default();
     let mut levels = Vec::new();
     for (variant, values) in VARIANTS.into_iter().zip(&of_experiments) {
-        let rows = rows_of(variant, &step)?;
+        let rows = rows_of(variant, &query.stop, &step)?;
         // Compare each level with the cycle level, experiment by experiment.
         let deviations = values.iter().zip(&of_cycle).map(|(value, of_cycle)| deviation_percent(*value, *of_cycle));
         let is_cycle = variant.0 == Level::Cycle;
@@ -82,7 +85,7 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
             times_of_code: variant.1,
             published_error_percent: Some(mean_error_percent(&rows)),
             from_cycle_percent: if is_cycle { None } else { Spread::of(deviations.collect()) },
-            speeds: speeds(variant, query.speeds)?,
+            speeds: speeds(variant, &query)?,
         });
     }
     Ok(LevelRecord {
@@ -108,8 +111,9 @@ fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Expe
 
 /// Runs the random experiment with the number `number`, and returns the time that is compared between levels of
 /// modelling, in milliseconds. The value is NaN if no picture is shown.
-fn value(variant: (Level, bool), number: u64) -> Result<f64, ExperimentError> {
-    let experiment = of_variant(variant, number)?;
+fn value(variant: (Level, bool), number: u64, stop: &StopFlag) -> Result<f64, ExperimentError> {
+    stop.check()?;
+    let experiment = of_variant(variant, number)?.host(stop.clone());
     match summarise(&crate::registry(), &experiment) {
         Ok(summary) => Ok(compared_ms(&experiment, &summary)),
         Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => Ok(f64::NAN),
@@ -120,9 +124,10 @@ fn value(variant: (Level, bool), number: u64) -> Result<f64, ExperimentError> {
 /// Measures all published figures at one of the compared levels.
 fn rows_of(
     (level, times_of_code): (Level, bool),
+    stop: &StopFlag,
     step: &(impl Fn() + Sync),
 ) -> Result<Vec<FigureRow>, ExperimentError> {
-    let bench = Bench::new(level).with_mig(MIG.0, MIG.1);
+    let bench = Bench::new(level).with_mig(MIG.0, MIG.1).with_stop(stop.clone());
     let bench = if times_of_code { bench.with_times_of_code() } else { bench };
     let row = |figure: &Figure| {
         let measured = bench.measure(figure.id)?;
@@ -133,21 +138,22 @@ fn rows_of(
 }
 
 /// Measures the simulation speed of a level for each choice of the pixels that a run computes.
-fn speeds(variant: (Level, bool), measures: bool) -> Result<Vec<LevelSpeed>, ExperimentError> {
+fn speeds(variant: (Level, bool), query: &LevelQuery) -> Result<Vec<LevelSpeed>, ExperimentError> {
     let choices = if variant.0 == Level::Analytic { &PIXELS[..1] } else { &PIXELS[..] };
     let speed = |pixels: &Pixels| {
-        let simulated_seconds_per_second = if measures { Some(speed(variant, *pixels)?) } else { None };
+        let simulated_seconds_per_second =
+            if query.speeds { Some(speed(variant, *pixels, &query.stop)?) } else { None };
         Ok(LevelSpeed { pixels: *pixels, simulated_seconds_per_second })
     };
     choices.iter().map(speed).collect()
 }
 
 /// Runs all timed experiments, and returns the number of simulated seconds per second of the host's time.
-fn speed(variant: (Level, bool), pixels: Pixels) -> Result<f64, ExperimentError> {
+fn speed(variant: (Level, bool), pixels: Pixels, stop: &StopFlag) -> Result<f64, ExperimentError> {
     let registry = crate::registry();
     let (mut simulated, mut taken) = (0.0, 0.0);
     for number in 0..TIMED {
-        let experiment = of_variant(variant, number)?.pixels(pixels);
+        let experiment = of_variant(variant, number)?.pixels(pixels).host(stop.clone());
         simulated += experiment.length() as f64 * experiment.config().period()?.as_ms() * 1e-3;
         // Only the simulation is timed, not the construction of the scene.
         let begin = Instant::now();

@@ -1,10 +1,11 @@
 //! Limits of any numeric setting: the smallest or greatest value with which an experiment reaches a goal.
 
 use super::is_reached;
+use crate::StopFlag;
 use crate::error::StudyError;
 use crate::experiment_file::{ExperimentFile, Plan};
 use pxpl5_machine::PRESETS;
-use pxpl5_measure::{CriticalPath, Utilisation};
+use pxpl5_measure::{CriticalPath, Resource, Shares, Utilisation};
 use pxpl5_run::{Experiment, ExperimentError, Goal, Keep, Level, Outcome, Pixels};
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::{SettingError, Value};
@@ -60,8 +61,15 @@ impl Values {
     }
 }
 
+/// Limit below which a 64-bit floating-point number represents every whole number exactly.
+const MAX_WHOLE: f64 = 1e15;
+
 /// Number of steps between the ends of a range of real numbers.
 pub const STEPS: u64 = 64;
+
+/// Estimated number of values that a search tries: five values, and the values of two bisections. For a setting with
+/// fractions, a bisection divides the range into 64 steps.
+pub const USUAL_VALUES: u64 = 12;
 
 /// A search for the values of one setting with which an experiment reaches a goal.
 #[derive(Clone, Debug)]
@@ -74,6 +82,8 @@ pub struct OverQuery {
     pub values: Values,
     /// Goal that the experiment must reach.
     pub goal: Goal,
+    /// Flag by which another thread stops the search.
+    pub stop: StopFlag,
 }
 
 /// Result of a search for the values of a setting that reach a goal.
@@ -102,15 +112,32 @@ struct Trial {
 }
 
 impl OverQuery {
-    /// Returns the values of a setting that are tried by default.
+    /// Returns the values of a setting from `from` to `to`. Whole numbers are tried if both ends are whole. An end that
+    /// is `None` has the default value of that end.
     ///
-    /// For a number of boards, the values end at the number in the largest preset. For any other parameter, the values
-    /// cover the range that the sources of the parameter allow.
+    /// For a number of boards, the default values end at the number in the largest preset. For any other parameter, the
+    /// default values cover the range that the sources of the parameter allow.
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] for a setting without such a range.
-    pub fn usual_values(plan: &Plan, key: &str) -> Result<Values, SettingError> {
+    /// Returns a [`SettingError`] for a setting without a default range, and for an empty range.
+    pub fn values(plan: &Plan, key: &str, from: Option<f64>, to: Option<f64>) -> Result<Values, SettingError> {
+        let (from, to) = match (from, to) {
+            (None, None) => return Self::default_values(plan, key),
+            (Some(from), Some(to)) => (from, to),
+            _ => {
+                let values = Self::default_values(plan, key)?;
+                (from.unwrap_or(values.from), to.unwrap_or(values.last()))
+            }
+        };
+        let is_whole = from.fract() == 0.0 && to.fract() == 0.0 && from >= 0.0 && to < MAX_WHOLE;
+        let values = if is_whole { Values::whole(from as u64, to as u64) } else { Values::real(from, to) };
+        values.ok_or_else(|| {
+            SettingError::value("range", "a least value below the greatest", format_args!("{from} to {to}"))
+        })
+    }
+
+    fn default_values(plan: &Plan, key: &str) -> Result<Values, SettingError> {
         // The largest preset is the largest machine with a source.
         let largest = |boards: fn(&pxpl5_machine::MachineConfig) -> usize| {
             let presets = PRESETS.iter().filter_map(|preset| pxpl5_machine::MachineConfig::preset(preset.name).ok());
@@ -128,10 +155,13 @@ impl OverQuery {
                 })
             }
         };
-        found.ok_or_else(|| SettingError::missing("--from and --to", "the values of this key that are tried"))
+        found.ok_or_else(|| {
+            SettingError::missing("range", format_args!("the least and the greatest value of {key} that is tried"))
+        })
     }
 
-    /// Searches for the limit. `progress` is called with the number of values tried so far.
+    /// Searches for the limit. `progress` is called with the number of values tried so far, and with an estimate of the
+    /// number of all values.
     ///
     /// The search first tries the ends of the range and three values between them. If one of these values reaches the
     /// goal, the search bisects the range on both sides of this value. The limit is therefore exact if all values on
@@ -139,13 +169,14 @@ impl OverQuery {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] or [`ExperimentError`] if no value at all can be run.
-    pub fn search(&self, mut progress: impl FnMut(u64)) -> Result<OverLimit, StudyError> {
+    /// Returns a [`SettingError`] or [`ExperimentError`] if no value at all can be run, and
+    /// [`ExperimentError::Stopped`] if another thread sets the query's flag.
+    pub fn search(&self, mut progress: impl FnMut(u64, u64)) -> Result<OverLimit, StudyError> {
         let mut search = Search { query: self, trials: BTreeMap::new(), refused: None, scene: None };
         let last = self.values.count - 1;
         for number in [0, last, last / 2, last / 4, last - last / 4] {
             search.reaches(number);
-            progress(search.trials.len() as u64);
+            search.report(&mut progress);
         }
         let reached = search.trials.iter().filter(|(_, trial)| trial.reached).map(|(number, _)| *number).max();
         let Some(inside) = reached else { return search.none() };
@@ -165,10 +196,12 @@ impl OverQuery {
                 } else {
                     miss = middle
                 }
-                progress(search.trials.len() as u64);
+                search.report(&mut progress);
             }
             *end = Some((hit, miss));
         }
+        // The values after a stop were not tried.
+        self.stop.check()?;
         let [least, most] = ends;
         let miss = least.or(most).map(|(_, miss)| miss);
         Ok(OverLimit {
@@ -183,7 +216,7 @@ impl OverQuery {
 
     fn plan(&self, value: f64) -> Result<Plan, SettingError> {
         let mut file = self.file.clone();
-        file.set_text(&format!("{}={}", self.key, self.values.text(value)), "--over")?;
+        file.set_text(&format!("{}={}", self.key, self.values.text(value)), "limit")?;
         file.resolve()
     }
 }
@@ -216,6 +249,7 @@ impl Search<'_> {
     }
 
     fn run(&mut self, value: f64) -> Result<Trial, StudyError> {
+        self.query.stop.check()?;
         let plan = self.query.plan(value)?;
         let scene = self.load(&plan)?;
         let goal = self.query.goal;
@@ -225,7 +259,8 @@ impl Search<'_> {
             let score = score(goal, &summary);
             return Ok(Trial { reached: is_reached(goal, &summary), score, because: None });
         }
-        let experiment: Experiment = plan.experiment(scene).pixels(Pixels::Off).keep(Keep::Statistics);
+        let experiment: Experiment =
+            plan.experiment(scene).pixels(Pixels::Off).keep(Keep::Statistics).host(self.query.stop.clone());
         // A run that ended early misses the goal, but its records still show the limiting resource.
         let (outcome, is_whole) = match experiment.run() {
             Ok(outcome) => (outcome, true),
@@ -244,6 +279,11 @@ impl Search<'_> {
         let scene = plan.load_scene()?;
         self.scene = Some((plan.scene.clone(), Arc::clone(&scene)));
         Ok(scene)
+    }
+
+    fn report(&self, progress: &mut impl FnMut(u64, u64)) {
+        let tried = self.trials.len() as u64;
+        progress(tried, tried.max(USUAL_VALUES));
     }
 
     fn tried(&self) -> Vec<(f64, bool)> {
@@ -286,21 +326,34 @@ fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
 /// leave up to 5 % of a short run idle.
 const FULL: f64 = 0.95;
 
-/// Returns the limiting resource of a run: a board that is always busy, or else the longest wait in the latency.
+/// Returns the limiting resource of a run in words: a board that is always busy, or else the longest wait in the latency
+/// with the busiest board of this resource.
 fn because(outcome: &Outcome) -> Option<String> {
-    let utilisation = Utilisation::of(outcome.record())?;
-    let kinds = [
-        ("renderer", utilisation.renderers.executing),
-        ("GP", utilisation.gps.busy),
-        ("port", utilisation.ports.busy),
-        ("channel", utilisation.ring.channels),
-    ];
-    let full = kinds.into_iter().find(|(_, shares)| shares.max >= FULL);
-    if let Some((board, shares)) = full {
-        let idle = if shares.idle > 0 { format!(", {} are idle", shares.idle) } else { String::new() };
-        return Some(format!("{board} {} is {:.0} % busy{idle}", shares.busiest, shares.max * 100.0));
+    let Utilisation { renderers, gps, ports, ring, .. } = Utilisation::of(outcome.record())?;
+    let (renderer, gp) = (("renderer", renderers.executing), ("GP", gps.busy));
+    let (port, channel) = (("port", ports.busy), ("channel", ring.channels));
+    if let Some(full) = [&renderer, &gp, &port, &channel].into_iter().find(|(_, shares)| shares.max >= FULL) {
+        return Some(busy(full));
     }
-    Some(format!("limited by {}", CriticalPath::of(outcome)?.limited_by))
+    let Some(path) = CriticalPath::of(outcome) else {
+        // Channels are left out, because the ring always prefers the first free channel.
+        let busiest = [&renderer, &gp, &port].into_iter().max_by(|a, b| a.1.max.total_cmp(&b.1.max))?;
+        return Some(format!("no picture is complete in time, and {}", busy(busiest)));
+    };
+    let board = match path.parts.first()?.resource {
+        Resource::Renderers => Some(&renderer),
+        Resource::Ports => Some(&port),
+        Resource::Transform | Resource::Messages => Some(&gp),
+        _ => None,
+    };
+    let busiest = board.map_or_else(String::new, |board| format!("; {}", busy(board)));
+    Some(format!("limited by {}{busiest}", path.limited_by))
+}
+
+/// Returns the utilisation of the busiest board of a kind in words.
+fn busy((board, shares): &(&str, Shares)) -> String {
+    let idle = if shares.idle > 0 { format!(", {} are idle", shares.idle) } else { String::new() };
+    format!("{board} {} is {:.0} % busy{idle}", shares.busiest, shares.max * 100.0)
 }
 
 #[cfg(test)]

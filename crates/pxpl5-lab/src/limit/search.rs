@@ -21,6 +21,15 @@ pub struct Limit {
     pub tried: usize,
 }
 
+impl Limit {
+    /// Returns true if a number of triangles missed the goal, or if the search ended below [`CEILING`](super::CEILING)
+    /// at the last triangle of a model. Otherwise the pipeline has no limit.
+    #[must_use]
+    pub const fn has_limit(&self) -> bool {
+        self.first_miss.is_some() || self.triangles < super::CEILING
+    }
+}
+
 /// Hints about the limit, which reduce the number of trials. Hints do not change the result of any trial.
 #[derive(Clone, Debug, Default)]
 pub struct Hints {

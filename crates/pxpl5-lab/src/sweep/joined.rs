@@ -167,6 +167,6 @@ impl RowBlocks {
 pub(super) fn missing_points(missing: u64, points: u64, which: &str) -> FileError {
     FileError::because(
         FileErrorKind::Truncated,
-        format_args!("{missing} of {points} points are missing: {which}; run the shards that hold them with --resume"),
+        format_args!("{missing} of {points} points are missing: {which}; resume the shards that hold them"),
     )
 }

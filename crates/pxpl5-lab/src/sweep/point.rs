@@ -3,7 +3,7 @@
 use super::header::json;
 use super::{Sweep, SweepSpace, measures};
 use crate::experiment_file::Plan;
-use pxpl5_run::Host;
+use crate::{StopFlag, StudyError};
 use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,6 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Result status of a point (experiment) of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -82,12 +81,12 @@ pub trait Swept: Sync {
     /// Returns the parameter space, whose points are the experiments.
     fn space(&self) -> &SweepSpace;
 
-    /// Simulates a point. The simulation may end early when another thread sets `stop` to true.
+    /// Simulates a point. The simulation may end early when another thread sets `stop`.
     ///
     /// # Errors
     ///
-    /// Returns the reason why the point cannot be simulated.
-    fn simulate(&self, point: u64, stop: &Arc<AtomicBool>) -> Result<PointResults, String>;
+    /// Returns the error of a point that cannot be simulated.
+    fn simulate(&self, point: u64, stop: &StopFlag) -> Result<PointResults, StudyError>;
 }
 
 impl Swept for Sweep {
@@ -95,14 +94,13 @@ impl Swept for Sweep {
         &self.space
     }
 
-    fn simulate(&self, point: u64, stop: &Arc<AtomicBool>) -> Result<PointResults, String> {
-        let plan = self.plan(point).map_err(|error| error.to_string())?;
-        let scene = self.scene(&plan).map_err(|error| error.to_string())?;
+    fn simulate(&self, point: u64, stop: &StopFlag) -> Result<PointResults, StudyError> {
+        let plan = self.plan(point)?;
+        let scene = self.scene(&plan)?;
         // The hash identifies the point even if its run fails later.
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // No pixels are computed, because a sweep keeps no pictures and pixels do not change simulated times.
-        let host = StoppableHost { stop: Arc::clone(stop) };
-        let results = plan.run_on(host, scene).map_err(|error| error.to_string())?;
+        let results = plan.run_on(stop.clone(), scene)?;
         let measured = measures(&plan).iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
         let trace_hash = results.run.map(|(_, report)| report.trace_hash);
         Ok(PointResults { measured, config_hash, trace_hash })
@@ -111,9 +109,11 @@ impl Swept for Sweep {
 
 /// Simulates a point and returns its row. An error, even a panic, is stored in the row, so that the sweep continues
 /// with all remaining points.
-pub(super) fn row(sweep: &impl Swept, point: u64, stop: &Arc<AtomicBool>) -> SweepRow {
-    let results = catch_unwind(AssertUnwindSafe(|| sweep.simulate(point, stop)));
-    let results = results.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
+pub(super) fn row(sweep: &impl Swept, point: u64, stop: &StopFlag) -> SweepRow {
+    let results = match catch_unwind(AssertUnwindSafe(|| sweep.simulate(point, stop))) {
+        Ok(results) => results.map_err(|error| error.to_string()),
+        Err(panic) => Err(format!("a bug of the emulator: {}", panic_text(&*panic))),
+    };
     let parameters = sweep.space().settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
     // A failed row has the parameters and the error only.
     let empty = SweepRow {
@@ -130,18 +130,6 @@ pub(super) fn row(sweep: &impl Swept, point: u64, stop: &Arc<AtomicBool>) -> Swe
             SweepRow { status: Status::Done, measured, config_hash: Some(config_hash), trace_hash, ..empty }
         }
         Err(error) => SweepRow { error: Some(error), ..empty },
-    }
-}
-
-/// A host with one thread for pixels, on which another thread can stop runs.
-#[derive(Clone, Debug)]
-struct StoppableHost {
-    stop: Arc<AtomicBool>,
-}
-
-impl Host for StoppableHost {
-    fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
     }
 }
 

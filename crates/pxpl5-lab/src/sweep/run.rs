@@ -4,9 +4,9 @@ use super::point::row;
 use super::points::Points;
 use super::shard::Shard;
 use super::{Store, SweepRow, Swept};
+use crate::StopFlag;
 use crossbeam_channel::{Sender, bounded};
 use pxpl5_sim::parameters::FileError;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::Instant;
@@ -35,10 +35,10 @@ pub fn run(
     options: RunOptions,
     finished: impl FnMut(&SweepRow),
 ) -> Result<(), FileError> {
-    run_stoppable(sweep, store, options, &Arc::default(), finished)
+    run_stoppable(sweep, store, options, &StopFlag::default(), finished)
 }
 
-/// Simulates the points of a shard as [`run`] does, until another thread sets `stop` to true. The simulations in
+/// Simulates the points of a shard as [`run`] does, until another thread sets `stop`. The simulations in
 /// progress then end within a few display periods, and their points get no row.
 ///
 /// # Errors
@@ -48,7 +48,7 @@ pub fn run_stoppable(
     sweep: &impl Swept,
     store: &mut Store,
     options: RunOptions,
-    stop: &Arc<AtomicBool>,
+    stop: &StopFlag,
     mut finished: impl FnMut(&SweepRow),
 ) -> Result<(), FileError> {
     let work = Work {
@@ -90,19 +90,19 @@ struct Work<'a, S> {
     next: AtomicU64,
     /// True after a row could not be written, so that no further row can be written.
     ended: AtomicBool,
-    /// True when another thread has asked the sweep to stop.
-    stop: &'a Arc<AtomicBool>,
+    /// Set when another thread has asked the sweep to stop.
+    stop: &'a StopFlag,
 }
 
 impl<S: Swept> Work<'_, S> {
     /// Simulates points on one thread, until no point is left or the receiver of the rows has closed.
     fn run(&self, rows: Sender<(SweepRow, f64)>) {
-        while !self.ended.load(Ordering::Relaxed) && !self.stop.load(Ordering::Relaxed) {
+        while !self.ended.load(Ordering::Relaxed) && !self.stop.is_stopped() {
             let Some(point) = self.take() else { break };
             let begin = Instant::now();
             let row = row(self.sweep, point, self.stop);
             // A point that was stopped has no row.
-            let is_stopped = self.stop.load(Ordering::Relaxed);
+            let is_stopped = self.stop.is_stopped();
             if is_stopped || rows.send((row, begin.elapsed().as_secs_f64())).is_err() {
                 break;
             }

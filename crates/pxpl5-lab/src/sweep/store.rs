@@ -68,15 +68,13 @@ impl Store {
         let path = folder.join(ROWS_FILE);
         let rows = RowFile::open_or_none(&path)?;
         check_header(&path, &header, rows.header())?;
-        // Without --resume, existing rows are never extended by accident.
+        // Without `resume`, existing rows are never extended by accident.
         if !resume && rows.finished() > 0 {
-            return Err(occupied(
-                folder,
-                format_args!(
-                    "there are {} finished points here already; continue with --resume, or choose another folder",
-                    rows.finished()
-                ),
-            ));
+            let points = rows.finished();
+            let reason = format_args!(
+                "there are {points} finished points here already; resume the sweep, or choose another folder"
+            );
+            return Err(FileError::because(FileErrorKind::Unfinished, reason).in_file(folder.display()));
         }
         // Both files continue after their last complete line; a new file starts with the header.
         let end = rows.whole_bytes();

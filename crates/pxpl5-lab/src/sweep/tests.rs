@@ -1,9 +1,8 @@
 use super::*;
+use crate::StopFlag;
 use crate::experiment_file::ExperimentFile;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 const BASE: &str =
     "pipeline = \"slats\"\nscene = \"full-screen:4\"\nfields = 10\nmeasure = [\"latency_ms.mean\", \"last_copy_ms\"]\n";
@@ -337,17 +336,20 @@ fn a_stopped_sweep_keeps_its_finished_rows_and_continues_to_the_same_rows() {
     all(&sweep, &mut whole);
     // A sweep that was stopped before it began has no row.
     let mut store = open("stopped");
-    let stop = Arc::new(AtomicBool::new(true));
+    let stop = StopFlag::default();
+    stop.stop();
     let options = RunOptions { shard: Shard::ALL, threads: 1 };
     run_stoppable(&sweep, &mut store, options, &stop, |_| {}).expect("it stops");
     assert_eq!(store.finished(Shard::ALL), 0);
     // A stop after the second row leaves rows without a result. No row says that its run was stopped.
-    stop.store(false, Ordering::Relaxed);
+    let stop = StopFlag::default();
     let mut rows_before = 0;
     run_stoppable(&sweep, &mut store, options, &stop, |row| {
         assert!(row.is_done(), "{:?}", row.error);
         rows_before += 1;
-        stop.store(rows_before >= 2, Ordering::Relaxed);
+        if rows_before >= 2 {
+            stop.stop();
+        }
     })
     .expect("it stops");
     assert!(rows_before >= 2 && store.finished(Shard::ALL) == rows_before);

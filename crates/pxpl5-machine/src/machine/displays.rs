@@ -42,8 +42,8 @@ impl Machine {
     }
 }
 
-/// Records a swap of a surface, or of the part of the surface at port `port`: from period `tick` on, buffer `buffer` is
-/// shown. The function also signals the swap to the first graphics processor.
+/// Records that port `port` of a surface shows buffer `buffer` from the display period `tick` on. Also signals the swap
+/// to the first graphics processor.
 fn note_swap(
     observation: &mut Observation,
     queue: &mut EventQueue<Event>,

@@ -19,33 +19,32 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::view::RandomOrder;
 
-/// The pipeline of frameless rendering, which draws blocks of the frame in a random order, each block once per pass.
+/// The pipeline of frameless rendering, which draws small blocks of pixels in a random order.
 ///
-/// Each batch of blocks uses the newest view and is shown immediately, without a swap. A *pass* draws every block once.
-/// The papers update single pixels, but a message with a single pixel would take 17 words on the ring.
+/// Each batch of blocks uses the newest view and is shown immediately, without a swap. Every block is drawn once before
+/// any block is drawn again. The papers update single pixels, but a message with a single pixel would take 17 words on
+/// the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frameless {
     /// Width and height of a block, 4 to 128 pixels.
     pub block: u32,
-    /// Number of blocks that are drawn with one view. The value 0 selects the number at which the ring and the graphics
-    /// processors are equally busy.
+    /// Number of blocks that are drawn with one view. With 0, the pipeline chooses the number at which the ring and the
+    /// graphics processors are equally busy.
     pub batch: u32,
     /// Seed of the random order of blocks.
     pub seed: u64,
 }
 
 impl Frameless {
-    /// Creates a pipeline with blocks of 16 x 16 pixels. A message of such a block has 16 words of overhead for 256
+    /// Creates a pipeline with blocks of 16 x 16 pixels. The message of such a block has 16 words of overhead and 256
     /// words of pixels.
     #[must_use]
     pub const fn new() -> Self {
         Self { block: 16, batch: 0, seed: 1 }
     }
 
-    /// Returns the number of blocks in a batch. The number is chosen so that the ring carries the blocks of all slave
-    /// processors in the time in which one slave processor transforms.
-    ///
-    /// A run of i860 code uses a fixed number, because the time of code is unknown in advance.
+    /// Returns the number of blocks that are drawn with one view. By default, the ring sends the blocks of all slaves
+    /// while one slave transforms.
     fn batch(&self, record: &Record, pass: TransformCost, runs_code: bool) -> u32 {
         if self.batch > 0 {
             return self.batch;
@@ -64,7 +63,7 @@ impl Frameless {
         (slave_ns / (slaves * block_ns)).clamp(LEAST_BATCH, MOST_BATCH) as u32
     }
 
-    /// Returns the number of blocks in a pass.
+    /// Returns the number of blocks of a picture.
     #[must_use]
     pub fn blocks(&self) -> u32 {
         self.grid().regions()
@@ -86,18 +85,16 @@ impl Default for Frameless {
     }
 }
 
-/// Smallest number of blocks in a batch (assumed). With fewer blocks, the master would limit the rate, because each of
-/// its orders to a slave takes 24 us.
-///
-/// The largest number is [`MOST_BATCH`] (assumed). With more blocks, the same view would be used for too long.
+/// Smallest and largest number of blocks in a batch (assumed). In smaller batches, the master would be the bottleneck,
+/// because each order takes 24 us. In larger batches, the view would become too old.
 const LEAST_BATCH: u64 = 4;
 const MOST_BATCH: u64 = 64;
 
-/// Number of blocks in a batch if i860 code runs (assumed; see kernels/order_rules.md in the crate pphigs). A fixed
-/// number is used, because the time of the code is unknown in advance.
+/// Number of blocks in a batch at the cycle level (assumed; see kernels/order_rules.md in the crate pphigs). The number
+/// is fixed, because the time of the code is unknown in advance.
 const BATCH_OF_CODE: u32 = 16;
 
-/// Returns the first time after an instant at which the display's beam reaches a region.
+/// Returns the first time at or after `after` at which the display scans the region `target`.
 fn next_light(video: &Video, target: &CopyTarget, after: Time) -> Time {
     let now = video.field_at(after);
     let reached = now.until(now.after(3)).filter_map(|field| video.reaches(target, field)).find(|at| *at >= after);
@@ -153,8 +150,7 @@ impl Pipeline for Frameless {
 }
 
 impl PictureRules for Frameless {
-    /// Returns the updates, each of which draws one batch of blocks. The last block of an update defines the times of
-    /// the whole update.
+    /// Returns one entry for each batch of blocks. The last block to arrive defines the times of its batch.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
@@ -172,6 +168,7 @@ impl PictureRules for Frameless {
                 copied_at: Some(*copied_at),
                 shown_at: next_light(video, target, *copied_at),
                 end: PictureResult::of(*blocks == batch, true),
+                layer: 0,
             })
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
@@ -196,16 +193,16 @@ impl PictureRules for Frameless {
         "no picture is ever due: each block is shown when it arrives, and there are no frames"
     }
 
-    /// Returns the number of updates (batches of blocks) in a pass, because a pass draws a whole picture.
+    /// Returns the number of batches that redraw the whole picture.
     fn updates_per_picture(&self, record: &Record) -> f64 {
         f64::from(self.blocks()) / f64::from(record.observation().most_regions_of_a_picture().max(1))
     }
 }
 
-/// Returns, for each update, the number of arrived blocks, and the arrival time and target of the last block.
+/// Returns for each batch the number of arrived blocks, and the time and target of the last arrival.
 ///
-/// Blocks may arrive at two frame buffers at the same instant. The block with the higher number of port and region then
-/// counts as the last block, independent of the order of the records.
+/// If two blocks arrive at the same instant, the block with the higher port and region counts as the last. The result
+/// is therefore independent of the order of the records.
 fn last_blocks(arrivals: &[Arrival]) -> BTreeMap<PictureNumber, (u32, Time, CopyTarget)> {
     let mut last: BTreeMap<PictureNumber, (u32, Time, CopyTarget)> = BTreeMap::new();
     for Arrival { last_part_at, target, .. } in arrivals {
@@ -218,7 +215,6 @@ fn last_blocks(arrivals: &[Arrival]) -> BTreeMap<PictureNumber, (u32, Time, Copy
     last
 }
 
-/// Registry entry of frameless rendering.
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     name: "frameless",
     family: "frameless",

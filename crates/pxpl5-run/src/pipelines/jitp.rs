@@ -24,26 +24,24 @@ pub use jitp::{Interpolation, Viewpoint};
 /// for the instant at which the strip is displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jitp {
-    /// The instants for which the parts of a picture are computed.
+    /// Choice of the instants for which the lines of a picture are drawn.
     pub viewpoint: Viewpoint,
-    /// True if strips arrive at the frame buffer just before the display's beam scans the strips. False if strips
-    /// arrive one field earlier.
+    /// True if strips arrive at the frame buffer just before the beam. False if strips arrive one field earlier.
     pub racing: bool,
     /// Number of lines in a strip, 1 to 128.
     pub strip_rows: u32,
 }
 
 impl Jitp {
-    /// Creates a pipeline with strips of one line. A conventional picture, [`Viewpoint::Field`], uses strips of eight
-    /// lines, because finer strips gain nothing.
+    /// Creates a pipeline with strips of one line. If a whole field shows one instant ([`Viewpoint::Field`]), strips
+    /// have eight lines, because smaller strips gain nothing.
     #[must_use]
     pub const fn new(viewpoint: Viewpoint, racing: bool) -> Self {
         let strip_rows = if matches!(viewpoint, Viewpoint::Field) { 8 } else { 1 };
         Self { viewpoint, racing, strip_rows }
     }
 
-    /// Returns the pipelines of all viewpoints, each without and with beam racing. A viewpoint defines the instants for
-    /// which the parts of a picture are computed.
+    /// Returns the pipelines of all viewpoints, each without and with racing.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let viewpoints = [
@@ -67,7 +65,7 @@ impl Jitp {
     }
 }
 
-/// Returns the firmware's configuration for the boards of a machine. `pipeline` names the pipeline in errors.
+/// Returns the settings of the firmware for a machine. `pipeline` is the name of the pipeline, for errors.
 pub(super) fn config(
     pipeline: &str,
     record: &Record,
@@ -103,12 +101,11 @@ fn beam(video: Video) -> Beam {
     Beam::new(at, move |field| video.retrace(field))
 }
 
-/// Returns the cost of one pass over the display list. Each slave processor holds the whole list.
+/// Returns the cost of TRANSFORM, in which each slave transforms the whole display list.
 pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
     TransformCost::pass_over(&setup.list, Share::new(Arc::clone(&setup.list), 0, 1).counts())
 }
 
-/// Loads the programs of host, master and slaves.
 pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.host, Priority::Foreground);
     let reports = Arc::clone(&setup.reports);
@@ -133,14 +130,14 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     }
 }
 
-/// Returns the time at which the display scans the first pixel of a region in its field.
+/// Returns the deadline of a region: the time at which the display scans the region's first pixel.
 fn due(video: &Video, target: &CopyTarget) -> Time {
     let field = target.picture.period_drawn_for();
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions. The type counts the regions that arrived before the field's end, and the regions that
-/// arrived before the beam. The time is the arrival time of the middle strip.
+/// Arrivals of a field's regions: number before the end of the field, number before the beam, and arrival time of the
+/// middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,
@@ -223,6 +220,7 @@ impl PictureRules for Jitp {
                 copied_at: middle_at,
                 shown_at: video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field)),
                 end: PictureResult::of(in_period == grid.regions(), in_time == grid.regions()),
+                layer: 0,
             }
         });
         times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
@@ -237,7 +235,7 @@ impl PictureRules for Jitp {
         late_regions(display, record, end, |video, arrival| due(video, &arrival.target))
     }
 
-    /// Returns 1: a picture is due every field.
+    /// Returns 1, because a picture is due in every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }
@@ -274,18 +272,16 @@ impl PictureRules for Jitp {
     }
 }
 
-/// Returns the region of a grid that contains a pixel.
+/// Returns the region of `grid` that contains the pixel in column `x` and line `row`.
 #[must_use]
 pub fn region_at(grid: &RegionGrid, x: u32, row: u32) -> RegionId {
     RegionId((row / grid.region_height * grid.columns() + x / grid.region_width) as u16)
 }
 
-/// Tables of the firmware's timing parameters.
 pub(super) const TABLES: &[NamedTable] = &[("jitp", || Box::new(JitpTiming::PAPERS))];
 
 const KEYS: &[Key] = &[Key::new("strip_rows", "lines of a strip", KeyValues::Whole(1, 128))];
 
-/// Returns a registry entry of the family `jitp`.
 const fn entry(
     name: &'static str,
     about: &'static str,
@@ -314,7 +310,6 @@ fn build(viewpoint: Viewpoint, racing: bool, settings: &PipelineSettings) -> Arc
 const SCREEN: Viewpoint = Viewpoint::Dual(Interpolation::Screen);
 const VIEW: Viewpoint = Viewpoint::Dual(Interpolation::View);
 
-/// Registry entries of just-in-time pixels.
 pub(super) const ENTRIES: [PipelineEntry; 8] = [
     entry(
         "jitp-field",

@@ -1,8 +1,8 @@
-//! A pipeline in which a function of the user, the *policy*, decides which renderer draws which region, and in which
-//! order.
+//! A pipeline for experiments with the order of regions. A function of the user, the *policy*, decides which renderer
+//! draws which region, and in which order.
 //!
-//! One graphics processor draws frames for a single eye and shows each frame as soon as it is finished. TRANSFORM ends
-//! before the policy is called, so the policy receives the final number of primitives in every region.
+//! One graphics processor draws frames for a single eye and shows each frame when it is finished. The policy is called
+//! after TRANSFORM, so it receives the final number of primitives in every region.
 
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
@@ -67,8 +67,8 @@ pub trait RegionPolicy: Debug + Send + Sync {
     /// Returns every region once with its renderer, in the order in which the regions are sent. Returns `None` to end
     /// the drawing. The run then continues without new pictures.
     ///
-    /// The same frame must always get the same answer, because a run may be repeated. Reasons are the detection of a
-    /// deadlock, and the dry run of an experiment with a predicted head.
+    /// The function must give the same answer for the same frame, because a run may be repeated, for example as a dry
+    /// run.
     fn assign(&self, frame: &PolicyFrame) -> Option<Vec<RegionAssignment>>;
 }
 
@@ -101,7 +101,7 @@ impl PolicyFrame {
 }
 
 /// A pipeline with one graphics processor, which draws one frame at a time. A [`RegionPolicy`] distributes the regions
-/// over the renderers.
+/// of a frame among the renderers.
 #[derive(Clone, Debug)]
 pub struct PolicyPipeline {
     policy: Arc<dyn RegionPolicy>,
@@ -109,7 +109,7 @@ pub struct PolicyPipeline {
 }
 
 impl PolicyPipeline {
-    /// Creates a pipeline with a policy and a kind of shading.
+    /// Creates a pipeline with a policy and a method of shading.
     #[must_use]
     pub const fn new(policy: Arc<dyn RegionPolicy>, shading: Shading) -> Self {
         Self { policy, shading }
@@ -126,7 +126,6 @@ impl PolicyPipeline {
     }
 }
 
-/// Data that the graphics processor's program needs to draw a frame.
 struct Drawing {
     ports: Ports,
     list: Arc<DisplayList>,
@@ -135,7 +134,6 @@ struct Drawing {
 }
 
 impl Drawing {
-    /// Calls the policy for a frame. Returns `None` if the policy ends the drawing.
     fn assignments(
         &self,
         gp: &Gp,
@@ -262,6 +260,7 @@ impl PictureRules for PolicyPipeline {
             copied_at: None,
             shown_at: record.tick(tick),
             end: PictureResult::Shown,
+            layer: 0,
         });
         times.filter(|times| times.shown_at < end).collect()
     }

@@ -14,7 +14,7 @@ use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::Surface;
 use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
-use rendering_control::{RenderingControlConfig, host, master, slave};
+use rendering_control::{Frames, RenderingControlConfig, frames, host, master, slave};
 use std::sync::Arc;
 
 /// The pipeline Rendering Control of the library PPHIGS (TR94).
@@ -24,30 +24,28 @@ pub struct RenderingControl {
     pub mono: bool,
     /// Method of shading.
     pub shading: Shading,
-    /// Action of a renderer that has finished a region before the frame buffer of this region is available.
+    /// The choice of a renderer's action with a finished region while the frame buffer is not available.
     pub finished: FinishedRegions,
 }
 
-/// Action of a renderer that has finished a region before the frame buffer of this region is available.
+/// The choice of a renderer's action with a finished region while the frame buffer is not available.
 ///
-/// TR94 says that the last slave returns the token, and that the master assigns the renderer to the next region. The
-/// copy command comes later if the frame buffer was not available. TR94 does not say if the renderer gets the next
-/// region before this copy command.
+/// TR94 says that the last slave returns the token, and that the master then gives the renderer its next region. TR94
+/// does not say if this also happens before the finished region is copied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FinishedRegions {
-    /// The region stays in pixel memory, and the renderer waits for the copy.
+    /// The renderer keeps the region in pixel memory and waits for the copy.
     #[default]
     Wait,
-    /// The region moves to the backing store if there is room, and the renderer gets the next region.
+    /// The renderer moves the region to its backing store, if there is room, and draws the next region.
     Store,
 }
 
 impl FinishedRegions {
-    /// All actions of a renderer that has finished a region before the frame buffer of this region is available. The
-    /// first action is the default.
+    /// All choices of [`FinishedRegions`], with their names in experiment files.
     pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
 
-    /// Returns the name of the action in experiment files.
+    /// Returns the name of the choice in experiment files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -56,8 +54,8 @@ impl FinishedRegions {
         }
     }
 
-    /// Returns the number of finished regions that a renderer stores while the frame buffer is not available. `room` is
-    /// the capacity of the renderer's backing store in regions.
+    /// Returns how many finished regions a renderer can store at a time. `room` is the capacity of the backing store in
+    /// regions.
     #[must_use]
     pub const fn stored(self, room: u64) -> u64 {
         match self {
@@ -76,20 +74,20 @@ impl RenderingControl {
         Self { mono: false, shading: Shading::Phong, finished: FinishedRegions::Wait }
     }
 
-    /// Creates a pipeline with one picture and Phong shading.
+    /// Creates a pipeline for one eye, with Phong shading.
     #[must_use]
     pub const fn mono() -> Self {
         Self { mono: true, ..Self::stereo() }
     }
 
-    /// Returns the properties of an eye's picture on a display whose surfaces are `surfaces`.
+    /// Returns the layout of an eye's picture, or an error if the display does not suit the pipeline.
     fn drawn(self, surfaces: &[Surface], pixels: bool) -> Result<Picture, SettingError> {
         let grid = surfaces.first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
         let viewport = Viewport::new(grid, Lines::Frame)?;
         Ok(Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels })
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, SettingError> {
+    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig<Frames>, SettingError> {
         let ports = machine.ports();
         // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
@@ -104,10 +102,12 @@ impl RenderingControl {
             master: *master,
             slaves: slaves.to_vec(),
             renderers: ports.renderers.clone(),
-            frame_buffers: ports.display().iter().copied().take(self.eyes()).collect(),
-            frame_buffer_ports: ports.display().to_vec(),
-            picture,
-            regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
+            drawn: Frames {
+                frame_buffers: ports.display().iter().copied().take(self.eyes()).collect(),
+                frame_buffer_ports: ports.display().to_vec(),
+                picture,
+                regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
+            },
         })
     }
 }
@@ -138,8 +138,7 @@ impl Pipeline for RenderingControl {
         self.shading
     }
 
-    /// Returns `None`, because all work has i860 code on every display. The code covers all frames in regions of 128 x
-    /// 128 pixels.
+    /// Returns `None`, because i860 code exists for all work of this pipeline.
     fn without_code(&self, _: &MachineConfig) -> Option<&'static str> {
         None
     }
@@ -151,8 +150,8 @@ impl Pipeline for RenderingControl {
         let starts = Arc::clone(&setup.starts);
         let gp = machine.processor(config.host, foreground);
         // The host decides when a frame begins, and samples the view for it.
-        let view_of = move |view, time| views(view, time);
-        let program = host(gp, config.clone(), setup.host, move |ready| starts(ready), view_of);
+        let plan = frames(move |ready| starts(ready), move |view, time| views(view, time));
+        let program = host(gp, config.clone(), setup.host, plan);
         machine.load(config.host, foreground, Box::pin(program));
         let gp = machine.processor(config.master, foreground);
         machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
@@ -180,8 +179,8 @@ impl PictureRules for RenderingControl {
         true
     }
 
-    /// Returns the time for the COPY of all eyes, in display periods. The eyes are copied one after the other. A stereo
-    /// pair takes 31.2 ms, which is two fields (TR94).
+    /// Returns the time of COPY for all eyes, one after the other, in whole display periods. A stereo pair takes 31.2
+    /// ms, which is two fields (TR94).
     fn periods_a_picture(&self, record: &Record) -> Option<u64> {
         let surfaces = record.display().surfaces();
         let ports = (record.ports().display().len() / surfaces.len().max(1)).max(1);
@@ -197,28 +196,24 @@ impl PictureRules for RenderingControl {
         "the time of COPY determines how often a frame is due: once in the number of periods that the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); a frame is shown when it is swapped in"
     }
 
-    /// Returns the index of the eye, because the copies of the eyes are timed separately.
+    /// Returns the index of the eye. The copy of each eye is timed separately.
     fn copy_part(&self, arrival: &Arrival) -> u8 {
         arrival.surface.0 as u8
     }
 
-    /// Returns the frame in the displayed buffer. The frame is complete, even if the display's beam has not scanned all
-    /// of it yet.
+    /// Returns the shown buffer, which has a complete frame even while the beam scans it.
     fn picture(&self, record: &Record, surface: SurfaceId) -> Option<RgbImage> {
         record.display().shown(surface.index())
     }
 }
 
-/// Returns the time in which all pixels of a surface are transferred: the transfer time at the port that receives the
-/// most pixels.
-///
-/// Regions are assigned to the ports in turn. Messages have at most [`MAX_MESSAGE_WORDS`] words.
+/// Returns the time to transfer all pixels of a surface. The busiest port decides, because the regions are assigned to
+/// the ports in turn.
 fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {
     (0..ports).map(|port| port_span(record, surface, port, ports)).max().unwrap_or(Span::ZERO)
 }
 
-/// Returns the transfer time of the regions that go to one port: every `ports`-th region of a surface, beginning with
-/// the region `first`.
+/// Returns the time to transfer every `ports`-th region of a surface, beginning with the region `first`.
 fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span {
     let timing = record.ring().timing();
     let grid = surface.grid();
@@ -234,7 +229,6 @@ fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span
         .sum()
 }
 
-/// Registry entry of Rendering Control.
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     name: "rendering-control",
     family: "rendering-control",

@@ -18,7 +18,7 @@ use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Version of the graphics processor's code. Versions differ only in simulated time.
+/// Version of the graphics processor's program. Versions differ only in simulated time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
     /// Code of the 1994 prototype (TR94).
@@ -43,7 +43,6 @@ impl Code {
         }
     }
 
-    /// Returns the version of i860 code that the cycle level executes for this variant.
     const fn version(self) -> CodeVersion {
         match self {
             Self::Of1994 | Self::Of1995 => CodeVersion::Compiled,
@@ -52,7 +51,7 @@ impl Code {
     }
 }
 
-/// Source of vertex colours.
+/// Source of the colours of vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlatsLighting {
     /// Colours were computed before the run (TR94: by radiosity). The graphics processor computes no lighting.
@@ -64,7 +63,7 @@ pub enum SlatsLighting {
 pxpl5_sim::parameters::named!(SlatsLighting, "lighting", SlatsLighting::ALL);
 
 impl SlatsLighting {
-    /// Both sources of vertex colours, with their names in experiment files.
+    /// Both sources of colours, with their names in experiment files.
     pub const ALL: [(&str, Self); 2] = [("precomputed", Self::Precomputed), ("gp", Self::OnGp)];
 
     const fn shading(self) -> Shading {
@@ -78,18 +77,19 @@ impl SlatsLighting {
 /// The pipeline Slats, which draws one new image in every field (TR94, I3D95).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slats {
-    /// Schedule by which regions are copied.
+    /// Order in which the regions of a picture are copied.
     pub copy: CopySchedule,
-    /// Rule that selects the regions to which a clump (a group of at most 30 triangles) is sent.
+    /// Choice of the regions that receive a clump (a group of at most 30 triangles).
     pub binning: RegionBinning,
-    /// Source of vertex colours.
+    /// Source of the colours of vertices.
     pub lighting: SlatsLighting,
     /// Version of the graphics processor's code. `None` selects the code of the machine's preset.
     pub code: Option<Code>,
 }
 
 impl Slats {
-    /// Creates the prototype with split copies, the papers' optimization of COPY (TR94).
+    /// Creates the prototype with the papers' optimization of COPY (TR94). The lower half of a picture is copied while
+    /// the display already scans the upper half.
     #[must_use]
     pub const fn split() -> Self {
         Self {
@@ -100,14 +100,15 @@ impl Slats {
         }
     }
 
-    /// Creates the prototype with whole copies, without the papers' optimization of COPY (TR94).
+    /// Creates the prototype without the papers' optimization of COPY: both halves are copied before the retrace
+    /// (TR94).
     #[must_use]
     pub const fn whole() -> Self {
         Self { copy: CopySchedule::Whole, ..Self::split() }
     }
 
-    /// Creates a variant with split copies into the buffer that is not displayed. If a field is late, the last complete
-    /// field is shown again.
+    /// Creates a variant of [`Slats::split`] that copies into the hidden buffer. If a field is late, the display
+    /// repeats the last complete field.
     #[must_use]
     pub const fn backup() -> Self {
         Self { copy: CopySchedule::Backup, ..Self::split() }
@@ -168,7 +169,7 @@ impl Pipeline for Slats {
         }
     }
 
-    /// Sets the times of the selected code version. The version changes only the times per primitive.
+    /// Sets the times per primitive of the selected code version.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let Some(code) = self.code else { return config };
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
@@ -237,6 +238,7 @@ impl PictureRules for Slats {
                 copied_at: whole.then_some(copied.at),
                 shown_at: record.tick(shown.unwrap_or(field)),
                 end: picture_end,
+                layer: 0,
             }
         });
         // A picture is evaluated only after its last possible period. The bottom half of a split copy is scanned in
@@ -262,13 +264,13 @@ impl PictureRules for Slats {
         late_regions(display, record, end, due)
     }
 
-    /// Returns 1: a picture is due every field.
+    /// Returns 1, because a picture is due in every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }
 
-    /// Returns the time span in which one field is lit. Each field is scanned once, because the next field consists of
-    /// the lines between the lines of this field.
+    /// Returns the time from the first to the last light of a field. The display scans these lines once, because the
+    /// next field has the lines between them.
     fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightTimes {
         light_span(record, record.display().period_at(times.shown_at), 1)
     }
@@ -281,22 +283,20 @@ impl PictureRules for Slats {
         "a picture is due every field, and in time if every region arrives before its deadline; the deadline is the retrace, or for the bottom regions of a split copy the scan of their first line; with a backup, a late picture counts for the later retrace of its lines at which it is shown"
     }
 
-    /// Returns the half of a split copy to which an arrival belongs. The halves are timed separately.
+    /// Returns 0 for the upper and 1 for the lower half of a split copy. The halves are timed separately.
     fn copy_part(&self, arrival: &Arrival) -> u8 {
         let bottom = u32::from(arrival.target.region.0) >= RegionGrid::FIELD.columns();
         u8::from(bottom && self.copy.is_split())
     }
 }
 
-/// Number of retraces after a late field's own retrace within which [`Slats::backup`] can still show the field. Within
-/// these retraces, the display scans the lines of the field twice more.
+/// Number of further retraces at which a late field of [`Slats::backup`] can still be shown. In this time, the display
+/// scans the lines of the field twice more.
 const LATER_RETRACES: u64 = 4;
 
-/// Progress of the copy of a field to the display.
 #[derive(Clone, Copy, Debug, Default)]
 struct Copied {
     regions: usize,
-    /// Arrival time of the last region of the field.
     at: Time,
     top_at: Time,
     buffer: u8,
@@ -313,9 +313,9 @@ impl Copied {
     }
 }
 
-/// The buffer that each eye's frame buffer displayed over time, for runs of [`Slats::backup`].
+/// The buffers that each eye's frame buffer has shown, for runs of [`Slats::backup`].
 struct Backup {
-    /// For each surface, the first period and the buffer of each swap, in order.
+    /// For each eye, the first period and the buffer of each swap, in order.
     swaps: [Vec<(PeriodNumber, u8)>; 2],
 }
 
@@ -326,10 +326,9 @@ impl Backup {
         Self { swaps: [of(0), of(1)] }
     }
 
-    /// Returns the first period in which both eyes' frame buffers show a copied field, starting with the field's own
-    /// period.
+    /// Returns the first period in which both eyes see the field, beginning with the period `field`.
     ///
-    /// Only every second period has the field's lines.
+    /// Only every second period scans the field's lines.
     fn shown(&self, record: &Record, field: PeriodNumber, copied: &Copied) -> Option<PeriodNumber> {
         let periods = (field.0..=field.0 + LATER_RETRACES).step_by(2).map(PeriodNumber);
         let displays = |swaps: &Vec<(PeriodNumber, u8)>, period: PeriodNumber| {
@@ -342,7 +341,7 @@ impl Backup {
     }
 }
 
-/// Returns the time by which a region of a field must arrive.
+/// Returns the deadline of a region: the retrace, or the time at which the beam reaches the region.
 fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
     let field = target.picture.period_drawn_for();
     let retrace = video.retrace(field);
@@ -354,17 +353,14 @@ const BINNINGS: [(&str, RegionBinning); 2] = RegionBinning::ALL;
 const LIGHTINGS: [(&str, SlatsLighting); 2] = SlatsLighting::ALL;
 const CODES: [(&str, Code); 3] = Code::ALL;
 
-/// Returns the name of the value `value` in the list `choices`.
 fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> KeyValue {
     KeyValue::Name(choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name))
 }
 
-/// Returns the value with the name `name` in the list `choices`.
 fn chosen<T: Copy>(choices: &[(&'static str, T)], name: Option<&str>) -> Option<T> {
     choices.iter().find(|(choice, _)| Some(*choice) == name).map(|(_, value)| *value)
 }
 
-/// Registry entry of Slats.
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     name: "slats",
     family: "slats",
@@ -413,10 +409,10 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     })
 }
 
-/// Returns the criterion by which the largest scene is found.
+/// Returns the criterion by which a search finds the largest scene.
 ///
-/// If clumps (groups of triangles) go to all regions, the test scene has full-screen triangles. If clumps go only to
-/// touched regions, the test scene has small triangles.
+/// If every clump (group of triangles) goes to all regions, the test scene has full-screen triangles. Otherwise the
+/// test scene has small triangles.
 fn limit(settings: &PipelineSettings) -> LimitCriterion {
     let touched = settings.name("binning") == Some(BINNINGS[1].0);
     let scene = if touched { TestScene::Typical } else { TestScene::FullScreen };

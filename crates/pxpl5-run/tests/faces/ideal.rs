@@ -50,7 +50,7 @@ fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
         let outcome = experiment.pixels(Pixels::Off).head(head(Slide::right_at(1.0))).run().expect("it runs");
         let record = outcome.record();
         assert_no_faults(record);
-        let notes = outcome.face_notes().all();
+        let notes = outcome.requested_updates();
         let swaps = &record.observation().swaps;
         // Updates for the retrace at the end of the run are not shown any more.
         let shown: Vec<_> = notes.iter().filter(|note| note.due_at < outcome.end()).collect();

@@ -205,7 +205,7 @@ fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suf
 #[test]
 fn objects_go_into_the_slowest_memory_that_keeps_them_right() {
     let outcome = walk(OBJECTS, 40_000_000);
-    let notes = outcome.face_notes().all();
+    let notes = outcome.requested_updates();
     let held = |k: usize| notes.iter().rfind(|note| note.memory == k).map(|note| note.structures.to_vec());
     for k in 0..4 {
         let expected: Vec<bool> = (0..4).map(|structure| structure == k).collect();

@@ -91,8 +91,12 @@ impl SettingError {
     #[must_use]
     pub fn unknown<S: AsRef<str>>(what: &str, found: &str, valid: impl IntoIterator<Item = S>) -> Self {
         let valid: Vec<S> = valid.into_iter().collect();
-        let names: Vec<&str> = valid.iter().map(AsRef::as_ref).collect();
+        let mut names: Vec<&str> = valid.iter().map(AsRef::as_ref).collect();
         let near = nearest(found, names.iter().copied()).unwrap_or_default();
+        // A message that only lists a few names lists the most similar name first.
+        if names.len() <= FEW_NAMES {
+            names.sort_by_key(|name| *name != near);
+        }
         let expected = match names.as_slice() {
             [first @ .., last] if (1..MAX_LISTED).contains(&first.len()) => format!("{} or {last}", first.join(", ")),
             [only] => (*only).to_owned(),
@@ -142,10 +146,13 @@ impl SettingError {
         if holds { Ok(()) } else { Err(Self::value(name, expected, found)) }
     }
 
-    /// Adds the place of the setting: a file with a line, or a command line option.
+    /// Adds the place of the setting: a file with a line, or a command line option. An empty place adds nothing.
     #[must_use]
     pub fn at(self, place: impl Display) -> Self {
-        Self { place: joined(place, ": ", &self.place), ..self }
+        match place.to_string() {
+            place if place.is_empty() => self,
+            place => Self { place: joined(place, ": ", &self.place), ..self },
+        }
     }
 
     /// Adds the name of a table of parameters to the name of the setting: `word_ns` in the table `ring` becomes
@@ -169,7 +176,7 @@ impl fmt::Display for SettingError {
         match kind {
             SettingErrorKind::Limits => write!(f, "{name} must be {expected}, found {found}"),
             SettingErrorKind::UnknownName if nearest.is_empty() => write!(f, "there is no {name} `{found}`"),
-            // A reader sees at a glance which of a few names is the nearest.
+            // The first of a few names is the most similar.
             SettingErrorKind::UnknownName if !expected.is_empty() && expected.matches(", ").count() < FEW_NAMES - 1 => {
                 write!(f, "expected {expected}, found `{found}`")
             }
@@ -219,7 +226,7 @@ mod tests {
     #[test]
     fn the_nearest_name_comes_first_and_only_a_short_list_is_printed() {
         let short = SettingError::unknown("level", "cycles", ["analytic", "transaction", "cycle"]);
-        assert_eq!(short.to_string(), "expected analytic, transaction or cycle, found `cycles`");
+        assert_eq!(short.to_string(), "expected cycle, analytic or transaction, found `cycles`");
         assert_eq!(&*short.nearest, "cycle");
         let letters = ["a1", "b1", "c1", "d1", "e1", "f1", "g1", "h1", "i1", "j1", "k1", "l1", "m1"];
         let some = SettingError::unknown("letter", "c2", &letters[..5]);

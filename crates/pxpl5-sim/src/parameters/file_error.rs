@@ -51,6 +51,8 @@ pub enum FileErrorKind {
     Damaged,
     /// A file or directory that already exists prevents the writing of the file.
     Occupied,
+    /// Results of the same work are there already, and the work was not to be resumed.
+    Unfinished,
     /// Another process is writing the file.
     Locked,
 }

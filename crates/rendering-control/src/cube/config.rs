@@ -1,28 +1,14 @@
-//! Configuration of Cube control: the boards, and the faces that they draw.
+//! The faces of a cube, which the firmware draws into the memories of a display.
 
+use crate::cube::faces::{CubeWork, face_view};
 use crate::cube::update::FaceUpdate;
 use crate::cube::warped_lists::WarpedLists;
+use crate::drawn::Drawn;
 use address_recalculation::{CubeFace, region_grid};
-use pphigs::{Picture, Share};
-use pxpl5_wire::{CopyContent, CopyTarget, Lines, NodeId, RegionGrid, RegionId};
+use pphigs::{FrameView, Pass, Picture, Share};
+use pxpl5_gp::{Gp, Work};
+use pxpl5_wire::{Body, CopyContent, CopyTarget, Lines, NodeId, RegionGrid, RegionId};
 use std::sync::Arc;
-
-/// The boards that run Cube control, and the kind of faces they draw.
-#[derive(Clone, Debug)]
-pub struct CubeControlConfig {
-    /// Ring port of the host, which sends updates.
-    pub host: NodeId,
-    /// Ring port of the master, which begins every stage.
-    pub master: NodeId,
-    /// Ring ports of the slaves, at least one.
-    pub slaves: Vec<NodeId>,
-    /// Ring ports of the renderers, at least one.
-    pub renderers: Vec<NodeId>,
-    /// Format and destination of the faces.
-    pub faces: Faces,
-    /// Cache of warped display lists, which all slaves share. The cache is empty at first.
-    pub warped: WarpedLists,
-}
 
 /// Format of the faces in the memories of a display.
 #[derive(Clone, Debug)]
@@ -31,8 +17,10 @@ pub struct Faces {
     pub memories: Vec<NodeId>,
     /// Viewport and shading of each face.
     pub picture: Picture,
-    /// Contents of a texel that are copied to a memory, such as colour and depth.
+    /// Values of a texel that are copied to a display memory, such as colour and depth.
     pub content: CopyContent,
+    /// Cache of warped display lists, which all slaves share. The cache is empty at first.
+    pub warped: WarpedLists,
 }
 
 impl Faces {
@@ -42,31 +30,28 @@ impl Faces {
         self.picture.viewport.grid().width
     }
 
-    /// Returns the region grid of all six faces, one face below the other.
+    /// Returns the regions of all six faces, one face below the other.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         region_grid(self.face_texels())
     }
+}
 
-    pub(crate) const fn face_regions(&self) -> u16 {
-        self.picture.viewport.grid().regions() as u16
+impl Drawn for Faces {
+    type Sent = FaceUpdate;
+
+    const VIEWS: u16 = CubeFace::ALL.len() as u16;
+    const ANNOUNCES: bool = true;
+
+    fn picture(&self) -> &Picture {
+        &self.picture
     }
 
-    /// Returns the number of regions of all six faces together.
-    #[must_use]
-    pub const fn regions(&self) -> u16 {
-        self.face_regions() * CubeFace::ALL.len() as u16
+    fn content(&self) -> CopyContent {
+        self.content
     }
 
-    /// Returns the face that contains a region, and the index of the region within this face.
-    #[must_use]
-    pub const fn on_face(&self, region: RegionId) -> (usize, RegionId) {
-        ((region.0 / self.face_regions()) as usize, RegionId(region.0 % self.face_regions()))
-    }
-
-    /// Returns the destination of a region of an update in a display memory.
-    #[must_use]
-    pub fn target(&self, update: &FaceUpdate, region: RegionId) -> CopyTarget {
+    fn target(&self, update: &FaceUpdate, _: u64, region: RegionId) -> CopyTarget {
         CopyTarget {
             frame_buffer: self.memories[usize::from(update.memory)],
             buffer: update.buffer,
@@ -76,12 +61,35 @@ impl Faces {
             picture: update.number,
         }
     }
-}
 
-impl CubeControlConfig {
-    /// Returns the share of the primitives that the slave with index `index` holds.
-    #[must_use]
-    pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {
-        Share::new(Arc::clone(list), index, self.slaves.len())
+    fn eye_at(&self, _: NodeId) -> Option<u64> {
+        Some(0)
+    }
+
+    fn swaps(&self, gp: &Gp) -> u64 {
+        self.memories.iter().map(|node| gp.status(*node)).sum()
+    }
+
+    fn announcement(&self, update: &FaceUpdate, regions: &[RegionId]) -> Vec<(u32, Body)> {
+        let messages = update.announcement(self.face_texels(), regions);
+        messages.map(|words| (words.len() as u32, Body::Words(words))).into()
+    }
+
+    /// Returns the share with displaced vertices if the update has a warp. Otherwise returns the share unchanged.
+    fn placed(&self, share: &Share, update: &FaceUpdate) -> Share {
+        if update.warp.is_none() { share.clone() } else { share.with_list(self.warped.placed(share.list(), update)) }
+    }
+
+    /// Transforms the primitives of a share that the update's display memory holds, for all six faces.
+    fn passes(&self, share: &Share, update: &FaceUpdate, _: u64) -> Vec<Arc<Pass>> {
+        let ahead = update.view.eyes.first();
+        let faces = CubeFace::ALL.iter().flat_map(|face| ahead.map(|ahead| face_view(ahead, *face)));
+        let view = FrameView { eyes: faces.collect(), ..update.view.clone() };
+        let pass = |face: usize| share.transform_chosen(&view, face, self.picture, &update.structures);
+        (0..view.eyes.len()).map(pass).collect()
+    }
+
+    fn work(&self, share: &Share, update: &FaceUpdate, passes: &[Arc<Pass>], context: u8) -> impl Work {
+        CubeWork::new(share, update, passes, context)
     }
 }

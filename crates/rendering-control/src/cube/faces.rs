@@ -1,20 +1,18 @@
-//! TRANSFORM of an update for the six faces of a cube.
+//! TRANSFORM for the six faces of a cube.
 
-use crate::cube::config::CubeControlConfig;
 use crate::cube::update::FaceUpdate;
 use address_recalculation::CubeFace;
 use glam::{Mat4, Vec4};
-use pphigs::{BIN_ENTRY_BYTES, CubeTransform, EyeView, FrameView, Pass, PrimitiveCounts, Share, TransformCost};
+use pphigs::{CubeTransform, EyeView, Pass, PrimitiveCounts, Share, TransformCost};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;
-use pxpl5_wire::{PictureNumber, RegionId};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Returns the view from an eye through a face of the cube. `ahead` is the view of the eye in its initial orientation.
-/// The function rotates this view to the axes of the face.
+/// Returns the view from an eye through one face of the cube around the head. `ahead` is the view of the eye while the
+/// head has its initial orientation.
 ///
-/// Structures that are fixed to the head are drawn as for a head in its initial orientation.
+/// Structures that are fixed to the head are drawn as for this orientation.
 #[must_use]
 pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
     let turn = to_face(face);
@@ -32,98 +30,35 @@ fn to_face(face: CubeFace) -> Mat4 {
     Mat4::from_cols(column(0), column(1), column(2), Vec4::W)
 }
 
-/// Bins of an update (new content of one display memory) for one slave. The bin of each region on the six faces has the
-/// slave's primitives that touch the region.
-#[derive(Clone, Debug)]
-pub struct CubePass {
-    update: Arc<FaceUpdate>,
+/// CPU work of TRANSFORM for the six faces of an update, for one slave.
+pub(crate) struct CubeWork<'a> {
+    faces: &'a [Arc<Pass>],
     /// Bin context of the update, 0 or 1.
     context: u8,
-    faces: Vec<Arc<Pass>>,
-    /// Work at the beginning of the pass. The structures of the update are placed once for each face.
+    /// Work before the first primitive, in which each structure is placed once for each face.
     begin: TransformCost,
+    /// Numbers of transformations of triangles and of spheres. A primitive is counted once for each face that it
+    /// touches. A primitive that touches no face is counted once.
     transformed: PrimitiveCounts,
 }
 
-impl CubePass {
-    /// Transforms primitives of a share for all six faces. Primitives that the update's display memory does not hold
-    /// are left out.
-    ///
-    /// Vertices have the positions of the list that [`CubePass::placed`] returns.
-    #[must_use]
-    pub fn new(config: &CubeControlConfig, share: &Share, update: &Arc<FaceUpdate>) -> Self {
-        let ahead = update.view.eyes.first();
-        let faces = CubeFace::ALL.iter().flat_map(|face| ahead.map(|ahead| face_view(ahead, *face)));
-        let view = FrameView { eyes: faces.collect(), ..update.view.clone() };
-        // Transform for each face.
-        let share = &Self::placed(config, share, update);
-        let pass = |face: usize| share.transform_chosen(&view, face, config.faces.picture, &update.structures);
-        let faces: Vec<Arc<Pass>> = (0..view.eyes.len()).map(pass).collect();
-        // Count the transformations and the structures to compute the time of the pass.
+impl<'a> CubeWork<'a> {
+    /// Counts the transformations and the structures, which determine the time of the work. `faces` has the passes of
+    /// the six faces.
+    pub(crate) fn new(share: &Share, update: &FaceUpdate, faces: &'a [Arc<Pass>], context: u8) -> Self {
         let held = share.chosen_counts(&update.structures);
         let transformed = PrimitiveCounts {
-            triangles: transformed(&faces, 0, held.triangles),
-            spheres: transformed(&faces, 1, held.spheres),
+            triangles: transformed(faces, 0, held.triangles),
+            spheres: transformed(faces, 1, held.spheres),
         };
         let chosen = || share.list().structures.iter().zip(&update.structures).filter(|(_, chosen)| **chosen);
         let begin = TransformCost::beginning((0..faces.len()).flat_map(|_| chosen()).map(|(structure, _)| structure));
-        Self { update: Arc::clone(update), context: context_of(update.number) as u8, faces, begin, transformed }
-    }
-
-    /// Returns the share with displaced vertices if the update has a warp. Otherwise returns the share unchanged.
-    #[must_use]
-    pub fn placed(config: &CubeControlConfig, share: &Share, update: &FaceUpdate) -> Share {
-        if update.warp.is_none() { share.clone() } else { share.with_list(config.warped.placed(share.list(), update)) }
-    }
-
-    /// Returns the update to which the bins belong.
-    #[must_use]
-    pub fn update(&self) -> &FaceUpdate {
-        &self.update
-    }
-
-    pub(crate) fn face(&self, face: usize) -> Option<&Arc<Pass>> {
-        self.faces.get(face)
-    }
-
-    /// Returns the number of entries in each region's bin. Regions are counted through all six faces.
-    #[must_use]
-    pub fn entries(&self, config: &CubeControlConfig) -> Vec<u32> {
-        let entries = |region: RegionId| {
-            let (face, region) = config.faces.on_face(region);
-            self.face(face).map_or(0, |pass| pass.counts(region).total())
-        };
-        (0..config.faces.regions()).map(|region| entries(RegionId(region))).collect()
-    }
-
-    /// Returns the numbers of transformations of triangles and of spheres.
-    ///
-    /// A primitive is counted once for each face that it touches. A primitive that touches no face is counted once.
-    #[must_use]
-    pub const fn transformed(&self) -> PrimitiveCounts {
-        self.transformed
-    }
-
-    pub(crate) fn command_bytes(&self) -> u64 {
-        self.faces.iter().map(|pass| pass.command_bytes()).sum()
-    }
-
-    pub(crate) fn bin_bytes(&self) -> u64 {
-        self.all_entries() * BIN_ENTRY_BYTES
-    }
-
-    fn all_entries(&self) -> u64 {
-        self.faces.iter().map(|pass| pass.entries()).sum()
+        Self { faces, context, begin, transformed }
     }
 }
 
-/// Returns the bin context of an update.
-pub(crate) const fn context_of(update: PictureNumber) -> usize {
-    (update.0 % 2) as usize
-}
-
-/// Returns the number of transformations of the slave's triangles (`kind` 0) or spheres (`kind` 1), summed over the
-/// faces. `held` is the number of triangles or spheres in the update.
+/// Returns how many triangles (`kind` 0) or spheres (`kind` 1) were transformed, summed over the faces. `held` is the
+/// number of triangles or spheres of the update.
 fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
     let touching = || faces.iter().filter_map(|pass| Some(&pass.touching()?[kind]));
     let anywhere: BTreeSet<u32> = touching().flatten().copied().collect();
@@ -131,19 +66,17 @@ fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
     touching().map(|numbers| numbers.len() as u32).sum::<u32>() + nowhere
 }
 
-impl Work for CubePass {
-    /// Returns the TRANSFORM time by the timing table.
-    ///
-    /// The time covers the structures of each face, each primitive (once for each face that it touches), and each bin
-    /// entry.
+impl Work for CubeWork<'_> {
+    /// Returns the time of TRANSFORM from the timing table: structures and primitives for each face, and bin entries.
     fn by_table(&self, timing: &GpTiming) -> Span {
         let PrimitiveCounts { triangles, spheres } = self.transformed;
         let primitives = TransformCost { triangles: triangles.into(), spheres: spheres.into(), ..self.begin };
-        TransformCost { entries: self.all_entries(), ..primitives }.span(timing)
+        let entries = self.faces.iter().map(|pass| pass.entries()).sum();
+        TransformCost { entries, ..primitives }.span(timing)
     }
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
-        let Ok(passes) = self.faces.as_slice().try_into() else { return Ok(self.by_table(timing)) };
+        let Ok(passes) = self.faces.try_into() else { return Ok(self.by_table(timing)) };
         let made = CubeTransform { passes, context: self.context }.run_code(timing, processor)?;
         Ok(made.map_or_else(|| self.by_table(timing), |made| made.span))
     }

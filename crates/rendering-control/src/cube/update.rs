@@ -1,6 +1,7 @@
-//! An update, which replaces the content of one display memory.
+//! An update, which is a new drawing of one display memory.
 
 use crate::cube::warp::{FaceWarp, WARP_WORDS};
+use crate::drawn::Sent;
 use address_recalculation::{begin_update, swap_together};
 use pphigs::FrameView;
 use pxpl5_wire::{PictureNumber, RegionId, Word, swap_request};
@@ -17,10 +18,10 @@ pub struct FaceUpdate {
     pub buffer: u8,
     /// Bit mask of the memories that must swap together with this memory. The mask is 0 if this memory swaps alone.
     pub together: u8,
-    /// The view of an eye in its initial orientation, with the projection of a face. The view also contains the edits
-    /// of structures.
+    /// The view of an eye while the head has its initial orientation, with the projection of a face. The view also
+    /// contains the edits of structures.
     pub view: FrameView,
-    /// For each structure of the display list: true if the memory holds the structure.
+    /// True for each structure that the memory holds, by index in the display list.
     pub structures: Vec<bool>,
     /// Displacement of vertices near the border to a display memory that is updated less often. `None` if no vertex is
     /// displaced.
@@ -43,12 +44,22 @@ impl FaceUpdate {
         let request = if self.together == 0 { alone() } else { swap_together(self.buffer, self.together) };
         [map, request]
     }
+}
+
+impl Sent for FaceUpdate {
+    fn number(&self) -> PictureNumber {
+        self.number
+    }
+
+    fn view(&self) -> &FrameView {
+        &self.view
+    }
 
     /// Encodes the update as words.
     ///
     /// The order is: number (two words), memory with buffer and group, number of structures, one bit for each
     /// structure, the warp if the update has a warp, and the view.
-    pub(crate) fn to_words(&self) -> Vec<Word> {
+    fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
         let place = u32::from(self.memory) | u32::from(self.buffer) << 8 | u32::from(self.together) << 16;
         let place = place | self.warp.map_or(0, |_| WARPED);
@@ -59,8 +70,7 @@ impl FaceUpdate {
         words
     }
 
-    /// Decodes an update, or returns `None` for invalid words.
-    pub(crate) fn from_words(words: &[Word]) -> Option<Self> {
+    fn from_words(words: &[Word]) -> Option<Self> {
         let [low, high, place, count] = *words.first_chunk::<HEADER>()?;
         // Split the words after the header: bits of structures, warp if any, view.
         let rest = &words[HEADER..];
@@ -86,4 +96,22 @@ impl FaceUpdate {
 
 fn bits(chosen: &[bool]) -> Word {
     (0..).zip(chosen).fold(0, |word, (bit, chosen)| word | Word::from(*chosen) << bit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_wire::ViewNumber;
+
+    #[test]
+    fn every_update_survives_its_words() {
+        let view = FrameView { number: ViewNumber(3), eyes: Vec::new(), edits: Vec::new() };
+        let structures = (0..70).map(|i| i % 3 == 0).collect();
+        let number = PictureNumber(1 << 33);
+        let sent = FaceUpdate { number, memory: 3, buffer: 1, together: 0b1011, view, structures, warp: None };
+        let warped = FaceUpdate { warp: Some(crate::cube::warp::tests::warp()), ..sent.clone() };
+        for update in [sent, warped] {
+            assert_eq!(FaceUpdate::from_words(&update.to_words()), Some(update));
+        }
+    }
 }

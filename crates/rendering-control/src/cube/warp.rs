@@ -5,9 +5,10 @@ use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::Word;
 
-/// Displacement of an update's vertices near the border to the next display memory, which is updated less often. That
-/// memory was drawn from another eye position. Without the displacement, the images of the two memories would not meet
-/// at the border.
+/// Displacement of vertices near the border between two display memories.
+///
+/// The memory beyond the border is updated less often and was drawn from another eye position. Without the
+/// displacement, the pictures in the two memories would not meet at the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWarp {
     /// Assignment of cells (squares of the floor) to display memories.
@@ -30,7 +31,7 @@ pub struct FaceWarp {
 pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
 
 impl FaceWarp {
-    /// Returns the position at which a vertex is drawn, if the memory with index `memory` holds the vertex.
+    /// Returns the position at which a vertex of the display memory `memory` is drawn.
     ///
     /// # Errors
     ///
@@ -51,7 +52,6 @@ impl FaceWarp {
         cell.into_iter().chain(counts).chain(reals).collect()
     }
 
-    /// Decodes a warp, or returns `None` for invalid words.
     pub(crate) fn from_words(words: &[Word; WARP_WORDS]) -> Option<Self> {
         let (whole, reals) = words.split_first_chunk::<7>()?;
         // The words of integers come first, then floating-point numbers with two words each.

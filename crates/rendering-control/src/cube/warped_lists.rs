@@ -6,8 +6,7 @@ use pxpl5_wire::PictureNumber;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A cache of display lists with displaced vertices. All slaves use equal lists. The cache shortens the run time of the
-/// simulator and changes no result.
+/// A cache of display lists with displaced vertices, which all slaves share. The cache changes no result.
 #[derive(Clone, Debug, Default)]
 pub struct WarpedLists(Arc<Mutex<Kept>>);
 
@@ -18,8 +17,8 @@ type Kept = VecDeque<(PictureNumber, Arc<DisplayList>)>;
 const KEPT: usize = 2;
 
 impl WarpedLists {
-    /// Returns the display list of an update. The update's warp displaces the vertices of structures that are fixed to
-    /// the world and that the update does not edit.
+    /// Returns the display list with the displaced vertices of an update. Structures that are fixed to the head, and
+    /// structures that the update edits, keep their vertices.
     #[must_use]
     pub fn placed(&self, list: &Arc<DisplayList>, update: &FaceUpdate) -> Arc<DisplayList> {
         let Some(warp) = &update.warp else { return Arc::clone(list) };

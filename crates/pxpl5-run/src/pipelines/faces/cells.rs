@@ -30,12 +30,11 @@ pub(super) struct ByCells {
 }
 
 impl ByCells {
-    pub(super) fn new(updates: &Updates, timing: &PriorityTiming, falloff: Falloff) -> Self {
-        let cells = Arc::clone(&updates.setup.cells);
+    pub(super) fn new(updates: &Updates, cells: Arc<[Vec<Cell>]>, timing: &PriorityTiming, falloff: Falloff) -> Self {
         let memories = timing.memories as usize;
         Self {
             policy: Cells::new(timing, cells.iter().flatten().copied(), falloff != Falloff::None),
-            has_moving: updates.setup.moving.iter().any(|moves| *moves),
+            has_moving: updates.moving.iter().any(|moves| *moves),
             cells,
             falloff,
             length_m: timing.falloff_length_m(),

@@ -6,7 +6,7 @@ use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming
 use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
 use pxpl5_machine::Record;
-use pxpl5_wire::display::Display;
+use pxpl5_wire::display::{Aim, Display};
 use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
 
 /// An update of a display memory, with the first period in which the memory shows the update.
@@ -29,14 +29,14 @@ impl FaceHistory {
     /// does not accept cube faces.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Option<Self> {
-        Self::held(outcome.record(), outcome.face_notes())
+        Self::held(outcome.record())
     }
 
     /// Returns the history from the records of a run that has ended or is in progress. Returns `None` if the run's
     /// display does not accept cube faces.
     #[must_use]
-    pub fn held(record: &Record, notes: &RequestedUpdates) -> Option<Self> {
-        let display = display(record)?;
+    pub fn held(record: &Record) -> Option<Self> {
+        let (display, notes) = display(record).zip(record.attached())?;
         let memories = (0..).zip(display.nodes()).map(|(memory, port)| shown(record, notes, memory, *port));
         Some(Self { memories: memories.collect() })
     }
@@ -92,9 +92,20 @@ impl OrientationTiming {
     /// does not accept cube faces.
     #[must_use]
     pub fn of_run(results: &FinalResults<'_>) -> Option<Self> {
-        let link = results.record.config().host.link_span(ORIENTATION_WORDS);
-        Self::before(results.record.display(), link, results.aim)
+        Self::of_record(results.record, results.aim)
     }
+
+    pub(super) fn of_record(record: &Record, aim: Aim) -> Option<Self> {
+        let link = record.config().host.link_span(ORIENTATION_WORDS);
+        Self::before(record.display(), link, aim)
+    }
+}
+
+/// Returns the middle pixel of the first surface in a period. An interlaced display shows one of two neighbouring lines
+/// in each period.
+pub(super) fn middle_pixel(record: &Record, period: PeriodNumber) -> Option<[u32; 2]> {
+    let surface = record.display().surfaces().first()?;
+    Some([surface.width / 2, surface.height / 2 + FieldParity::of_field(period).first_line()])
 }
 
 impl Outcome {
@@ -103,6 +114,13 @@ impl Outcome {
     #[must_use]
     pub fn display_memories(&self) -> &[DisplayMemory] {
         display(self.record()).map_or(&[], |display| display.memories(Eye::Left))
+    }
+
+    /// Returns the requested updates of display memories that were not discarded, in order. The list is empty for a
+    /// pipeline without cube faces.
+    #[must_use]
+    pub fn requested_updates(&self) -> Vec<RequestedUpdate> {
+        self.record().attached().map_or_else(Vec::new, RequestedUpdates::all)
     }
 
     /// Returns the rotation latency of the middle pixel of every field, from the first field that has one. The list is
@@ -120,10 +138,8 @@ impl FinalResults<'_> {
     #[must_use]
     pub fn rotation_latencies(&self, fields: impl Iterator<Item = PeriodNumber>) -> Vec<RotationLatency> {
         let Some((latched, head)) = OrientationTiming::of_run(self).zip(self.head) else { return Vec::new() };
-        let Some(surface) = self.record.display().surfaces().first() else { return Vec::new() };
-        let x = surface.width / 2;
-        let of_field = |field: PeriodNumber| {
-            let y = surface.height / 2 + FieldParity::of_field(field).first_line();
+        let of_field = |field| {
+            let [x, y] = middle_pixel(self.record, field)?;
             latched.latency(head, x, y, field)
         };
         fields.filter_map(of_field).collect()

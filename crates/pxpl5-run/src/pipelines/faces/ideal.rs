@@ -12,7 +12,8 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{
     Body, MAX_MESSAGE_WORDS, PeriodNumber, PictureNumber, PixelSource, REGION_SIZE, RegionId, RegionPixels, Word,
 };
-use rendering_control::cube::{FaceUpdate, Faces, HostAction, WarpedLists, face_view};
+use rendering_control::cube::{FaceUpdate, Faces, face_view};
+use rendering_control::{Drawn, HostAction};
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -30,7 +31,6 @@ pub(super) struct IdealFaces {
     pub(super) plan: Plan,
     pub(super) faces: Arc<Faces>,
     pub(super) list: Arc<DisplayList>,
-    pub(super) warped: WarpedLists,
     pub(super) scan: FaceScan,
     pub(super) next: PictureNumber,
 }
@@ -69,12 +69,12 @@ impl IdealFaces {
         let port = usize::from(update.memory);
         let regions: Vec<RegionId> = (0..self.faces.regions()).map(RegionId).collect();
         let announcement = update.announcement(self.faces.face_texels(), &regions).map(Body::Words);
-        let list = self.warped.placed(&self.list, &update);
+        let list = self.faces.warped.placed(&self.list, &update);
         let drawn = Arc::new(DrawnCube { list, update, surfaces: Arc::clone(&self.faces), faces: Default::default() });
         let parts = self.faces.content.words() * REGION_SIZE * REGION_SIZE / MAX_MESSAGE_WORDS;
         // Each region is a lazy pixel source, split into messages of the maximum size.
         let of_region = |region: RegionId| {
-            let target = self.faces.target(&drawn.update, region);
+            let target = self.faces.target(&drawn.update, 0, region);
             let image: Arc<dyn PixelSource> = Arc::new(DrawnRegion { cube: Arc::clone(&drawn), region });
             (0..parts).map(move |part| Body::Pixels(RegionPixels { target, image: Arc::clone(&image), part, parts }))
         };
@@ -152,7 +152,7 @@ struct DrawnRegion {
 impl PixelSource for DrawnRegion {
     fn pixels(&self) -> Arc<[Word]> {
         let surfaces = &self.cube.surfaces;
-        let (face, region) = surfaces.on_face(self.region);
+        let (face, region) = surfaces.on_view(self.region);
         let [left, top, width, height] = surfaces.picture.viewport.grid().rectangle(region).map(|v| v as usize);
         let face = self.cube.face(face);
         let across = surfaces.face_texels() as usize;

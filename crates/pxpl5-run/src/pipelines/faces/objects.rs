@@ -81,7 +81,7 @@ impl DuePolicy for ByObjects {
             let seconds = self.scan.retrace(field).since(self.scan.retrace(before)).as_ms() * 1e-3;
             eye.distance(from) / seconds
         });
-        let moves = |structure: usize| updates.setup.moving.get(structure) == Some(&true);
+        let moves = |structure: usize| updates.moving.get(structure) == Some(&true);
         // The policy decides from the period of each structure.
         let periods: Vec<f64> = (0..self.spheres.len()).map(|i| self.period_s(moves(i), i, eye, speed)).collect();
         let update = self.policy.frame(self.cycle, &periods);

@@ -7,9 +7,12 @@ use super::keys::{IDEAL_NAMES, LENS, NAMES, POLICY, SEGMENT, WARP};
 use super::objects::ByObjects;
 use super::plan::{Cycles, Full, Plan, Updates};
 use super::policy::FacePolicy;
+use crate::head_views::HeadViews;
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
+use crate::pipelines::faces::history::middle_pixel;
 use crate::pipelines::faces::latched_head::{ORIENTATION_WORDS, OrientationTiming};
+use crate::pipelines::faces::requests::RequestedUpdates;
 use crate::pipelines::faces::segments::SegmentedScene;
 use crate::pipelines::{region_has_room, shading_value, swapped_in};
 use crate::views::{Poses, ReportTimes};
@@ -19,14 +22,16 @@ use glam::{Mat4, Vec4};
 use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{HostLine, Machine, MachineConfig, Record, Shown};
+use pxpl5_machine::{Attachment, HostLine, Machine, MachineConfig, Record, Shown};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::{HmdConfig, Scene};
-use pxpl5_sim::Time;
 use pxpl5_sim::parameters::KeyValue;
 use pxpl5_sim::parameters::SettingError;
-use pxpl5_wire::{Body, CopyContent, Lines, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
-use rendering_control::cube::{CubeControlConfig, Faces, WarpedLists, host, master, slave};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::display::{Aim, Coverage};
+use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PeriodNumber, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
+use rendering_control::cube::{Faces, WarpedLists};
+use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
@@ -129,20 +134,19 @@ impl FacePipeline {
         }
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, SettingError> {
+    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig<Faces>, SettingError> {
         let ports = machine.ports();
         // The first GP is the master, and all others are slaves.
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
         if slaves.is_empty() {
             return Err(too_few_gps(1));
         }
-        Ok(CubeControlConfig {
+        Ok(RenderingControlConfig {
             host: ports.host,
             master: *master,
             slaves: slaves.to_vec(),
             renderers: ports.renderers.clone(),
-            faces: self.faces(machine, pixels)?,
-            warped: WarpedLists::default(),
+            drawn: self.faces(machine, pixels)?,
         })
     }
 
@@ -160,17 +164,19 @@ impl FacePipeline {
             region_has_room(machine.record(), content.words().into())?;
         }
         let memories = machine.ports().display()[..display.timing.display_memories as usize].to_vec();
-        Ok(Faces { memories, picture, content })
+        Ok(Faces { memories, picture, content, warped: WarpedLists::default() })
     }
 
     /// Returns the plan (a function) by which the host selects the next update of a display memory.
-    fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, SettingError> {
+    fn plan(self, machine: &mut Machine, setup: &Setup) -> Result<Plan, SettingError> {
+        let notes = Arc::new(RequestedUpdates::default());
+        machine.attach(Arc::clone(&notes) as Arc<dyn Attachment>);
         let display = display_of(machine.record())?.config();
         let projection = projection(display);
         let scan = display.scan()?;
         // An ideal renderer has no delay, so its views are predicted for the next field.
         let setup = &if self.source == FaceSource::Ideal { seen_next(setup, scan) } else { setup.clone() };
-        let updates = Updates::new(setup, projection, display.timing.display_memories as usize);
+        let updates = Updates::new(setup, &notes, projection, display.timing.display_memories as usize);
         if self.policy == FacePolicy::Full && self.source == FaceSource::Ideal {
             let structures = vec![true; setup.list.structures.len()].into();
             let mut cycles = Cycles::new(updates, scan, All { structures });
@@ -190,7 +196,9 @@ impl FacePipeline {
         }
         // Without warping, cells use a falloff of `None`.
         let falloff = if self.policy == FacePolicy::CellsWarped { self.falloff } else { Falloff::None };
-        let policy = ByCells::new(&updates, &timing, falloff);
+        let cut: Option<&SegmentedScene> = machine.record().attached();
+        let cells = cut.map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
+        let policy = ByCells::new(&updates, cells, &timing, falloff);
         let mut cycles = Cycles::new(updates, scan, policy);
         Ok(Box::new(move |number, now| cycles.next(number, now)))
     }
@@ -300,8 +308,8 @@ impl Pipeline for FacePipeline {
         self.shading
     }
 
-    fn draws_faces(&self) -> bool {
-        true
+    fn coverage(&self) -> Coverage {
+        Coverage::Surroundings
     }
 
     /// Adapts the display to this variant. The adapted display accepts cube faces, and uses the variant's latch mode
@@ -309,7 +317,7 @@ impl Pipeline for FacePipeline {
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
         // Replace a display that takes no faces.
-        if config.displays.first().is_none_or(|display| !display.shows_cube_faces()) {
+        if config.displays.first().is_none_or(|display| display.coverage() != self.coverage()) {
             let display = match self.source {
                 FaceSource::PixelPlanes => ArpConfig::MACHINE,
                 FaceSource::Ideal => ArpConfig::IDEAL,
@@ -331,17 +339,19 @@ impl Pipeline for FacePipeline {
         config
     }
 
-    fn cut(&self, scene: &Arc<Scene>, config: &MachineConfig) -> Result<Option<SegmentedScene>, SettingError> {
+    fn prepare(&self, scene: &Arc<Scene>, machine: &mut Machine) -> Result<Arc<Scene>, SettingError> {
         if !self.has_cells() {
-            return Ok(None);
+            return Ok(Arc::clone(scene));
         }
-        let side_m = priority_timing(config)?.cell_m;
+        let side_m = priority_timing(machine.record().config())?.cell_m;
         let cut = if self.segmented {
-            SegmentedScene::segmented(scene, side_m)
+            SegmentedScene::segmented(scene, side_m)?
         } else {
-            SegmentedScene::whole(scene, side_m)
+            SegmentedScene::whole(scene, side_m)?
         };
-        cut.map(Some)
+        let scene = Arc::clone(&cut.scene);
+        machine.attach(Arc::new(cut));
+        Ok(scene)
     }
 
     /// Returns a description of work without i860 code: moving vertices of warped cells takes no time at any level.
@@ -393,11 +403,16 @@ impl PictureRules for FacePipeline {
         let Ok(display) = display_of(record) else { return Vec::new() };
         let ports = record.ports().display().iter().take(display.config().timing.display_memories as usize);
         let stages = record.stages();
-        let shown = ports.flat_map(|port| record.shown_by(*port)).filter(|shown| shown.at < end);
-        let mut pictures: Vec<PictureTimes> = match self.source {
-            FaceSource::PixelPlanes => shown.filter_map(|shown| swapped_in(&stages, shown.picture, shown.at)).collect(),
-            FaceSource::Ideal => shown.map(drawn_at_once).collect(),
+        // Each display memory is a layer.
+        let of_layer = |(layer, port): (usize, &NodeId)| {
+            let shown = record.shown_by(*port).into_iter().filter(|shown| shown.at < end);
+            let times = shown.filter_map(|shown| match self.source {
+                FaceSource::PixelPlanes => swapped_in(&stages, shown.picture, shown.at),
+                FaceSource::Ideal => Some(drawn_at_once(shown)),
+            });
+            times.map(|times| PictureTimes { layer, ..times }).collect::<Vec<_>>()
         };
+        let mut pictures: Vec<PictureTimes> = ports.enumerate().flat_map(of_layer).collect();
         pictures.sort_by_key(|times| (times.shown_at, times.picture));
         pictures
     }
@@ -412,6 +427,13 @@ impl PictureRules for FacePipeline {
         let first = record.observation().first_swap();
         let after = record.display().period_at(end);
         first.map_or(0, |first| after.since(first.min(after)))
+    }
+
+    fn turn_interval(&self, record: &Record, head: &HeadViews, aim: Aim, period: PeriodNumber) -> Option<Span> {
+        let (timing, [x, y]) = (OrientationTiming::of_record(record, aim)?, middle_pixel(record, period)?);
+        let (known, aimed) = timing.orientation_of_pixel(head, x, y, period)?;
+        let measured = head.measured_at(head.report_by(known)?)?;
+        Some(aimed.since(measured))
     }
 
     fn latency_definition(&self) -> &'static str {
@@ -456,7 +478,6 @@ impl FacePipeline {
             plan: self.plan(machine, setup)?,
             faces: Arc::new(self.faces(machine, setup.pixels)?),
             list: Arc::new(matte(&setup.list)),
-            warped: WarpedLists::default(),
             scan,
             next: PictureNumber::FIRST,
         };
@@ -484,6 +505,7 @@ const fn drawn_at_once(shown: Shown) -> PictureTimes {
         copied_at: Some(drawn),
         shown_at: shown.at,
         end: PictureResult::Shown,
+        layer: 0,
     }
 }
 

@@ -3,23 +3,27 @@
 
 use crate::pipeline::Setup;
 use crate::pipelines::faces::requests::{RequestedUpdate, RequestedUpdates};
+use crate::pipelines::faces::segments::moves;
 use address_recalculation::FaceScan;
 use glam::{DMat3, DVec3, Mat3, Mat4};
 use pphigs::{EyeView, FrameView, ModelFrame};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
-use rendering_control::cube::{FaceUpdate, FaceWarp, HostAction};
+use rendering_control::HostAction;
+use rendering_control::cube::{FaceUpdate, FaceWarp};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Function that returns the next action of a host, when the host is ready for an update.
-pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction>;
+pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction<FaceUpdate>>;
 
 /// State that all plans of a host share: views, starts of frames, and the record of updates.
 pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
-    pub(super) notes: RequestedUpdates,
+    pub(super) notes: Arc<RequestedUpdates>,
+    /// For each structure of the scene, true if the structure moves by itself or with the head.
+    pub(super) moving: Vec<bool>,
     /// Number of updates that were sent so far, for each display memory.
     sent: Vec<u64>,
     /// True if any structure is attached to the head. The position of such a structure depends on the head's direction.
@@ -27,9 +31,11 @@ pub(super) struct Updates {
 }
 
 impl Updates {
-    pub(super) fn new(setup: &Setup, projection: Mat4, memories: usize) -> Self {
+    pub(super) fn new(setup: &Setup, notes: &Arc<RequestedUpdates>, projection: Mat4, memories: usize) -> Self {
         let has_head_frame = setup.list.structures.iter().any(|structure| structure.frame == ModelFrame::Head);
-        Self { setup: setup.clone(), projection, notes: setup.notes.clone(), sent: vec![0; memories], has_head_frame }
+        let moving = setup.scene.structures().iter().map(moves).collect();
+        let (setup, notes) = (setup.clone(), Arc::clone(notes));
+        Self { setup, projection, notes, moving, sent: vec![0; memories], has_head_frame }
     }
 
     /// Returns the newest view of the head for an update that the host sends now.
@@ -108,7 +114,7 @@ impl Full {
         Self { updates, structures }
     }
 
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction {
+    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
         match (self.updates.setup.starts)(now) {
             None => HostAction::Nothing,
             Some(start) if start > now => HostAction::Wait(start),
@@ -154,7 +160,7 @@ impl<P: DuePolicy> Cycles<P> {
         Self { updates, scan, policy, pending: VecDeque::new(), began: None }
     }
 
-    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction {
+    pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> HostAction<FaceUpdate> {
         if self.pending.is_empty() {
             let field = self.scan.field_at(now);
             if self.began.is_some_and(|began| began >= field) {

@@ -1,5 +1,6 @@
 //! Record of the cube-face updates that a host has requested.
 
+use pxpl5_machine::{Attachment, Record};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 use std::collections::BTreeMap;
@@ -20,10 +21,9 @@ pub struct RequestedUpdate {
     pub structures: Arc<[bool]>,
 }
 
-/// A record of the updates of a run that were not discarded. The record grows during the run. Clones share the same
-/// record.
-#[derive(Clone, Debug, Default)]
-pub struct RequestedUpdates(Arc<Mutex<Held>>);
+/// A record of the updates of a run that were not discarded. The record grows during the run.
+#[derive(Debug, Default)]
+pub struct RequestedUpdates(Mutex<Held>);
 
 #[derive(Debug, Default)]
 struct Held {
@@ -56,13 +56,16 @@ impl RequestedUpdates {
         of_memory.cloned().collect()
     }
 
-    /// Discards the updates of a display memory before the update `number`, because the memory now shows this update or
-    /// a later update.
-    pub(crate) fn keep_from(&self, memory: usize, number: u64) {
-        self.held().notes.retain(|(before, note)| note.memory != memory || *before >= number);
-    }
-
     fn held(&self) -> MutexGuard<'_, Held> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Attachment for RequestedUpdates {
+    /// Discards the updates that each display memory showed before its first swap in memory.
+    fn discard(&self, record: &Record) {
+        let ports = record.ports().display().iter();
+        let first: Vec<u64> = ports.map(|port| record.observation().first_swap_held(*port)).collect();
+        self.held().notes.retain(|(before, note)| first.get(note.memory).is_none_or(|first| before >= first));
     }
 }

@@ -2,6 +2,7 @@
 
 use address_recalculation::priority::{Cell, CutVertex, Segmentation};
 use glam::{DVec3, Vec3};
+use pxpl5_machine::Attachment;
 use pxpl5_scene::{Frame, Scene, SceneParts, Sphere, Structure, Vertex};
 use pxpl5_sim::parameters::SettingError;
 use std::collections::{BTreeMap, BTreeSet};
@@ -50,6 +51,8 @@ impl SegmentedScene {
         Ok(Self { scene: Arc::clone(scene), cells: cells.collect::<Result<Vec<_>, _>>()?.into() })
     }
 }
+
+impl Attachment for SegmentedScene {}
 
 /// Returns true if a structure moves by itself or with the head. Such a structure has no fixed position in the world.
 pub(crate) const fn moves(structure: &Structure) -> bool {

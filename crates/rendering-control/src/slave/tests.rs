@@ -1,7 +1,8 @@
 //! Tests of a slave on its board: use of memory, waiting, and positions of vertices.
 
 use super::*;
-use crate::cube::config::Faces;
+use crate::cube::{FaceUpdate, Faces, WarpedLists};
+use crate::protocol::RegionEnd;
 use glam::{Mat4, Vec3};
 use pphigs::{BIN_ENTRY_BYTES, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionBinning, Shading};
 use pxpl5_geometry::{Culling, Viewport};
@@ -18,10 +19,10 @@ const BIN_BYTES: u64 = TRIANGLES * BIN_ENTRY_BYTES;
 
 /// The only token of an update, as the last slave receives it.
 pub(crate) const TOKEN: Token =
-    Token { update: PictureNumber::FIRST, region: RegionId(0), renderer: 0, slaves_left: 1, of: 1, copies: true };
+    Token { drawing: Drawing(0), region: RegionId(0), renderer: 0, slaves_left: 1, of: 1, end: RegionEnd::Copied };
 
 /// Returns a configuration in which each face has a single region.
-pub(crate) fn config() -> CubeControlConfig {
+pub(crate) fn config() -> RenderingControlConfig<Faces> {
     let size = 128;
     let grid = RegionGrid { width: size, height: size, region_width: size, region_height: size };
     let picture = Picture {
@@ -31,13 +32,13 @@ pub(crate) fn config() -> CubeControlConfig {
         layout: Layout::slats(),
         pixels: false,
     };
-    CubeControlConfig {
+    let content = CopyContent::Colour;
+    RenderingControlConfig {
         host: NodeId(0),
         master: MASTER,
         slaves: vec![BOARD],
         renderers: vec![NodeId(3)],
-        faces: Faces { memories: vec![NodeId(4)], picture, content: CopyContent::Colour },
-        warped: crate::cube::WarpedLists::default(),
+        drawn: Faces { memories: vec![NodeId(4)], picture, content, warped: WarpedLists::default() },
     }
 }
 
@@ -89,18 +90,18 @@ impl Rig {
 
     /// Delivers the messages of the host and the master that start an update.
     fn send(&mut self, number: u64) {
-        self.deliver(&UpdateOrder::Send(update(number)));
-        self.deliver(&UpdateOrder::Edit(PictureNumber(number)));
+        self.deliver(&StageOrder::Send(update(number)));
+        self.deliver(&StageOrder::Edit(PictureNumber(number)));
     }
 
     /// Delivers the only token of an update.
     fn send_token(&mut self, number: u64) {
-        let token = Token { update: PictureNumber(number), ..TOKEN };
-        self.deliver(&UpdateOrder::Token(token));
+        let token = Token { drawing: Drawing(number), ..TOKEN };
+        self.deliver(&StageOrder::Token(token));
     }
 
     /// Delivers a message after a pause in which the slave finishes its work.
-    fn deliver(&mut self, order: &UpdateOrder) {
+    fn deliver(&mut self, order: &StageOrder<FaceUpdate>) {
         self.run_for(1_000);
         let (words, body) = order.message();
         let message = Message { source: MASTER, destination: BOARD, words, body };
@@ -122,10 +123,10 @@ impl Rig {
     fn transformed(&self) -> Vec<(u64, u32)> {
         let to_master = self.bench.sent().filter_map(|(time, message)| {
             let received = Received { arrived: time, source: BOARD, body: message.body.clone() };
-            (message.destination == MASTER).then(|| UpdateOrder::read(&received, MASTER))
+            (message.destination == MASTER).then(|| StageOrder::<FaceUpdate>::read(&received, MASTER))
         });
         let transformed = to_master.filter_map(|order| match order {
-            Ok(UpdateOrder::Transformed(update, entries)) => Some((update.0, entries.iter().sum())),
+            Ok(StageOrder::Transformed(update, entries)) => Some((update.0, entries.iter().sum())),
             _ => None,
         });
         transformed.collect()
@@ -163,7 +164,7 @@ fn bins_that_are_too_small_for_one_update_are_a_fault() {
     let fault = OutOfMemory {
         gp: BOARD,
         account: Account::Bins(0),
-        region: None,
+        region: Some(RegionId(5)),
         needed_bytes: BIN_BYTES,
         available_bytes: BIN_BYTES - 1,
     };
@@ -208,8 +209,10 @@ fn by_code_a_triangle_takes_what_was_published() {
         let share = Share::new(ahead(triangles), 0, 1);
         let mut processor = Processor::new(BOARD, 8 << 20, CodeVersion::Scheduled, i860::Config::cycle());
         share.install(&mut processor).expect("it fits");
-        let pass = CubePass::new(&config(), &share, &Arc::new(update(0)));
-        pass.by_code(&GpTiming::PAPERS, &mut processor).expect("it returns").as_ms() * 1e6
+        let (drawn, update) = (config().drawn, update(0));
+        let passes = drawn.passes(&share, &update, 0);
+        drawn.work(&share, &update, &passes, 0).by_code(&GpTiming::PAPERS, &mut processor).expect("it returns").as_ms()
+            * 1e6
     };
     let of_one = (ns(20) - ns(10)) / 10.0;
     assert!((18_000.0..32_000.0).contains(&of_one), "{of_one}");
@@ -217,7 +220,7 @@ fn by_code_a_triangle_takes_what_was_published() {
 
 #[test]
 fn a_context_is_empty_when_all_tokens_of_its_update_have_been_here_and_can_be_filled_again() {
-    let mut state = SlaveState::default();
+    let mut state = SlaveState::<FaceUpdate>::new();
     let tokens = [(0, 3, false), (1, 2, false), (0, 3, false), (0, 3, true), (1, 2, true)];
     for (context, of, is_last) in tokens.into_iter().chain(tokens) {
         assert_eq!(state.count_token(context, of), is_last, "{context}");

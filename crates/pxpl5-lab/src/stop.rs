@@ -1,0 +1,85 @@
+//! A flag by which one thread stops the work of other threads.
+
+use pxpl5_run::{ExperimentError, Host};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A flag by which one thread stops a study and its runs on other threads. Clones share the flag.
+///
+/// The flag is also a [`Host`] without clock and worker threads. The host ends its runs when the flag is set.
+#[derive(Clone, Debug, Default)]
+pub struct StopFlag(Arc<AtomicBool>);
+
+impl StopFlag {
+    /// Requests that the work stop. Runs in progress end within a few display periods.
+    pub fn stop(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Withdraws the request to stop, so that the flag can be used for further work.
+    pub fn clear(&self) {
+        self.0.store(false, Ordering::Relaxed);
+    }
+
+    /// Returns true after a call of [`Self::stop`].
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Returns an error after a call of [`Self::stop`].
+    ///
+    /// # Errors
+    ///
+    /// Returns [`ExperimentError::Stopped`].
+    pub fn check(&self) -> Result<(), ExperimentError> {
+        if self.is_stopped() { Err(ExperimentError::Stopped("the study was stopped".to_owned())) } else { Ok(()) }
+    }
+}
+
+impl Host for StopFlag {
+    fn is_stopped(&self) -> bool {
+        self.is_stopped()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment_file::ExperimentFile;
+    use crate::figures::{Bench, run_all_with};
+    use crate::levels::{LevelQuery, compare_with};
+    use crate::limit::{LimitQuery, OverQuery};
+    use crate::{StudyError, readings};
+    use pxpl5_run::{Goal, Level};
+
+    /// Tests that each study ends with the error of a stop, when its own report of progress stops the study.
+    #[test]
+    fn a_study_ends_with_an_error_soon_after_its_flag_is_set() {
+        let is_stopped = |result: Option<ExperimentError>| matches!(result, Some(ExperimentError::Stopped(_)));
+        let text = "pipeline = \"slats\"\nscene = \"full-screen:10\"\nfields = 30\n";
+        let file = ExperimentFile::parse(text, "test").expect("TOML");
+        let plan = file.resolve().expect("valid");
+
+        let stop = StopFlag::default();
+        let limit = LimitQuery { stop: stop.clone(), ..LimitQuery::of_plan(&plan) };
+        assert!(is_stopped(limit.search_with(|_, _| stop.stop()).err()));
+
+        let stop = StopFlag::default();
+        let (key, goal) = ("machine.n_renderers".to_owned(), Goal::LatencyFields(1.01));
+        let values = OverQuery::values(&plan, &key, None, None).expect("a range");
+        let over = OverQuery { file, key, values, goal, stop: stop.clone() };
+        let ended = over.search(|_, _| stop.stop());
+        assert!(matches!(ended, Err(StudyError::Experiment(ExperimentError::Stopped(_)))), "{ended:?}");
+
+        let stop = StopFlag::default();
+        let bench = || Bench::new(Level::Analytic).with_mig(1, 12).with_stop(stop.clone());
+        let ended = readings::run(&bench(), 2, |_, _| stop.stop()).map(|_| ());
+        assert!(matches!(ended, Err(ExperimentError::Stopped(_))), "{ended:?}");
+        assert!(run_all_with(&bench(), |_, _| {}).is_err_and(|error| error.reason.contains("stopped")));
+
+        let stop = StopFlag::default();
+        let levels = LevelQuery { experiments: 2, speeds: false, stop: stop.clone() };
+        assert!(is_stopped(compare_with(levels, |_, _| stop.stop()).err()));
+    }
+}
