@@ -84,9 +84,9 @@ fn rows_of_other_settings_are_refused_and_the_key_is_named() {
     for (more, key) in [
         (&["--set", "machine.gp.triangle_ns=20000"][..], "machine.gp.triangle_ns was not set, expected 20000"),
         (&["--set", "hmd.near=0.1"], "hmd.near was not set, expected 0.1"),
-        (&["--confidence", "0.9"], "--confidence was 0.95, expected 0.9"),
-        (&["--until-precision", "10%"], "--max-seeds was none, expected 50"),
-        (&["--seed", "3"], "--seeds was [1, 2], expected [3, 4]"),
+        (&["--confidence", "0.9"], "confidence was 0.95, expected 0.9"),
+        (&["--until-precision", "10%"], "max_seeds was none, expected 50"),
+        (&["--seed", "3"], "seeds was [1, 2], expected [3, 4]"),
     ] {
         let refused = folder.run(&with(&[&["--out", "o", "--resume"], more].concat()));
         assert_eq!(refused.status.code(), Some(2), "{more:?}");
