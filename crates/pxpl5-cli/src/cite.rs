@@ -88,7 +88,8 @@ mod tests {
         assert_eq!(names(&[("A.", "B"), ("C.", "D"), ("E.", "F")]), "A. B, C. D and E. F");
     }
 
-    /// Checks that docs/sources.md, which is written by hand, lists each cited paper by its short name.
+    /// Tests that docs/sources.md, which is written by hand, contains the short name of each paper that `pxpl5 cite`
+    /// lists.
     #[test]
     fn the_list_of_sources_has_each_cited_paper() {
         let sources = include_str!("../../../docs/sources.md").to_lowercase();

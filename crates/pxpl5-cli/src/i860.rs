@@ -331,7 +331,7 @@ mod tests {
         RunOptions { entry: None, stop: None, budget: 100, memory: 0x2000, show: Vec::new(), json: false, quiet: false }
     }
 
-    /// A program that stores the number 7 in the second word of a table, which follows the program's code.
+    /// An i860 program that stores the number 7 in the second word of a table. The table follows the code in memory.
     const STORE: &str = "start: mov 7, r5\nmov table, r6\nst.l r5, 4(r6)\nend: nop\ntable: .long 1, 2, 3";
 
     #[test]
@@ -361,7 +361,7 @@ mod tests {
         assert_eq!(run["labels"]["start"], "00001000");
     }
 
-    /// Expects the program's result 1 + 4 + 9 + 16 = 30.
+    /// Tests the example program of the guide, which computes 1 + 4 + 9 + 16 = 30.
     #[test]
     fn the_program_of_the_guide_runs_and_gives_what_it_says() {
         let page = include_str!("../../../docs/guide/assembler.md");

@@ -215,15 +215,15 @@ mod tests {
     use super::*;
     use clap::CommandFactory;
 
-    /// Returns the lines of a text that begin with the command `pxpl5`, split into words. Lines that end in a backslash
-    /// are joined. Comments and shell variables are replaced.
+    /// Returns the command lines in a text that begin with `pxpl5`, each split into words. A backslash at the end of a
+    /// line joins the line with the next line.
     fn commands(text: &str) -> Vec<Vec<String>> {
         let joined = text.split("\\\n").map(str::trim).collect::<Vec<_>>().join(" ");
         let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
         lines.map(words).collect()
     }
 
-    /// Returns the words of a command line, without the explanation that follows the command.
+    /// Splits a command line into words. Removes quotes, comments, redirections, and an explanation after three spaces.
     fn words(line: &str) -> Vec<String> {
         let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
         // Help texts separate an explanation by three spaces.
