@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 use std::fmt::Write;
 use works::{Name, WORKS, Work};
 
-/// Print how to cite the software and the papers.
+/// Print how to cite this software, and the papers about the machine and its pipelines.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 cite
@@ -28,7 +28,7 @@ pub(crate) struct CiteArgs {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Format {
-    /// Text for readers.
+    /// Plain text.
     Text,
     /// Entries for BibTeX.
     Bibtex,

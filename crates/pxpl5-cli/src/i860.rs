@@ -45,8 +45,8 @@ enum Command {
         #[arg(long, default_value = "0x1000", value_parser = address)]
         base: u32,
     },
-    /// Assemble (FILE.s) or load (any other file) a program and run it; print clocks by address and by cause, registers
-    /// and memory.
+    /// Assemble (FILE.s) or load (any other file) a program and run it. Print the clocks by address and by cause, the
+    /// registers, and the memory.
     ///
     /// A place is a label of the program, an address, or a label with an offset such as table+8.
     Run {
@@ -96,7 +96,7 @@ enum Command {
 /// Options that disable warnings of the assembler.
 #[derive(Args, Debug, Default)]
 struct Warnings {
-    /// Disable a warning of the assembler; may be repeated or a list with commas.
+    /// Disable these warnings of the assembler, separated by commas; may be repeated.
     #[arg(long, value_name = "RULE", value_delimiter = ',', value_parser = ["all", "alignment", "multiply-source", "lost-result"])]
     allow: Vec<String>,
 }

@@ -33,7 +33,7 @@ do not apply.")]
 pub(crate) struct RigArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Number of the pendulum's low points to measure, 2 to 10,000.
+    /// Number of passes of the pendulum through its low point to measure, 2 to 10,000.
     #[arg(long, default_value_t = PASSES as u64, value_name = "N", value_parser = whole::<u64>(2, 10_000))]
     passes: u64,
     /// Position of the photodiode: line of a field on the screen, 0 at the top; default 120, the middle of NTSC's 240.

@@ -46,8 +46,8 @@ pub(crate) struct SettingArgs {
     /// pose log, or any table with --columns.
     #[arg(long, alias = "motion", value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
-    /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz (t, t_ms, t_us or
-    /// t_ns; x or x_mm).
+    /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz. The time is t,
+    /// t_ms, t_us or t_ns; positions are x,y,z or x_mm and so on.
     #[arg(long, value_name = "FIELD=COLUMN,...")]
     columns: Option<String>,
     /// Distance from the eye, in metres, at which pixel errors are evaluated; default: the distance of the scene's
@@ -61,20 +61,20 @@ pub(crate) struct SettingArgs {
     /// Predictor of the head's pose: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
-    /// Meaning of the poses of --head: scene (the motion begins where the scene's own motion begins) or world (the poses
-    /// are metres in the scene's coordinates); default scene.
+    /// Meaning of the poses of --head: scene (the motion begins where the scene's own motion begins) or world (the
+    /// poses are metres in the scene's coordinates); default scene.
     #[arg(long)]
     place: Option<String>,
     /// Instant during a picture's display for which the head's pose is predicted: middle, first-pixel, last-pixel or
     /// retrace; default middle.
     #[arg(long)]
     aim: Option<String>,
-    /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel; default ntsc. (plain and vdrt set
-    /// --raster.)
+    /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel; default ntsc. (The values plain and
+    /// vdrt set --raster.)
     #[arg(long)]
     display: Option<String>,
-    /// Raster of a tracked head's display: plain or vdrt (shifted by the error of the predicted pose). With shift,
-    /// rotation or depth a device moves pictures to the newest pose. Default plain.
+    /// Raster of the display of a tracked head: plain or vdrt (shifted by the error of the predicted pose). With shift,
+    /// rotation or depth, a device moves pictures to the newest pose. Default plain.
     #[arg(long)]
     raster: Option<String>,
     /// Number of display periods to simulate: NTSC fields of 1/60 s; default 120.
@@ -86,7 +86,7 @@ pub(crate) struct SettingArgs {
     /// Pixels that are computed: off, lazy (only pixels that are read) or all; default lazy.
     #[arg(long)]
     pixels: Option<String>,
-    /// Seed of the sway in the head motion, or with --head of the tracker's noise; default 1.
+    /// Seed of the random sway of the head or, with --head, of the tracker's noise; default 1.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = signed)]
     seed: Option<i64>,
     /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000 or tracking.optical.latency=20; `pxpl5

@@ -56,7 +56,7 @@ pub(crate) struct SweepFolderArgs {
     /// Keep the finished points and run only the others.
     #[arg(long)]
     resume: bool,
-    /// Run only share I of N disjoint shares of the points.
+    /// Run only shard I of N. Each of the N shards has its own points.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     pub(crate) shard: Shard,
     /// Set any key of the file for all points; may be repeated.

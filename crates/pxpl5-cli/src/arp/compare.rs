@@ -13,7 +13,7 @@ use pxpl5::views::results::csv_table;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Compare all policies and warps on one walk through a scene: update rates, draws, triangles, tears, stretch.
+/// Compare all policies and warps on one walk through a scene: update rates, draws, triangles, gaps at cuts, stretch.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp compare
