@@ -186,8 +186,8 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the path is unknown, if the parameter is a fixed property of a chip, or if the value
-    /// has a fraction where an integer is expected.
+    /// Returns a [`SettingError`] if the path is unknown, if the parameter is a fixed property of a chip, or if the
+    /// value has a fraction where an integer is expected.
     pub fn set(&mut self, path: &str, value: impl Into<Value>) -> Result<(), SettingError> {
         let value = value.into();
         match path {

@@ -458,8 +458,8 @@ mod tests {
     }
 
     /// Tests a head that moves t metres to the right. A plane at the depth z moves f t / z pixels to the left, where f
-    /// is the focal length in pixels. To the right of a near plane, f t (1 / near - 1 / far) columns stay empty, because
-    /// the near plane hid this part of the far plane.
+    /// is the focal length in pixels. To the right of a near plane, f t (1 / near - 1 / far) columns stay empty. The
+    /// near plane hid this part of the far plane.
     #[test]
     fn a_step_moves_planes_by_f_t_by_z_and_opens_the_difference() {
         let focal = Hmd::unc().focal_px();

@@ -70,9 +70,9 @@ impl Completed {
 
     /// Returns true if EDIT of a frame may begin.
     ///
-    /// Let n be the number of the frame's first drawing, where a drawing is the picture of one eye. Four stages must
-    /// have finished: SEND of the frame, TRANSFORM of drawing n - 1, RENDER of drawing n - 2, and COPY of drawing n -
-    /// 3. Before that, older drawings still use the bins and the pixel memory.
+    /// Let n be the number of the frame's first drawing, where a drawing is the picture of one eye. SEND of the frame
+    /// must have finished. TRANSFORM of drawing n - 1, RENDER of drawing n - 2, and COPY of drawing n - 3 must also
+    /// have finished. Before that, older drawings still use the bins and the pixel memory.
     #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
         let first = Drawing::first_of(frame, self.eyes);

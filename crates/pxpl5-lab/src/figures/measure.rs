@@ -486,8 +486,8 @@ mod tests {
     /// `leg - 1` of its possible positions. Four borders separate the columns of regions, which gives the factor
     /// `1 + 4 (leg - 1) / width`. Three borders separate the rows, which gives `1 + 3 (leg - 1) / height`.
     ///
-    /// The product of both factors is the mean for the triangle's bounding box. In some positions, the box contains a point where
-    /// four regions meet. In half of these positions, the triangle misses one of the four regions.
+    /// The product of both factors is the mean for the triangle's bounding box. In some positions, the box contains a
+    /// point where four regions meet. In half of these positions, the triangle misses one of the four regions.
     fn expected(leg: f64) -> f64 {
         let [width, height] = TYPICAL_SPREAD_PX;
         let columns = 4.0 * (leg - 1.0) / width;
