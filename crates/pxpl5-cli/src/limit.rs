@@ -52,12 +52,12 @@ pub(crate) struct LimitArgs {
     /// The default pipeline is slats for triangles, and rendering-control for other settings.
     #[arg(long, value_name = "KEY")]
     over: Option<String>,
-    /// Smallest value of --over to try; default: 1 for numbers of boards, otherwise the smallest value that the sources
-    /// allow.
+    /// Smallest value of --over to try; default: 1 for numbers of boards, otherwise the smallest value of the range
+    /// that the papers support.
     #[arg(long, value_name = "VALUE", requires = "over")]
     from: Option<f64>,
     /// Greatest value of --over to try. Default: for numbers of boards the number in the largest preset, otherwise the
-    /// greatest value that the sources allow.
+    /// greatest value of the range that the papers support.
     #[arg(long, value_name = "VALUE", requires = "over")]
     to: Option<f64>,
     /// Goal: at least this many updates per second.

@@ -41,9 +41,9 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     renderers: Option<i64>,
     /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED,
-    /// walk:M_PER_S along the scene's path (walk:M_PER_S:SEED looks around as synthetic:SEED) or a recording. A
-    /// recording is a FILE.csv, .txt, .tum or .jsonl with time_s,x,y,z,qw,qx,qy,qz, in the format of EuRoC or TUM, a
-    /// pose log, or any table with --columns.
+    /// walk:M_PER_S along the scene's path, walk:M_PER_S:SEED (a walk that looks around as synthetic:SEED does), or a
+    /// recording. A recording is a FILE.csv, .txt, .tum or .jsonl: a table with time_s,x,y,z,qw,qx,qy,qz, a file of
+    /// EuRoC or TUM, a pose log, or any table with --columns.
     #[arg(long, alias = "motion", value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
     /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz. The time is t,

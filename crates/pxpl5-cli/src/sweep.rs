@@ -47,7 +47,7 @@ pub(crate) struct SweepArgs {
 /// The file of a sweep, and the folder that stores its rows.
 #[derive(Args, Debug)]
 pub(crate) struct SweepFolderArgs {
-    /// File of settings with a table `sweep`.
+    /// File of settings. Its table `sweep` describes the points.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Folder for rows.jsonl, times.jsonl and results.csv.

@@ -263,7 +263,8 @@ mod tests {
         assert_eq!(times, [30_000, 55_800, 10_000].map(|ns| [ns, ns, 0]));
     }
 
-    /// Tests that the times of i860 code replace all times of a timing table for which there is code.
+    /// Tests the timing tables with times of i860 code. They must replace every time of the published table that i860
+    /// code determines.
     #[test]
     fn tables_of_code_leave_no_time_of_code_as_it_was() {
         let mut before = GpTiming::PAPERS;

@@ -30,8 +30,8 @@ pub trait Drawn: Clone + 'static {
     /// The host's message for one picture.
     type Sent: Sent;
 
-    /// Number of views of a drawing, such as the six faces of a cube. The numbers of regions continue from view to
-    /// view.
+    /// Number of views of a drawing, such as the six faces of a cube. The regions of all views are numbered together:
+    /// first the regions of view 0, then those of view 1, and so on.
     const VIEWS: u16 = 1;
 
     /// True if the master announces each drawing to its frame buffer before COPY. The announcement lists the regions
@@ -87,7 +87,7 @@ pub trait Drawn: Clone + 'static {
     /// Performs TRANSFORM of a share for the drawing of `eye`. Returns one pass for each view.
     fn passes(&self, share: &Share, sent: &Self::Sent, eye: u64) -> Vec<Arc<Pass>>;
 
-    /// Returns the CPU work of TRANSFORM. `context` is the number of the set of bins, 0 or 1.
+    /// Returns the CPU work of TRANSFORM. `context` is the index of the set of bins, 0 or 1.
     fn work(&self, share: &Share, sent: &Self::Sent, passes: &[Arc<Pass>], context: u8) -> impl Work;
 
     /// Returns the number of regions of a view.

@@ -28,7 +28,7 @@ impl Drawing {
         self.0 % eyes
     }
 
-    /// Returns the number of the set of bins that each slave uses for the drawing, 0 or 1.
+    /// Returns 0 or 1, the index of the set of bins that each slave uses for the drawing.
     pub(crate) const fn context(self) -> usize {
         (self.0 % 2) as usize
     }

@@ -40,8 +40,8 @@ impl<S> SlaveState<S> {
         Self { sent: VecDeque::new(), next_edit, next_transform, bins: [None, None], tokens: [0; 2] }
     }
 
-    /// Counts a token for the set of bins number `context`. The last of `of` tokens empties the set, and the function
-    /// then returns true.
+    /// Counts a token that this slave has handled. A drawing has `of` tokens. After the last of them, empties the set
+    /// of bins with the index `context` and returns true.
     fn count_token(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;
@@ -168,7 +168,7 @@ impl<D: Drawn> Slave<D> {
         Ok(())
     }
 
-    /// Runs the interrupt program, which stores pictures and permissions of the master, and handles tokens.
+    /// Runs the interrupt program. It stores the host's pictures and the master's permissions, and it handles tokens.
     async fn answer_messages(self) -> Result<(), Fault> {
         loop {
             let received = self.gp.next_message().await;

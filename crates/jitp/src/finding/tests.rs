@@ -321,8 +321,8 @@ fn a_list_of_nothing_or_of_one_kind_is_searched_too() {
     }
 }
 
-/// Tests strips before, between and at the two views. The large rotations move the corners of triangles on curved paths
-/// across the screen.
+/// Tests strips at five times: before the first view, at each of the two views, and between them. The large rotations
+/// move the corners of triangles on curved paths across the screen.
 #[test]
 fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draws() {
     for (seed, (rows, turn)) in (40..).zip([(1, 0.05), (8, 0.05), (7, 0.8), (1, 1.5)]) {
@@ -340,8 +340,8 @@ fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draw
     }
 }
 
-/// Tests rotations so large that the corners of a triangle leave the lines near a strip on their curved paths across
-/// the screen.
+/// Tests that the search counts as many triangles as are drawn, for large rotations. The corners of a triangle then
+/// move on strongly curved paths across the screen.
 #[test]
 fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
     let config = strips(1);

@@ -33,7 +33,7 @@ fn to_face(face: CubeFace) -> Mat4 {
 /// CPU work of TRANSFORM for the six faces of an update, for one slave.
 pub(crate) struct CubeWork<'a> {
     faces: &'a [Arc<Pass>],
-    /// Number of the set of bins, 0 or 1.
+    /// Index of the set of bins, 0 or 1. A slave has two sets and uses them in turn.
     context: u8,
     /// Work before the first triangle: each structure is placed once for each face.
     begin: TransformCost,

@@ -57,8 +57,9 @@ impl Sent for FaceUpdate {
 
     /// Encodes the update as words.
     ///
-    /// The order is: number (two words), memory with buffer and group, number of structures, one bit for each
-    /// structure, the warp if the update has a warp, and the view.
+    /// The first four words are the number of the update (two words), one word for memory, buffer and group, and the
+    /// number of structures. One bit for each structure follows, then the warp if the update has one, and finally the
+    /// view.
     fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
         let place = u32::from(self.memory) | u32::from(self.buffer) << 8 | u32::from(self.together) << 16;
