@@ -58,7 +58,7 @@ pub trait Drawn: Clone + 'static {
         0
     }
 
-    /// Returns the place to which a region of the drawing of `eye` is copied.
+    /// Returns the destination of a region of the picture of `eye`: ring port, buffer, and place in the picture.
     fn target(&self, sent: &Self::Sent, eye: u64, region: RegionId) -> CopyTarget;
 
     /// Returns the eye of a frame buffer, found by the ring port `port`. Returns `None` if no frame buffer has this
@@ -84,7 +84,7 @@ pub trait Drawn: Clone + 'static {
         share.clone()
     }
 
-    /// Performs TRANSFORM of a share for the drawing of `eye`. Returns one pass for each view.
+    /// Transforms the triangles and spheres of a share for the picture of `eye`. Returns one pass for each view.
     fn passes(&self, share: &Share, sent: &Self::Sent, eye: u64) -> Vec<Arc<Pass>>;
 
     /// Returns the CPU work of TRANSFORM. `context` is the index of the set of bins, 0 or 1.
@@ -95,7 +95,7 @@ pub trait Drawn: Clone + 'static {
         self.picture().viewport.grid().regions() as u16
     }
 
-    /// Returns the number of regions of a drawing.
+    /// Returns the number of regions of a drawing, which is the sum over its views.
     fn regions(&self) -> u16 {
         self.view_regions() * Self::VIEWS
     }
