@@ -69,12 +69,12 @@ pub(crate) struct SettingArgs {
     /// retrace; default middle.
     #[arg(long)]
     aim: Option<String>,
-    /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel; default ntsc. (The values plain and
-    /// vdrt set --raster.)
+    /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel; default ntsc. Also plain and vdrt,
+    /// with the meaning of --raster.
     #[arg(long)]
     display: Option<String>,
-    /// Raster of the display of a tracked head: plain or vdrt (shifted by the error of the predicted pose). With shift,
-    /// rotation or depth, a device moves pictures to the newest pose. Default plain.
+    /// Correction of the picture at scan-out, for a tracked head; default plain (none). vdrt shifts the raster by the
+    /// error of the predicted pose. With shift, rotation or depth, a device moves the picture to the newest pose.
     #[arg(long)]
     raster: Option<String>,
     /// Number of display periods to simulate: NTSC fields of 1/60 s; default 120.

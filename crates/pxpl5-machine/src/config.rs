@@ -339,7 +339,7 @@ mod tests {
 
     pxpl5_sim::parameters::parameter_table! {
         struct Numbers {
-            /// A time within a range.
+            /// A time that is only used in this test.
             step_ns: 500, "ns", Assumed, 100..=900, "made up";
         }
     }

@@ -134,8 +134,8 @@ impl<D: Drawn> RegionMaster<D> {
         self.gp.until("a message or a swap", || self.message_or_swap()).await
     }
 
-    /// Returns the next message, or `Some(None)` if frame buffers have swapped since the last call of `begin_one`.
-    /// Returns `None` if the master must wait.
+    /// Returns the next message as `Some(Some(message))`. Returns `Some(None)` if no message has arrived and frame
+    /// buffers have swapped since the last call of `begin_one`. Returns `None` if the master must wait.
     fn message_or_swap(&self) -> Option<Option<Received>> {
         match self.gp.take_message() {
             Some(received) => Some(Some(received)),

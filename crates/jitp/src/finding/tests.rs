@@ -389,7 +389,8 @@ fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
 }
 
 /// Tests a rotation by 20 degrees about the line of sight, for the view and a structure together. Corners then deviate
-/// from a straight path by up to 7 pixels. A triangle that touches a strip only in between must still be found.
+/// from a straight path by up to 7 pixels. A triangle can therefore touch a strip between the views and lie far from
+/// the strip in both views. The search must find such triangles.
 #[test]
 fn nothing_that_meets_a_strip_between_two_views_is_left_out_for_being_far_at_both() {
     let config = strips(1);

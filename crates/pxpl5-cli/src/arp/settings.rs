@@ -37,8 +37,8 @@ pub(super) struct WalkArgs {
     /// objects.
     #[arg(long, value_name = "ON|OFF")]
     segment: Option<String>,
-    /// Region warping closes gaps at cuts by moving vertices. This function reduces the movement with the distance from
-    /// a cut: none, linear, smoothstep or step; default linear.
+    /// Region warping, which moves vertices near a cut to close gaps. The movement decreases with the distance from the
+    /// cut: none (no warping), linear, smoothstep or step; default linear.
     #[arg(long, value_name = "FALLOFF")]
     warp: Option<String>,
     /// Rate at which the display reads the head's orientation: for each field, line or pixel; default field.

@@ -17,7 +17,7 @@ const BOARD: NodeId = NodeId(2);
 const TRIANGLES: u64 = 3;
 const BIN_BYTES: u64 = TRIANGLES * BIN_ENTRY_BYTES;
 
-/// The only token of an update, as the last slave gets it.
+/// The token of an update with a single region, in the state in which the last slave gets the token.
 pub(crate) const TOKEN: Token =
     Token { drawing: Drawing(0), region: RegionId(0), renderer: 0, slaves_left: 1, of: 1, end: RegionEnd::Copied };
 
