@@ -29,8 +29,8 @@ pub(crate) struct ArpArgs {
 
 #[derive(Subcommand, Debug)]
 enum ArpCommand {
-    /// Simulate one walk of a viewer through a scene. Print the number of draws, the update rates, and the widths of
-    /// the gaps where objects are cut.
+    /// Simulate one walk of a viewer through a scene. Print how often parts of objects are drawn, the update rates, and
+    /// the widths of the gaps where objects are cut.
     Run(run::RunArgs),
     /// Compare all policies and warps on one walk through a scene.
     Compare(compare::CompareArgs),

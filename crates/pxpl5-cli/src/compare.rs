@@ -75,16 +75,17 @@ pub(crate) struct CompareArgs {
     /// Confidence of all intervals, between 0 and 1.
     #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
     confidence: f64,
-    /// Write into this folder: comparison.json, rows.csv, errors.csv, gallery.html with the picture of every pipeline,
-    /// and the pictures of a vertical edge. Charts show the error over time, its distribution, and the error against
-    /// latency and against prediction interval. Each row is in DIR/rows/rows.jsonl as soon as its runs have ended.
+    /// Write comparison.json, rows.csv, errors.csv, gallery.html with the picture of every pipeline, pictures of a
+    /// vertical edge, and charts into this folder. The charts show the error over time, its distribution, and the error
+    /// against latency and against prediction interval. DIR/rows/rows.jsonl has each row as soon as the runs of the row
+    /// have ended.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Resume an interrupted comparison with the same settings: keep the finished rows in --out, and run only the
     /// others.
     #[arg(long, requires = "out")]
     resume: bool,
-    /// Speed of the head's turn in the pictures of a vertical edge, degrees per second.
+    /// Speed of the head's turn in the pictures of a vertical edge, in degrees per second.
     #[arg(long, default_value_t = 200.0, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = pan)]
     edge_pan: f64,
     #[command(flatten)]

@@ -20,8 +20,9 @@ use std::fmt::Write;
 ///
 /// A tracker on a pendulum's bob feeds the host. When the host detects the low point, the host starts a frame. Frames
 /// alternate between dark and light under a photodiode in the middle of a line of the screen. The pipeline draws
-/// nothing else, so it is never full. Displays that follow the head's rotation and frameless rendering are refused,
-/// because their light does not identify a frame. A disagreement between outside and inside measurements is an error.
+/// nothing else, so a frame never waits for earlier frames. Displays that follow the head's rotation and frameless
+/// rendering are refused, because their light does not identify a frame. A disagreement between outside and inside
+/// measurements is an error.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 rig --pipeline rendering-control

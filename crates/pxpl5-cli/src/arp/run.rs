@@ -12,8 +12,8 @@ use pxpl5::arp::{ArpReport, TearWidths, WalkMemoryReport, WalkOutcome};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Simulate one walk of a viewer through a scene. Print the number of draws, the update rates, and the widths of the
-/// gaps where objects are cut.
+/// Simulate one walk of a viewer through a scene. Print how often parts of objects are drawn, the update rates, and the
+/// widths of the gaps where objects are cut.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp run --scene gallery --out out/walk --json

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Compare the figures of the SpatialGL paper with the model, and redraw its drawings.
+/// Compare the figures of the SpatialGL paper with the model, and redraw the drawings of the paper.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume figures
