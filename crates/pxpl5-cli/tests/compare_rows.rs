@@ -103,7 +103,8 @@ fn rows_of_other_settings_are_refused_and_the_key_is_named() {
     assert!(err(&damaged).contains("rows.jsonl, line 2: expected a row of a comparison"), "{}", err(&damaged));
 }
 
-/// Writes a recording of a head that turns back and forth, one pose for each hundredth of a second, from 0 to `hundredths`.
+/// Writes a recording of a head that turns back and forth, one pose for each hundredth of a second, from 0 to
+/// `hundredths`.
 fn recording(folder: &Folder, name: &str, hundredths: u32) {
     let mut text = "time_s,x,y,z,qw,qx,qy,qz\n".to_owned();
     for n in 0..=hundredths {
