@@ -138,7 +138,21 @@ pub use pxpl5_sim::parameters::{SettingError, SettingErrorKind};
 pub use pxpl5_sim::parameters::{FileError, FileErrorKind};
 
 pub use pxpl5_machine::PRESETS;
-pub use pxpl5_sim::parameters::{Parameter, PathSettings};
+pub use pxpl5_sim::parameters::Parameter;
+
+/// ```
+/// # #[cfg(feature = "volume")] {
+/// use pxpl5::{PathSettings, volume::VolumeSettings};
+///
+/// // Texts change the settings of a volume by path. Numbers of tables have the range of their source.
+/// let mut settings = VolumeSettings::paper();
+/// settings.assign("clip.variant = hyperbolic", "--set")?;
+/// let error = settings.set("clip.varient", "hyperbolic", "--set").expect_err("no such path");
+/// assert!(error.to_string().contains("clip.variant"), "{error}");
+/// # }
+/// # Ok::<(), pxpl5::SettingError>(())
+/// ```
+pub use pxpl5_sim::parameters::PathSettings;
 
 /// ```
 /// use pxpl5::{CodeVersion, PRESETS, Preset};
