@@ -105,7 +105,7 @@ const _: () = assert!(size_of::<RememberedClocks>() == 32);
 /// The part of an instruction-cache line that has not arrived yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ArrivingLine {
-    /// Number of clocks until the last transfer of the line arrives, or 0 if no line is arriving.
+    /// Number of clocks until the last transfer of the cache line arrives, or 0 if no cache line is arriving.
     pub(crate) clocks: u64,
     /// Position, within the cache line, of the 8-byte transfer that arrives first.
     pub(crate) first: u8,

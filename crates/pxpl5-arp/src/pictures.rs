@@ -171,9 +171,10 @@ fn tinted(
 /// Background colour that is visible through tears (gaps between memories).
 const WHITE: u32 = 0x00FF_FFFF;
 
-/// Greatest number of frames that are searched for the best view of a tear (gap between two memories).
+/// Approximate limit of the number of frames that are examined for the best view of a tear (gap between two memories).
 const TRIED: u64 = 63;
-/// Least number of frames from one searched frame to the next.
+/// Smallest distance, in frames, between two frames that are examined for the best view of a tear. A longer walk has
+/// larger distances.
 const EVERY: u64 = 29;
 
 /// Returns the frame and orientation at which a tear (gap between two memories) shows the largest number of background

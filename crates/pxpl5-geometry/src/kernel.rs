@@ -340,7 +340,8 @@ impl KernelPicture {
     }
 }
 
-/// Returns the last subpixel along x, the last subpixel along y in the frame, and the number of region columns.
+/// Returns the greatest x and the greatest y on the full screen, both in subpixels, and the number of columns of
+/// regions. y counts the lines of both fields.
 pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
     let grid = viewport.grid();
     [16 * grid.width - 1, 16 * viewport.frame_lines() - 1, grid.columns()]

@@ -229,7 +229,7 @@ impl Transform {
         })
     }
 
-    /// Returns the picture to which primitives are transformed.
+    /// Returns the size, regions and lines of the picture to which primitives are transformed.
     #[must_use]
     pub const fn viewport(&self) -> &Viewport {
         &self.viewport

@@ -48,8 +48,8 @@ pub struct Rig {
     pub stop: StopFlag,
 }
 
-/// Default number of low points to measure. Low points occur at any time within a field. With this number, the mean
-/// wait for a retrace is known to a fifth of a field.
+/// Default number of measured passes of the pendulum through its lowest point. A pass can fall at any time within a
+/// field. With this number, the error of the mean wait for a retrace is about a fifth of a field.
 pub const PASSES: usize = 24;
 
 impl Rig {

@@ -122,7 +122,7 @@ impl Layout {
         context.wrapping_mul(self.0.context_bits)
     }
 
-    /// Returns the field of colour component 0 (red), 1 (green) or 2 (blue).
+    /// Returns the bits of pixel memory for colour component `index`: 0 (red), 1 (green) or 2 (blue).
     #[must_use]
     pub const fn component(&self, index: u8) -> Operand {
         self.0.colour.part((2 - index) * COLOUR_BITS as u8, COLOUR_BITS as u8)
@@ -134,7 +134,8 @@ impl Layout {
         (Z_FRACTION_BITS + Z_BITS) as u8 - self.0.z.width
     }
 
-    /// Returns the field of component 0 (x), 1 (y) or 2 (z) of the normal. Returns `None` if the layout has no normals.
+    /// Returns the bits of pixel memory for component `index` of the normal: 0 (x), 1 (y) or 2 (z). Returns `None` if
+    /// the layout has no normals.
     #[must_use]
     pub fn normal(&self, index: u8) -> Option<Operand> {
         let all = self.0.normal?;

@@ -207,9 +207,9 @@ pub trait CommandWords: Debug + Send + Sync {
     /// Appends the words of message `part` to `out`. Every call appends the same words.
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
-    /// Passes the commands of message `part` to `out`. The source may leave out primitives that touch no pixel of the
-    /// region. `out` receives only whole commands. Before each drawing command, the passed commands set the Enable bits
-    /// of the pixels.
+    /// Passes the whole commands of message number `part` to `out`. An implementation may leave out primitives that
+    /// touch no pixel of the region. An implementation must pass commands that set the Enable bits before each drawing
+    /// command.
     ///
     /// Returns true if the passed commands may contain a primitive. The default implementation passes all commands and
     /// returns true.

@@ -11,30 +11,31 @@ use pxpl5_wire::PictureNumber;
 pub struct Drawing(pub u64);
 
 impl Drawing {
-    /// Returns the first drawing of a frame. `eyes` is the number of eyes of each frame.
+    /// Returns the number of the first drawing of a frame. `eyes` is the number of eyes of each frame.
     #[must_use]
     pub const fn first_of(frame: PictureNumber, eyes: u64) -> Self {
         Self(frame.0 * eyes)
     }
 
-    /// Returns the frame that contains the drawing. `eyes` is the number of eyes of each frame.
+    /// Returns the frame to which this drawing belongs. `eyes` is the number of eyes of each frame.
     #[must_use]
     pub const fn picture(self, eyes: u64) -> PictureNumber {
         PictureNumber(self.0 / eyes)
     }
 
-    /// Returns the eye of the drawing, 0 or 1. `eyes` is the number of eyes of each frame.
+    /// Returns the index of the eye, 0 or 1, for which this drawing is made. `eyes` is the number of eyes of each
+    /// frame.
     #[must_use]
     pub const fn eye(self, eyes: u64) -> u64 {
         self.0 % eyes
     }
 
-    /// Returns the context of the drawing: which of the two sets of bins of a slave it uses.
+    /// Returns the index, 0 or 1, of the set of bins that every slave uses for this drawing.
     pub(crate) const fn context(self) -> usize {
         (self.0 % 2) as usize
     }
 
-    /// Returns the drawing that comes `count` drawings later.
+    /// Returns the number of the drawing that comes `count` drawings after this drawing.
     #[must_use]
     pub const fn after(self, count: u64) -> Self {
         Self(self.0 + count)

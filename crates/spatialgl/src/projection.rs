@@ -25,11 +25,12 @@ pub enum Projection {
         /// Horizontal and vertical shear, in pixels per pixel of s, the distance from the slice.
         shear: [f64; 2],
     },
-    /// Projection with a random eye and a random shear for each slice.
+    /// Projection with a random eye position and a random shear, chosen anew for each slice.
     Jittered(Jitter),
 }
 
-/// The random eye and shear of each slice. Eye and shear depend only on the seed and the index of the slice.
+/// Seed and limits of the random eye position and shear of each slice. The random numbers depend only on the seed and
+/// the index of the slice.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Jitter {
@@ -37,14 +38,14 @@ pub struct Jitter {
     pub seed: u64,
     /// Distance of the eye from the slice in radii of the display. Assumed 4, 2 to 16.
     pub eye_distance: f64,
-    /// Radius of the disc in which the random eye lies, in radii of the display. Assumed 0.5, 0 to 1.
+    /// Radius of the disc in which the eye lies, in radii of the display. Assumed 0.5, 0 to 1.
     pub eye_radius: f64,
     /// Greatest shift of a point by the shear, at the near or far plane of the slice, in pixels. Assumed 0.5, 0 to 1.
     pub shear_px: f64,
 }
 
 impl Jitter {
-    /// Returns the assumed jitter with this seed. The eye is four display radii away, within a disc of half a radius.
+    /// Returns the assumed limits with this seed. The eye is four display radii away, within a disc of half a radius.
     /// The shear shifts points at the slice's near and far planes by at most half a pixel.
     #[must_use]
     pub const fn new(seed: u64) -> Self {

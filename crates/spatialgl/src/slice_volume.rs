@@ -99,11 +99,12 @@ pub enum SliceVolume {
     },
     /// A double wedge around the axis y: its planes, and its test.
     Wedge(WedgePlanes, WedgeTest),
-    /// The volume |s| <= offset + slope |u|, bounded by clip planes. Each side of the axis has its own drawing pass.
+    /// The volume |s| <= offset + slope |u|, bounded by clip planes. s is the distance from the slice, and u the
+    /// horizontal distance from the axis. Each side of the axis has its own drawing pass.
     Taper {
         /// Half thickness of the volume at the axis, pixels.
         offset: f64,
-        /// Growth of the half thickness, in pixels per pixel of |u|.
+        /// Growth of the half thickness, in pixels per pixel of distance from the axis.
         slope: f64,
     },
 }

@@ -112,7 +112,8 @@ impl SettingError {
         Self { expected: "".into(), ..Self::unknown(what, found, valid) }
     }
 
-    /// Creates the error of a parameter that is a fixed property of a chip. `origin` is the source of its value.
+    /// Creates the error of an attempt to change a parameter that is a fixed property of a chip. `origin` is the source
+    /// of the fixed value.
     #[must_use]
     pub fn read_only(path: &str, value: Value, origin: &str) -> Self {
         Self::new(SettingErrorKind::ReadOnly, path, origin, value)

@@ -3,7 +3,7 @@ use crate::time::{nearest_ps, span_s};
 use crate::tracker::TrackerModel;
 use pxpl5_sim::Statistics;
 
-/// The report by which the host detects that the pendulum has passed its low point.
+/// The report by which the host detects that the pendulum has passed its lowest point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LowPointReport {
     /// Time stamp of the report, ps: the instant at which its position was true.
@@ -12,25 +12,26 @@ pub struct LowPointReport {
     pub arrives_ps: u64,
 }
 
-/// One pass of the pendulum through its low point, measured by the time stamps of the emulated system.
+/// One pass of the pendulum through its lowest point, measured by the time stamps of the emulated system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsidePass {
-    /// Tracker report by which the host detected the pendulum's low point.
+    /// Tracker report by which the host detected the pass.
     pub sighting: LowPointReport,
-    /// Instant at which the host started a frame because of the low point, ps.
+    /// Instant at which the host started a frame because of the pass, ps.
     pub started_ps: u64,
     /// Instant at which the pipeline counts this frame as shown, ps.
     pub shown_ps: u64,
 }
 
-/// One pass of the pendulum through its low point, measured on the oscilloscope without any time stamp of the system.
+/// One pass of the pendulum through its lowest point, measured on the oscilloscope without any time stamp of the
+/// system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutsidePass {
-    /// Instant at which the photodiode detects the pendulum at its low point, ps.
+    /// Instant at which the photodiode detects the pendulum at its lowest point, ps.
     pub low_point_ps: u64,
-    /// Instant at which the host switches its D/A output because the host has detected the low point, ps.
+    /// Instant at which the host switches its D/A output because the host has detected the pass, ps.
     pub dac_ps: u64,
-    /// Instant at which the photodiode on the screen detects the frame that the low point requested, ps.
+    /// Instant at which the photodiode on the screen detects the frame that was requested because of this pass, ps.
     pub light_ps: u64,
 }
 
