@@ -160,16 +160,18 @@ fn packed((colour, depth): (&Word, Word)) -> Word {
 /// The path of a region's colours from a renderer's pixel memory to the frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CopyPath {
-    /// Directly from pixel memory to the frame buffer. The following commands wait until the last pixel has arrived.
+    /// The colours go directly from pixel memory to the frame buffer. The following commands wait until the last pixel
+    /// has arrived.
     FromPixelMemory,
-    /// Into the renderer's backing store, and from there to the frame buffer while the following commands execute. The
-    /// step from the backing store to the frame buffer waits while this renderer still sends another region.
+    /// The colours go into the renderer's backing store, and from there to the frame buffer while the following
+    /// commands execute. The step from the backing store to the frame buffer waits while this renderer still sends
+    /// another region.
     ThroughBacking,
-    /// Into the renderer's backing store, where the colours stay until a [`CopyPath::FromBacking`] command for the same
-    /// target.
+    /// The colours go into the renderer's backing store and stay there until a [`CopyPath::FromBacking`] command for
+    /// the same target.
     IntoBacking,
-    /// From the renderer's backing store to the frame buffer. An earlier [`CopyPath::IntoBacking`] command for the same
-    /// target has filled the store.
+    /// The colours go from the renderer's backing store to the frame buffer. An earlier [`CopyPath::IntoBacking`]
+    /// command for the same target has filled the store.
     FromBacking,
 }
 

@@ -57,24 +57,25 @@ impl RegionEnd {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StageOrder<S> {
-    /// From host to all graphics processors: view and edits of a picture.
+    /// The host sends the view and the edits of a picture to all graphics processors.
     Send(S),
-    /// From master to slaves: apply the edits of a picture, and transform its first drawing.
+    /// The master orders the slaves to apply the edits of a picture and to transform its first drawing.
     Edit(PictureNumber),
-    /// From slave to master: the edits of a picture are applied.
+    /// A slave reports to the master that the slave has applied the edits of a picture.
     Edited(PictureNumber),
-    /// From master to host: all slaves have applied the edits of a picture.
+    /// The master reports to the host that all slaves have applied the edits of a picture.
     EditsDone(PictureNumber),
-    /// From master to slaves: TRANSFORM of a later drawing of a picture may begin.
+    /// The master permits the slaves to begin TRANSFORM of a second or later drawing of a picture.
     Transform(Drawing),
-    /// From slave to master: a drawing is transformed. The message contains the number of entries in each region's bin.
+    /// A slave reports to the master that the slave has transformed a drawing. The message contains the number of
+    /// entries in each region's bin.
     Transformed(Drawing, Vec<u32>),
-    /// From master to slave, or from slave to slave: a token.
+    /// The master or a slave sends a token to a slave.
     Token(Token),
-    /// From the last slave to the master: all commands of a region have been accepted.
+    /// The last slave reports to the master that the renderer has accepted all commands of a region.
     Accepted(Token),
-    /// From renderer to master: a region has arrived in the frame buffer at the ring port `frame_buffer`. `picture` is
-    /// the low word of the picture's number.
+    /// A renderer reports to the master that a region has arrived in the frame buffer at the ring port `frame_buffer`.
+    /// `picture` is the low word of the picture's number.
     Copied { picture: Word, frame_buffer: NodeId },
 }
 

@@ -125,7 +125,8 @@ impl SliceVolume {
         matches!(self, Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } | Self::Slab { .. })
     }
 
-    /// Returns the coordinate s, in pixels, of the plane in which the slice is shown: 0, or the middle of a slab.
+    /// Returns the signed distance s, in pixels, from the slice to the middle of the volume. The distance is 0 except
+    /// for a slab.
     pub(crate) const fn middle(&self) -> f64 {
         match self {
             Self::Slab { low, high } => (*low + *high) / 2.0,

@@ -56,7 +56,7 @@ fn cause(id: &str) -> &'static str {
         }
         "section 6" => {
             "The expected value holds for small triangles. The triangles of the Mig are large, so they \
-             lie on several bin planes and go into several bins."
+             cross several of the planes between bins and go into several bins."
         }
         _ => "",
     }

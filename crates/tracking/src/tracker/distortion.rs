@@ -29,8 +29,8 @@ pub struct MagneticDistortion {
 
 impl MagneticDistortion {
     /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. The error
-    /// grows with the squared distance, and more slowly far from the transmitter (field `reach_m`). With the squared
-    /// distance alone, the error 1 m from the transmitter would be 20 mm (assumed).
+    /// grows with the squared distance, but more slowly far from the transmitter (`reach_m`). With the squared distance
+    /// alone, the error 1 m from the transmitter would be 20 mm (assumed).
     pub fn floor_below(transmitter_m: DVec3) -> Self {
         Self::floor_below_by(&Tables::PAPERS, transmitter_m)
     }
