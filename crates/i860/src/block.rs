@@ -250,7 +250,7 @@ impl Block {
     }
 
     /// Returns an address on the cache line that holds instruction or pair `number`, and the index of the first
-    /// instruction or pair after this line.
+    /// instruction or pair after this cache line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         // Find the last line that begins at or before this instruction.

@@ -3,7 +3,7 @@
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
 //! 1998). A run is a part of a basic block whose instructions and data are all in the caches. A run leaves the bus, the
 //! queues and the replacement sequence unchanged. The clocks of a run depend on three things: the scoreboard before the
-//! run, the rest of an arriving instruction line, and branches and traps.
+//! run, the rest of an arriving instruction-cache line, and branches and traps.
 //!
 //! Each distinct scoreboard has a number, so a comparison of integers finds a run. Between two runs, accesses that need
 //! the bus are counted with the full scoreboard.

@@ -44,7 +44,7 @@ pub struct BitSerial {
 }
 
 impl BitSerial {
-    /// Creates an array of zeros. Only [`PixelArray::read_colour`] uses `layout`, to find the field of the colour.
+    /// Creates an array of zeros. Only [`PixelArray::read_colour`] uses `layout`, to find the bit field of the colour.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())

@@ -125,21 +125,21 @@ impl CommandKind {
     /// Returns the number of clocks during which the command's program keeps the array busy.
     ///
     /// # Errors
-    /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
+    /// Returns [`Unsupported`] if the layout lacks a bit field that the program needs.
     pub fn clocks(self, layout: &Layout) -> Result<u32, Unsupported> {
         let program = Command::blank(self).program(layout)?;
         Ok(program.iter().map(ArrayInstruction::clocks).sum())
     }
 }
 
-/// An error for a command that needs a field of pixel memory that the layout does not have.
+/// An error for a command that needs a bit field of pixel memory that the layout does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
     pub kind: CommandKind,
-    /// Name of the layout that does not have the field, from `ContextPlan::name`.
+    /// Name of the layout that does not have the bit field, from `ContextPlan::name`.
     pub layout: &'static str,
-    /// Description of the missing field, or of the missing bits of scratch memory.
+    /// Description of the missing bit field, or of the missing bits of scratch memory.
     pub missing: &'static str,
 }
 
@@ -191,7 +191,7 @@ impl Command {
     /// Returns the command's program of array instructions.
     ///
     /// # Errors
-    /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
+    /// Returns [`Unsupported`] if the layout lacks a bit field that the program needs.
     pub fn program(&self, layout: &Layout) -> Result<Vec<ArrayInstruction>, Unsupported> {
         let program = match self {
             Self::SelectRegion(command) => Ok(command.program(layout).to_vec()),
@@ -216,7 +216,7 @@ impl Command {
     /// Appends the words of the command's [program](Command::program) to `out`.
     ///
     /// # Errors
-    /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
+    /// Returns [`Unsupported`] if the layout lacks a bit field that the program needs.
     pub fn encode(&self, layout: &Layout, out: &mut Vec<Word>) -> Result<(), Unsupported> {
         match self {
             Self::SelectRegion(command) => encode_all(&command.program(layout), out),
@@ -319,7 +319,7 @@ fn decode_range(words: &[Word], from: usize) -> Result<Vec<ArrayInstruction>, De
     Ok(out)
 }
 
-/// Returns the field of the normal's component 0 (x), 1 (y) or 2 (z).
+/// Returns the bit field of the normal's component 0 (x), 1 (y) or 2 (z).
 fn normal(layout: &Layout, component: u8) -> Result<Operand, MissingField> {
     layout.normal(component).ok_or(MissingField("a normal"))
 }

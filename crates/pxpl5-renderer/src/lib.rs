@@ -14,7 +14,7 @@
 //! 1. Messages bring commands. The array is SIMD, so the time of a command depends only on the command's kind
 //!    ([`RendererTiming`], [`Renderer`]).
 //! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]). [`isa`] defines the
-//!    instructions, their words, clocks and effects. A [`Layout`] places the fields in pixel memory.
+//!    instructions, their words, clocks and effects. A [`Layout`] places the bit fields in pixel memory.
 //! 3. A triangle enables all pixels. Then the array disables the pixels at which one of three edge expressions is
 //!    negative. The depth test disables the pixels that are not nearer, and stores Z in the other enabled pixels.
 //!    Colours (Gouraud) or normals (Phong) follow. The silhouette of a sphere is a quadratic expression, whose square
