@@ -55,7 +55,7 @@ pub struct SlowRendererResult {
 /// Results of all simulated experiments.
 #[derive(Clone, Debug)]
 pub struct Experiments {
-    /// Two fits of the cell side in the gallery: with this project's rules, and with rings of equal width.
+    /// Two fits of the cell side in the gallery: with this project's rules, and with rings of cells of equal width.
     pub fits: [CellFit; 2],
     /// All interpretations of table 1 of the paper CPR05 (update rates).
     pub interpretations: Interpretations,

@@ -19,7 +19,7 @@ pub struct SettingError {
     /// Place where the setting was written, such as a file with a line, or a command line option. Empty if the place is
     /// clear from the call.
     pub place: Box<str>,
-    /// Name or path of the setting, such as `ring.word_ns`. For an unknown name, the field has the kind of thing that
+    /// Name or path of the setting, such as `ring.word_ns`. For an unknown name, this text is the kind of thing that
     /// the name should denote, such as `pipeline`.
     pub name: Box<str>,
     /// The expected value, in words.

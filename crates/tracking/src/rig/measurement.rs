@@ -44,8 +44,8 @@ fn over<P>(passes: &[P], span: impl Fn(&P) -> (u64, u64)) -> Statistics {
 /// time stamps ("inside").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// Latency from the pendulum's motion to the start of a frame. The outside latency begins at the low point. The
-    /// inside latency begins at the report's time stamp.
+    /// Latency from the pendulum's motion to the start of a frame. The outside latency begins when the pendulum passes
+    /// its lowest point. The inside latency begins at the report's time stamp.
     pub tracking: Statistics,
     /// Latency from the start of a frame to its display. The outside latency ends when the photodiode detects the
     /// frame. The inside latency ends when the pipeline counts the frame as shown.
@@ -159,21 +159,22 @@ impl Measurement {
     }
 }
 
-/// The traces of an oscilloscope with three channels: the pendulum's low point, the host's D/A output and the screen.
+/// The traces of an oscilloscope with three channels: the pendulum at its lowest point, the host's D/A output and the
+/// screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
-    /// Trace of the photodiode at the low point. The trace has one pulse for each pass of the pendulum, centred on the
-    /// instant of the low point.
+    /// Trace of the photodiode at the lowest point of the pendulum. The trace has one pulse for each pass of the
+    /// pendulum, centred on the instant of the lowest point.
     pub low_point: ScopeTrace,
-    /// Trace of the host's D/A output, with one step for each frame that a low point requested.
+    /// Trace of the host's D/A output, with one step for each frame that was requested because of a pass.
     pub dac: ScopeTrace,
     /// Trace of the photodiode on the screen, low for dark frames and high for light frames.
     pub screen: ScopeTrace,
 }
 
 impl Oscilloscope {
-    /// Creates an oscilloscope whose first channel has a pulse for every low point up to the last step of the host's
-    /// D/A output. A pulse lasts as long as the pendulum takes to cross the light beam.
+    /// Creates an oscilloscope whose first channel has a pulse for every pass of the pendulum up to the last step of
+    /// the host's D/A output. A pulse lasts as long as the pendulum takes to cross the light beam.
     #[must_use]
     pub fn of(rig: &PendulumRig, dac: ScopeTrace, screen: ScopeTrace) -> Self {
         let last_ps = dac.edges().last().map_or(0, |edge| edge.t_ps);
@@ -182,9 +183,9 @@ impl Oscilloscope {
         Self { low_point: ScopeTrace::pulsing("low point", low_points, pulse_ps), dac, screen }
     }
 
-    /// Finds the passes of the pendulum in the traces. Each step of the host's D/A output gives one pass. The low point
-    /// lies before this step. After this step, the screen changes to the same level (high for light frames). Returns
-    /// `None` if the screen lacks one of these changes.
+    /// Finds the passes of the pendulum in the traces. Each step of the host's D/A output gives one pass. The instant
+    /// of the lowest point lies before this step. After this step, the screen changes to the same level (high for light
+    /// frames). Returns `None` if the screen lacks one of these changes.
     #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {
