@@ -143,7 +143,7 @@ pub enum Op {
     /// `fzchks`: compares pairs of 16-bit depths and keeps the smaller depth of each pair.
     Fzchks,
     /// `pfam`, `pfsm`, `pfmam`, `pfmsm`: dual operations. In the immediate, bit 4 selects subtraction and bits 3:0 are
-    /// the DPC field.
+    /// the bit field DPC (data-path control).
     DualOp,
 }
 
@@ -205,7 +205,7 @@ pub struct Instruction {
 }
 
 impl Instruction {
-    /// Makes an instruction with the given operation. All other bits are zero.
+    /// Makes an instruction with the given operation. All operands and flags are zero.
     #[must_use]
     pub fn new(op: Op) -> Instruction {
         Instruction { op, dest: 0, src1: 0, src2: 0, size: 0, flags: Flags(0), imm: 0 }

@@ -93,7 +93,7 @@ pub struct RegionPlace {
     /// Ring port of the frame buffer that will receive the region. `None` if the commands suit any frame buffer and no
     /// program has set the port.
     pub frame_buffer: Option<NodeId>,
-    /// Lines of the frame that the rows of the picture fill.
+    /// Lines of the video frame that the rows of the picture fill.
     pub lines: Lines,
     /// Division of the picture into regions.
     pub grid: RegionGrid,
@@ -255,17 +255,17 @@ impl CommandWords for Vec<Word> {
     }
 }
 
-/// The lines of a frame that a picture fills: all lines, or the lines of one field.
+/// The lines of a video frame that a picture fills: all lines, or the lines of one field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lines {
-    /// All lines of the frame.
+    /// All lines of the video frame.
     Frame,
     /// Every second line: the lines of one field.
     Field(FieldParity),
 }
 
-/// The two fields of an interlaced frame, distinguished by their lines. Line 0 is the top line of the picture and
+/// The two fields of an interlaced video frame, distinguished by their lines. Line 0 is the top line of the picture and
 /// belongs to the even field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -297,7 +297,7 @@ pub struct CopyTarget {
     pub frame_buffer: NodeId,
     /// Number of the pixel buffer, 0 or 1.
     pub buffer: u8,
-    /// Lines of the frame that the rows of the picture fill.
+    /// Lines of the video frame that the rows of the picture fill.
     pub lines: Lines,
     /// Division of the picture into regions.
     pub grid: RegionGrid,

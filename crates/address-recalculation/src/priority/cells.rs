@@ -50,7 +50,7 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
 }
 
 /// Assignment of cells to memories by rings of cells. The home cell contained the eye at the time of the assignment,
-/// and all cells at the same distance from the home cell form a ring.
+/// and all cells at the same distance from the home cell form a ring of cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
     /// The home cell, which contained the eye at the time of the assignment and is the centre of all rings of cells.
