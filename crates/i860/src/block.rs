@@ -133,7 +133,7 @@ pub(crate) struct Block {
     pub(crate) remembered: BlockMemory,
     /// All instructions and pairs of the block, in the order of execution. The delay slot is the last element.
     units: Box<[Unit]>,
-    /// For each cache line of the block, the index of the first instruction or pair on the line.
+    /// Index of the first instruction or pair on each cache line of the block.
     lines: Box<[u8]>,
     /// Cause of the trap that is taken if the final branch is executed, because its delay slot cannot be executed.
     pub(crate) wrong_slot: Option<TrapCause>,

@@ -258,8 +258,7 @@ fn sink_if_met(
     }
 }
 
-/// For each window, the number of primitives in this window. For all windows together, the number of primitives in at
-/// least one window.
+/// Number of primitives in each window, and number of primitives in at least one window.
 struct WindowCounts<'a> {
     windows: &'a [Window],
     /// Top of the highest window and bottom of the lowest window, in subpixels from the top of the video frame.

@@ -77,9 +77,9 @@ struct Found {
 
 /// Counts primitives without storing them.
 struct PrimitiveCounter {
-    /// For each region, the number of triangles that touch only this region.
+    /// Number of triangles for each region that touch only this region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// For each region, the number of triangles that also touch another region, and the number of spheres.
+    /// Number of triangles for each region that also touch another region, and number of spheres that touch the region.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,

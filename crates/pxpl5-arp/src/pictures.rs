@@ -39,7 +39,7 @@ pub enum ArpPicture {
 /// Number of frames of the viewer's walk that the pictures show.
 const FRAMES: u64 = 1_800;
 
-/// For each experiment: its name, the figures of the papers that the experiment redraws, and the names of the project's
+/// Name of each experiment, the figures of the papers that the experiment redraws, and the names of the project's
 /// pictures.
 pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
     ("E2", "2, 12 and 14", &["faces-0", "faces-1", "faces-2", "faces-3", "faces-whole", "memories"]),

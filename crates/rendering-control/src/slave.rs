@@ -22,7 +22,7 @@ struct SlaveState<S> {
     next_transform: Drawing,
     /// The two sets of bins. `None` stands for an empty set.
     bins: [Option<Bins<S>>; 2],
-    /// For each context, the number of tokens that this slave has received for its bins.
+    /// Number of tokens that this slave has received for each of the two sets of bins.
     tokens: [u16; 2],
 }
 
@@ -39,8 +39,8 @@ impl<S> SlaveState<S> {
         Self { sent: VecDeque::new(), next_edit, next_transform, bins: [None, None], tokens: [0; 2] }
     }
 
-    /// Counts a token for the set of bins `context`. After the last of the drawing's `of` tokens, the function empties the
-    /// set and returns true.
+    /// Counts a received token for the set of bins `context` (0 or 1). After the last of the drawing's `of` tokens, the
+    /// function empties the set and returns true.
     fn count_token(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;

@@ -20,7 +20,7 @@ pub enum Projection {
     Perspective {
         /// Horizontal and vertical position of the eye relative to the axis of the image, in pixels.
         eye: [f64; 2],
-        /// Distance of the eye from the slice along +s, in pixels.
+        /// Distance of the eye from the plane of the slice, in pixels.
         distance: f64,
         /// Horizontal and vertical shear, in pixels per pixel of s, the distance from the slice.
         shear: [f64; 2],
@@ -56,7 +56,8 @@ impl Jitter {
 /// The eye and the shear of one slice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceEye {
-    /// Position of the eye in coordinates u, v and s, in pixels. `None` for an eye at infinity (a projection along s).
+    /// Position of the eye: horizontal and vertical position, and distance from the slice, in pixels. `None` for an eye
+    /// at infinity (a projection along the normal of the slice).
     pub eye: Option<[f64; 3]>,
     /// Horizontal and vertical shear, in pixels per pixel of s, the distance from the slice.
     pub shear: [f64; 2],
@@ -124,7 +125,8 @@ fn unit(seed: u64, slice: u32, draw: u64) -> f64 {
 }
 
 impl SliceEye {
-    /// Returns the matrix from (u, v, s, 1) to clip coordinates, with depth 0 at the near plane and 1 at the far plane.
+    /// Returns the matrix from the coordinates (u, v, s, 1) of the slice to clip coordinates, with depth 0 at the near
+    /// plane and 1 at the far plane.
     #[must_use]
     pub fn clip_matrix(&self, size: Size, reach: f64) -> DMat4 {
         let half = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
@@ -147,8 +149,8 @@ impl SliceEye {
         matrix_of_rows(rows)
     }
 
-    /// Returns the matrix rows from (u, v, s, 1) to homogeneous window coordinates: x to the right and y down in
-    /// pixels, depth, w.
+    /// Returns the matrix rows from the coordinates (u, v, s, 1) of the slice to homogeneous window coordinates: x to
+    /// the right and y down in pixels, depth, w.
     ///
     /// The result equals [`Self::clip_matrix`] followed by the viewport. This function avoids the rounding of a
     /// division by half the image's size and of a multiplication by the same number.

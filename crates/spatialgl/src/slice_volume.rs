@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// SpatialGL paper's rule "signs equal" is ambiguous for such a point.
 ///
 /// The values `a` and `b` are the signed distances of the point from the two boundary planes. Both are positive in the
-/// positive lobe: the half of the double wedge on the +u side.
+/// positive lobe: the half of the double wedge with horizontal coordinate u > 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {

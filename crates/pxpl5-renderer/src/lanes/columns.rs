@@ -26,7 +26,7 @@ struct FieldColumn {
 #[derive(Clone, Debug)]
 pub(super) struct PixelColumns {
     columns: Vec<FieldColumn>,
-    /// For each bit of pixel memory, the index of the column (array of words) that holds the bit.
+    /// Index of the column (array of words) that holds each bit of pixel memory.
     column_of: [u8; MEMORY_BITS as usize],
 }
 

@@ -315,7 +315,7 @@ impl Copied {
 
 /// The buffers that each eye's frame buffer has shown, for runs of [`Slats::backup`].
 struct Backup {
-    /// For each eye, the first period and the buffer of each swap, in order.
+    /// First period and buffer of each swap, in order, for each eye.
     swaps: [Vec<(PeriodNumber, u8)>; 2],
 }
 

@@ -26,7 +26,7 @@ pub struct SettingError {
     pub expected: Box<str>,
     /// The value or name that the setting has.
     pub found: Box<str>,
-    /// For an unknown name, the valid name that is most similar. Empty for errors of another kind.
+    /// Valid name that is most similar to an unknown name. Empty for errors of another kind.
     pub nearest: Box<str>,
 }
 

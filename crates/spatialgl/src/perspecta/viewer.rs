@@ -281,7 +281,7 @@ struct Strobe {
     focal: f64,
     centre: [f64; 2],
     lambert: bool,
-    /// For each half of the screen (u < 0, u >= 0), true if the cutaway hides this half.
+    /// Flags of the two halves of the screen, left and right of the axis: true if the cutaway hides the half.
     cut: [bool; 2],
 }
 
