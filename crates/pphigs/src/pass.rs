@@ -398,7 +398,7 @@ impl Pass {
         self.walk.taken().filter_map(|place| Some((place, place.transform.as_ref()?)))
     }
 
-    /// Returns true for each structure that is drawn, or `None` if all structures are drawn.
+    /// Returns a flag for each structure, true if the structure is drawn. Returns `None` if all structures are drawn.
     pub(crate) fn chosen(&self) -> Option<&[bool]> {
         self.walk.chosen.as_deref()
     }

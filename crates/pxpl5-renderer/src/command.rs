@@ -63,7 +63,7 @@ pub enum CommandKind {
     Sphere = 5,
     /// Draws a sphere with normals (see [`PhongSphereCommand`]).
     PhongSphere = 6,
-    /// Shades all pixels at the end of the frame (see [`Shade`]).
+    /// Shades all pixels of a region after the last primitive of the region (see [`Shade`]).
     Shade = 7,
     /// Copies the region to a frame buffer (see [`CopyRegion`]).
     CopyRegion = 8,
@@ -152,13 +152,13 @@ pub enum Command {
     Clear(Clear),
     /// Draws a triangle with interpolated colour (Gouraud).
     Triangle(TriangleCommand),
-    /// Draws a triangle whose pixels are shaded at the end of the frame.
+    /// Draws a triangle whose pixels are shaded after the last primitive of the region.
     PhongTriangle(PhongTriangleCommand),
     /// Draws a sphere with interpolated colour.
     Sphere(SphereCommand),
-    /// Draws a sphere whose pixels are shaded at the end of the frame.
+    /// Draws a sphere whose pixels are shaded after the last primitive of the region.
     PhongSphere(PhongSphereCommand),
-    /// Shades all pixels at the end of the frame.
+    /// Shades all pixels of a region after the last primitive of the region.
     Shade(Shade),
     CopyRegion(CopyRegion),
     /// Stores 32 bits of every pixel in the backing store.

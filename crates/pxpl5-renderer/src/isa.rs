@@ -4,7 +4,7 @@
 //! instructions arrive in ring messages. An Enable register masks pixels. A tree evaluates linear and quadratic
 //! expressions in all pixels together. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
 //! background. Mnemonics, encodings and operand rules below are **assumed**. These instructions are the smallest set
-//! that can execute the published program of a triangle and the shading at the end of a frame.
+//! that can execute the published program of a triangle and the shading at the end of a region.
 //!
 //! # Words
 //!

@@ -18,7 +18,8 @@
 //! 3. A triangle enables all pixels. Then the array disables the pixels at which one of three edge expressions is
 //!    negative. The depth test disables the pixels that are not nearer, and stores Z in the other enabled pixels.
 //!    Colours (Gouraud) or normals (Phong) follow. The silhouette of a sphere is a quadratic expression, whose square
-//!    root gives depth, normal and light. [`Shade`] computes colours from normals once, at the end of the frame.
+//!    root gives depth, normal and light. [`Shade`] computes colours from normals once, after the last primitive of a
+//!    region.
 //! 4. Pixels are computed separately from time. The reference model [`BitSerial`] moves bit planes like the hardware,
 //!    and defines every bit. [`BitSerial::skipping`] leaves out work that changes nothing. [`Lanes`] computes with
 //!    whole numbers instead of single bits, and only at the pixels that a command can change. The suite in

@@ -63,7 +63,7 @@ pub fn names() -> &'static [(&'static str, &'static str)] {
 ///
 /// # Errors
 ///
-/// [`SettingError`] with the nearest valid name, or with the allowed number of triangles.
+/// Returns [`SettingError`] with the nearest valid name, or with the allowed number of triangles.
 pub fn builtin(name: &str) -> Result<Scene, SettingError> {
     match name {
         "aircraft" => Ok(aircraft::scene()),

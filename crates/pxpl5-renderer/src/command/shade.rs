@@ -1,4 +1,4 @@
-//! The shading command at the end of the frame.
+//! The command that shades the pixels of a region after the last primitive of the region.
 
 use super::{CommandKind, MissingField, enable, normal};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Operand, Test};

@@ -142,7 +142,7 @@ impl SettingError {
     ///
     /// # Errors
     ///
-    /// The error of [`SettingError::value`].
+    /// Returns the error of [`SettingError::value`] if `holds` is false.
     pub fn require(holds: bool, name: &str, expected: impl Display, found: impl Display) -> Result<(), Self> {
         if holds { Ok(()) } else { Err(Self::value(name, expected, found)) }
     }
