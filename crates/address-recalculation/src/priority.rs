@@ -36,7 +36,7 @@
 //!   and depth in both memories.
 //!
 //! Units are metres, seconds and radians, except in names that contain `deg`. Axes are right-handed with y up. Results
-//! are bit-identical on every host.
+//! are bit-identical on every computer.
 //!
 //! # Not here
 //!

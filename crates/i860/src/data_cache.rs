@@ -93,8 +93,8 @@ impl DataCache {
         Some(transfer)
     }
 
-    /// Fills a cache line. The requested bytes arrive first. If the fill replaces a dirty line, this line is written
-    /// back after the fill.
+    /// Fills a cache line. The requested bytes arrive first. If the fill replaces a dirty cache line, this line is
+    /// written back after the fill.
     fn fill_line(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) -> Transfer {
         common.profile.data_misses += 1;
         let transfer = common.read_data(address, BEATS);

@@ -46,7 +46,7 @@ pub struct FrameOutcome {
     /// Flag of each memory: true if it became due for an update.
     pub due: Vec<bool>,
     /// Flag of each memory: true if it has a new update. With an ideal renderer, the update is shown from this frame
-    /// on. With a renderer of limited speed, it is shown from the next frame on.
+    /// on. With a renderer of limited speed, the update is shown from the next frame on.
     pub swapped: Vec<bool>,
     /// Flag of each memory: true if its update was incomplete at the retrace.
     pub missed: Vec<bool>,

@@ -39,9 +39,9 @@
 //! | slope | up to [`MAX_SLOPE`], kept modulo 2^32; steeper planes are made flat and counted | tests/setup.rs |
 //! | sphere | silhouette below 2^47 in its regions, root of 12 bits | tests/input.rs |
 //!
-//! docs/numerics.md compares these formats with exact geometry on hard cases. All results are the same on every host:
-//! the code uses only additions, multiplications, divisions and square roots, in a fixed order. Loops over several
-//! triangles are compiled for each vector unit and give the same bits.
+//! docs/numerics.md compares these formats with exact geometry on hard cases. All results are the same on every
+//! computer: the code uses only additions, multiplications, divisions and square roots, in a fixed order. Loops over
+//! several triangles are compiled for each vector unit and give the same bits.
 //!
 //! # Example
 //!

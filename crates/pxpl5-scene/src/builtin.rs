@@ -1,4 +1,4 @@
-//! The built-in scenes. Code generates these scenes, so the scenes are the same on every host.
+//! The built-in scenes. Code generates these scenes, so the scenes are the same on every computer.
 
 mod aircraft;
 mod full_screen;

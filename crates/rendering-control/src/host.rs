@@ -22,7 +22,7 @@ pub enum HostAction<S> {
 /// processors.
 ///
 /// SEND of a picture begins after EDIT of the previous picture has finished (TR94). Whenever the host is ready for a
-/// picture, it calls `plan` with the number of the next picture and the current time.
+/// picture, the host program calls `plan` with the number of the next picture and the current time.
 ///
 /// # Errors
 ///

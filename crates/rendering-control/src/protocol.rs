@@ -14,7 +14,7 @@ const TOKEN: Word = 6;
 const ACCEPTED: Word = 7;
 const EDITS_DONE: Word = 8;
 
-/// A token. While a slave holds the token, it may send its commands of one region to one renderer.
+/// A token. While a slave holds the token, the slave may send its commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) drawing: Drawing,

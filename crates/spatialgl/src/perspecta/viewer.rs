@@ -318,8 +318,8 @@ impl Strobe {
         light.splat([self.centre[0] + right * scale, self.centre[1] - up * scale], levels, weight);
     }
 
-    /// Returns the absolute cosine |view . e_s| of the angle between the direction of view and the screen's normal, in
-    /// steps of 1/256.
+    /// Returns the absolute cosine of the angle between the direction of view and the screen's normal, in steps of
+    /// 1/256.
     fn facing(&self, to_eye: [f64; 3]) -> u64 {
         let length = dot(to_eye, to_eye).sqrt();
         (256.0 * (dot(self.normal, to_eye) / length).abs() + 0.5) as u64
