@@ -38,8 +38,8 @@
 //!
 //! # Read
 //!
-//! The trait [`Measured`] reads an outcome: a [`Report`] of all numbers, one quantity by its name, the errors in pixels,
-//! and the pictures. A value that was not measured is `None`.
+//! The trait [`Measured`] reads an outcome: a [`Report`] of all numbers, one quantity by its name, the errors in
+//! pixels, and the pictures. A value that was not measured is `None`.
 //!
 //! ```
 //! # use pxpl5::prelude::*;
@@ -55,8 +55,8 @@
 //!
 //! # Look
 //!
-//! [`Outcome::events`] lists the events on all boards. A [`Stepper`] runs an experiment in steps, and shows the state of
-//! the boards between two steps ([`snapshots`]).
+//! [`Outcome::events`] lists the events on all boards. A [`Stepper`] runs an experiment in steps, and shows the state
+//! of the boards between two steps ([`snapshots`]).
 //!
 //! ```
 //! # use pxpl5::prelude::*;

@@ -163,8 +163,8 @@ fn slats_takes_a_report_no_older_than_the_trackers_interval_and_the_way_to_the_p
     }
 }
 
-/// The head stands still, 3 m to the right of the origin, and looks to the left. In the world of the scene it stays there.
-/// In the scene it is moved to the start of the scene's own motion.
+/// The head stands still, 3 m to the right of the origin, and looks to the left. In the world of the scene it stays
+/// there. In the scene it is moved to the start of the scene's own motion.
 #[test]
 fn poses_in_the_world_stay_and_poses_of_the_scene_begin_at_its_start() {
     let half = std::f64::consts::FRAC_1_SQRT_2;

@@ -19,7 +19,8 @@ fn limit(report: &Report) -> Resource {
     path.parts[0].resource
 }
 
-/// COPY of an eye takes 15.6 ms (TR94: 20 regions of 780 us) of the two fields of a frame, 33.37 ms: 46.8 % of the time.
+/// COPY of an eye takes 15.6 ms (TR94: 20 regions of 780 us) of the two fields of a frame, 33.37 ms: 46.8 % of the
+/// time.
 #[test]
 fn the_aircraft_is_limited_by_copy_through_the_ports() {
     let report = report("mig", (30, 5), 240);

@@ -40,8 +40,8 @@ fn a_table_over_renderers_takes_fifteen_lines() {
         let channels = outcome.report().utilisation.expect("it ran").ring.channels;
         (*renderers, channels.mean, outcome.latency().expect("pictures were shown").mean)
     });
-    // COPY sends the same pixels whatever the number of renderers, so the mean stays: 2 x 15.6 ms of 33.37 ms on one of 8 channels each
-    // are 11.7 %, and commands and tokens come to that.
+    // COPY sends the same pixels whatever the number of renderers, so the mean stays: 2 x 15.6 ms of 33.37 ms on one of
+    // 8 channels each are 11.7 %, and commands and tokens come to that.
     assert!(rows.iter().all(|(_, mean, _)| (0.11..0.16).contains(mean)), "{rows:?}");
 }
 

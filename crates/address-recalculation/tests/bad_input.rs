@@ -113,8 +113,8 @@ proptest! {
 
     /// Compares the check of a lens with the smallest slope found in a thousand steps from the middle to the corner.
     ///
-    /// The steps are equal in the square of the radius. There the slope is a parabola with the second coefficient
-    /// 5 k2, so between two steps it falls at most 5 |k2| (step / 2)^2 below both. Lenses within this bound are left out.
+    /// The steps are equal in the square of the radius. There the slope is a parabola with the second coefficient 5 k2,
+    /// so between two steps it falls at most 5 |k2| (step / 2)^2 below both. Lenses within this bound are left out.
     #[test]
     fn a_lens_that_folds_before_the_corner_is_refused(
         k1 in -1.5..1.5_f64,

@@ -135,9 +135,9 @@ impl Cpu {
         self.code_changed = false;
     }
 
-    /// Takes the decoded code of `program` from `programs`, the shared store of decoded programs. The processor uses the
-    /// code until [`Cpu::close`]. Memory must hold `program` as assembled. With `None`, the processor decodes all code
-    /// again. The number of clocks does not depend on this call.
+    /// Takes the decoded code of `program` from `programs`, the shared store of decoded programs. The processor uses
+    /// the code until [`Cpu::close`]. Memory must hold `program` as assembled. With `None`, the processor decodes all
+    /// code again. The number of clocks does not depend on this call.
     ///
     /// All processors that share the store must have the same [`Config::freezes`].
     pub fn open(&mut self, programs: &mut DecodedPrograms, program: Option<&Arc<Program>>) {
@@ -147,8 +147,9 @@ impl Cpu {
         self.time.fetch.number_states_from(programs.cache_states);
     }
 
-    /// Moves the decoded program and its memoized clocks back to `programs`. Returns true if other processors can use this
-    /// program. If a store has changed the program in memory, the function discards the decoded code and returns false.
+    /// Moves the decoded program and its memoized clocks back to `programs`. Returns true if other processors can use
+    /// this program. If a store has changed the program in memory, the function discards the decoded code and returns
+    /// false.
     pub fn close(&mut self, programs: &mut DecodedPrograms, program: Option<&Arc<Program>>) -> bool {
         self.time.exchange_numbers(&mut programs.numbers);
         programs.cache_states = self.time.fetch.states();

@@ -105,7 +105,8 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, AssemblyError> {
 /// a condition (`.if`) excludes become empty. Other lines stay unchanged.
 ///
 /// # Errors
-/// Returns an [`AssemblyError`] for the first line with an error, or for a stretch whose values need too many registers.
+/// Returns an [`AssemblyError`] for the first line with an error, or for a stretch whose values need too many
+/// registers.
 pub fn schedule(source: &str) -> Result<String, AssemblyError> {
     let out = RefCell::new(String::with_capacity(source.len()));
     stretches(

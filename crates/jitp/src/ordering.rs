@@ -32,8 +32,8 @@ mod tests {
     use pxpl5_sim::Time;
     use pxpl5_wire::PeriodNumber;
 
-    /// The code moves a word with six instructions (pphigs's kernels/order.s), and each instruction takes at least a
-    /// clock of 25 ns. Cache misses add a few clocks per word.
+    /// Tests the time in which i860 code assembles an order. Each word takes six instructions (kernels/order.s of
+    /// pphigs), and each instruction takes at least a clock of 25 ns. Cache misses add a few clocks per word.
     #[test]
     fn by_code_an_order_takes_at_least_six_clocks_a_word() {
         let views = |n: u64| (0..n).map(view).collect();

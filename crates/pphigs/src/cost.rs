@@ -107,7 +107,6 @@ mod tests {
         ..GpTiming::PAPERS
     };
 
-    /// Returns a list of three structures, of which the second has spheres.
     fn list() -> DisplayList {
         let structure =
             |spheres| DisplayStructure { triangles: 0..0, spheres, frame: ModelFrame::World, culling: Culling::None };
@@ -138,7 +137,8 @@ mod tests {
         assert_eq!(means.ns(&TIMING), 12_118.0);
     }
 
-    /// The published time of a pass includes all of its structures.
+    /// Tests that structures add no time to a pass under the published timing table. The published time of a pass
+    /// includes them.
     #[test]
     fn in_the_published_table_structures_are_part_of_the_pass() {
         let pass = TransformCost::pass_over(&list(), PrimitiveCounts::default());

@@ -203,8 +203,8 @@ mod tests {
         FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits: edits.collect() }
     }
 
-    /// Tests the last matrix of a full chunk and of several chunks. The expected result is `M0 (1 - s) + M1 s` in
-    /// double precision, rounded once.
+    /// Tests the interpolation of the matrices M0 and M1 by i860 code, for up to several blocks of memory. The expected
+    /// result is `M0 (1 - s) + M1 s` in double precision, rounded once. The test reads the last matrix.
     #[test]
     fn code_interpolates_matrices_as_double_precision_does() {
         let share = Share::new(Arc::new(DisplayList::default()), 0, 1);

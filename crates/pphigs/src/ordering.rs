@@ -51,8 +51,7 @@ mod tests {
     use pxpl5_gp::CodeVersion;
     use pxpl5_wire::NodeId;
 
-    /// The message buffer must hold exactly the words of the order. An order without words before its views takes no
-    /// time.
+    /// Tests that the code writes exactly the words of an order into the message buffer, for orders of any length.
     #[test]
     fn an_order_lies_in_the_buffer_word_for_word() {
         let mut processor = Processor::new(NodeId(1), 8 << 20, CodeVersion::Compiled, i860::Config::cycle());

@@ -198,7 +198,7 @@ mod tests {
     use pxpl5_gp::GpTiming;
     use pxpl5_machine::MachineConfig;
 
-    /// Returns the model of a machine for Slats with changed parameters.
+    /// Returns the model of Slats for a machine whose timing parameters are `numbers`.
     fn model(gps: usize, renderers: usize, numbers: [u64; 5], split: bool) -> SlatsModel {
         let mut config = MachineConfig { n_gps: gps, n_renderers: renderers, ..MachineConfig::slats() };
         let [triangle_ns, message_ns, fifo_words, word_ns, hop_ns] = numbers;
@@ -213,10 +213,10 @@ mod tests {
         SlatsModel::new(&config, program).expect("in range")
     }
 
-    /// Compares times with and without the cost of structures.
+    /// Tests the time that structures add to a field, as the difference between two timing tables.
     ///
-    /// The scene `mig` has six structures without spheres. The scene `molecules` has one structure with spheres. Only
-    /// the processor limits the time.
+    /// The scene `mig` has six structures without spheres. The scene `molecules` has one structure with spheres. The
+    /// processor is the slowest part of both runs, so the difference is visible.
     #[test]
     fn a_structure_takes_its_time_for_both_eyes() {
         let rendered_ns = |scene: &str, gp: GpTiming| {
@@ -239,8 +239,8 @@ mod tests {
     }
 
     proptest! {
-        /// Checks that the times are bit-identical to the times of single machines, for any number of machines and for
-        /// different [`SlatsModel::structure`] values.
+        /// Tests that the model computes the same times, bit for bit, for many machines together and for each machine
+        /// alone.
         #[test]
         fn machines_that_are_computed_together_are_what_they_are_alone(
             gps in 1usize..5,

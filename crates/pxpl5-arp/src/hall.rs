@@ -89,8 +89,8 @@ mod tests {
     use super::*;
     use pxpl5_scene::builtin;
 
-    /// Checks that a scaled gallery keeps its heights. The built-in gallery is 40 m wide and 4 m high, and its path
-    /// begins at (-16, -15).
+    /// Tests the built-in gallery at half its size. The original is 40 m wide and 4 m high, and its path begins at
+    /// (-16, -15). The heights must not change.
     #[test]
     fn a_scaled_hall_keeps_its_height_and_its_eyes() {
         let scene = builtin("gallery").expect("built in");

@@ -29,15 +29,15 @@ pub(crate) struct ArpArgs {
 
 #[derive(Subcommand, Debug)]
 enum ArpCommand {
-    /// Simulate one walk through a scene; print the numbers of draws, the update rates, and the widths of the gaps
-    /// where objects are cut.
+    /// Simulate one walk of a viewer through a scene. Print how often parts of objects are drawn, the update rates, and
+    /// the widths of the gaps where objects are cut.
     Run(run::RunArgs),
     /// Compare all policies and warps on one walk through a scene.
     Compare(compare::CompareArgs),
-    /// Compare the papers' figures with an ideal renderer, and draw their pictures.
+    /// Compare the figures of the papers with an ideal renderer, and draw the pictures of the papers.
     Figures(figures::FiguresArgs),
-    /// Rank the interpretations of the questions that the paper leaves open about table 1; each rate is left out in
-    /// turn.
+    /// Rank the possible answers to the questions that the paper on priority rendering leaves open about its table 1.
+    /// As a check, each update rate of the table is left out in turn.
     Interpretations(interpretations::InterpretationsArgs),
     /// Print the cube face and the texels that a pixel shows at an orientation of the head.
     Texel(texel::TexelArgs),

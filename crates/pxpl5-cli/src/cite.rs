@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 use std::fmt::Write;
 use works::{Name, WORKS, Work};
 
-/// Print how to cite the software and the papers.
+/// Print how to cite this software, and the papers about the machine and its pipelines.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 cite
@@ -28,7 +28,7 @@ pub(crate) struct CiteArgs {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Format {
-    /// Text for readers.
+    /// Plain text.
     Text,
     /// Entries for BibTeX.
     Bibtex,
@@ -88,7 +88,8 @@ mod tests {
         assert_eq!(names(&[("A.", "B"), ("C.", "D"), ("E.", "F")]), "A. B, C. D and E. F");
     }
 
-    /// Checks that docs/sources.md, which is written by hand, lists each cited paper by its short name.
+    /// Tests that docs/sources.md, which is written by hand, contains the short name of each paper that `pxpl5 cite`
+    /// lists.
     #[test]
     fn the_list_of_sources_has_each_cited_paper() {
         let sources = include_str!("../../../docs/sources.md").to_lowercase();

@@ -40,32 +40,33 @@ have the values of their papers. A recording sets the length of the runs. The co
 pub(crate) struct CompareArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Rows to run; default: one or two rows of each family of pipelines.
+    /// Rows (pipelines) to run, separated by commas; default: one or two rows of each family of pipelines.
     #[arg(long, value_name = "ROW,...", value_delimiter = ',')]
     only: Vec<String>,
     /// Run all rows.
     #[arg(long, conflicts_with = "only")]
     all: bool,
-    /// Number of seeds of tracker, host and synthetic motion, from --seed on. Each pipeline runs once for each seed.
-    /// The confidence interval of a mean needs at least two seeds.
+    /// Number of seeds for the random parts of a run: tracker, host and synthetic motion. The first seed is --seed.
+    /// Each pipeline runs once for each seed. The confidence interval of a mean needs at least two seeds.
     #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = whole::<u64>(1, 1_000))]
     seeds: u64,
-    /// Add seeds to each row until the interval of its mean error, from end to end, is narrower than this. The width is
-    /// a share of the mean (10%) or pixels (0.2px). Only for the motion `synthetic`, which differs
-    /// with the seed.
+    /// Add seeds to each row until the confidence interval of its mean end-to-end error is narrower than this. The
+    /// width is a share of the mean (10%) or pixels (0.2px). Only for the motion `synthetic`, which differs with the
+    /// seed.
     #[arg(long, value_name = "WIDTH")]
     until_precision: Option<Precision>,
     /// Maximum number of seeds of a row with --until-precision.
     #[arg(long, value_name = "N", default_value_t = MAX_SEEDS as u64, value_parser = whole::<u64>(2, 1_000), requires = "until_precision")]
     max_seeds: u64,
-    /// Also search for the largest number of triangles that each pipeline can draw in time; the search takes longer
+    /// Also search for the largest number of triangles that each pipeline can draw in time. The search takes longer
     /// than all runs.
     #[arg(long, conflicts_with = "no_limits")]
     limits: bool,
     /// Do not search for the largest number of triangles, which is the default.
     #[arg(long, alias = "no-triangles", hide = true)]
     no_limits: bool,
-    /// Also split the error of each row by its causes. Every run is then evaluated again without each cause.
+    /// Also split the error of each row by its causes. For each cause, every run is evaluated once more without this
+    /// cause.
     #[arg(long)]
     causes: bool,
     /// Also run each row with every other predictor, to find the predictor with the least error.
@@ -74,15 +75,17 @@ pub(crate) struct CompareArgs {
     /// Confidence of all intervals, between 0 and 1.
     #[arg(long, value_name = "SHARE", default_value_t = CONFIDENCE, value_parser = confidence)]
     confidence: f64,
-    /// Write into this folder: comparison.json, rows.csv, errors.csv, gallery.html with the picture of every pipeline,
-    /// and the pictures of a vertical edge. Charts show the error over time, its distribution, and the error against
-    /// latency and against prediction interval. Each row is in DIR/rows/rows.jsonl as soon as its runs have ended.
+    /// Write comparison.json, rows.csv, errors.csv, gallery.html with the picture of every pipeline, pictures of a
+    /// vertical edge, and charts into this folder. The charts show the error over time, its distribution, and the error
+    /// against latency and against prediction interval. DIR/rows/rows.jsonl has each row as soon as the runs of the row
+    /// have ended.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Keep the finished rows of an interrupted comparison with the same settings in --out, and run only the others.
+    /// Resume an interrupted comparison with the same settings: keep the finished rows in --out, and run only the
+    /// others.
     #[arg(long, requires = "out")]
     resume: bool,
-    /// Speed of the head's turn in the pictures of a vertical edge, degrees per second.
+    /// Speed of the head's turn in the pictures of a vertical edge, in degrees per second.
     #[arg(long, default_value_t = 200.0, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = pan)]
     edge_pan: f64,
     #[command(flatten)]
@@ -90,7 +93,7 @@ pub(crate) struct CompareArgs {
     /// Print JSON: an object whose `pipelines` lists one row for each pipeline.
     #[arg(long)]
     json: bool,
-    /// Print nothing but errors (and the object of --json).
+    /// Print nothing but errors and, with --json, the JSON object.
     #[arg(long, short)]
     quiet: bool,
 }

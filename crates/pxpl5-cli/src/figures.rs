@@ -32,10 +32,10 @@ pub(crate) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Write the document of all figures (ACCURACY.md) to this file.
+    /// Write the document with all figures (ACCURACY.md) to this file.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     write: Option<PathBuf>,
-    /// Fail if this file differs from the document of all figures.
+    /// Fail if this file differs from the document that --write would write.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
     /// Write a chart of the errors and their intervals (SVG) to this file.

@@ -45,8 +45,8 @@ enum Command {
         #[arg(long, default_value = "0x1000", value_parser = address)]
         base: u32,
     },
-    /// Assemble (FILE.s) or load (any other file) a program and run it; print clocks by address and by cause, registers
-    /// and memory.
+    /// Assemble (FILE.s) or load (any other file) a program and run it. Print the clocks by address and by cause, the
+    /// registers, and the memory.
     ///
     /// A place is a label of the program, an address, or a label with an offset such as table+8.
     Run {
@@ -96,7 +96,7 @@ enum Command {
 /// Options that disable warnings of the assembler.
 #[derive(Args, Debug, Default)]
 struct Warnings {
-    /// Disable a warning of the assembler; may be repeated or a list with commas.
+    /// Disable these warnings of the assembler, separated by commas; may be repeated.
     #[arg(long, value_name = "RULE", value_delimiter = ',', value_parser = ["all", "alignment", "multiply-source", "lost-result"])]
     allow: Vec<String>,
 }
@@ -331,7 +331,7 @@ mod tests {
         RunOptions { entry: None, stop: None, budget: 100, memory: 0x2000, show: Vec::new(), json: false, quiet: false }
     }
 
-    /// A program that stores the number 7 in the second word of a table, which follows the program's code.
+    /// An i860 program that stores the number 7 in the second word of a table. The table follows the code in memory.
     const STORE: &str = "start: mov 7, r5\nmov table, r6\nst.l r5, 4(r6)\nend: nop\ntable: .long 1, 2, 3";
 
     #[test]
@@ -361,7 +361,7 @@ mod tests {
         assert_eq!(run["labels"]["start"], "00001000");
     }
 
-    /// Expects the program's result 1 + 4 + 9 + 16 = 30.
+    /// Tests the example program of the guide, which computes 1 + 4 + 9 + 16 = 30.
     #[test]
     fn the_program_of_the_guide_runs_and_gives_what_it_says() {
         let page = include_str!("../../../docs/guide/assembler.md");

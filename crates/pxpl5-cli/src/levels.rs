@@ -27,7 +27,7 @@ pub(crate) struct LevelsArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Measure errors and speeds now, instead of printing the recorded ones.
+    /// Measure errors and speeds now, instead of printing the recorded measurement.
     #[arg(long)]
     measure: bool,
     /// Do not measure simulation speeds.
@@ -42,7 +42,8 @@ pub(crate) struct LevelsArgs {
     /// Write a chart of speed against error (SVG) to this file.
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
-    /// Write only the tables of how host time and latency grow with triangles and boards to this file.
+    /// Write only the tables about scaling to this file: host time and latency for growing numbers of triangles and
+    /// boards.
     #[arg(long, value_name = "FILE")]
     scaling: Option<PathBuf>,
     #[command(flatten)]

@@ -89,9 +89,9 @@ enum Command {
     Run(run::RunArgs),
     /// Print the effective configuration of an experiment.
     Check(check::CheckArgs),
-    /// Compare all low-latency methods in pixels of error: one scene, head motion and tracker for all pipelines.
+    /// Compare the pixel errors of all pipelines for one scene, head motion and tracker.
     Compare(compare::CompareArgs),
-    /// Simulate every published figure and compare.
+    /// Simulate every published figure, and compare the result with the published value.
     Figures(figures::FiguresArgs),
     Readings(readings::ReadingsArgs),
     /// Find the largest number of triangles that a pipeline draws in time.
@@ -108,11 +108,11 @@ enum Command {
     Merge(merge::MergeArgs),
     /// Plot the results of a sweep or a comparison with intervals: SVG, PNG or PDF, and the numbers as CSV.
     Plot(plot::PlotArgs),
-    /// Measure latency from outside with a pendulum and photodiodes, and compare with the system's time stamps.
+    /// Measure the latency of a pipeline from outside with a pendulum and photodiodes.
     Rig(rig::RigArgs),
     /// Compare two results: settings, numbers and pictures.
     Diff(diff::DiffArgs),
-    /// Write one HTML page of a results folder.
+    /// Write one HTML page with the results of a folder.
     Report(report::ReportArgs),
     /// Run one experiment and write a trace of all events.
     Trace(trace::TraceArgs),
@@ -126,7 +126,7 @@ enum Command {
     Arp(arp::ArpArgs),
     /// Assemble, disassemble and run programs of the graphics processor's CPU.
     I860(i860::I860Args),
-    /// Print how to cite the software and the papers.
+    /// Print how to cite this software, and the papers about the machine and its pipelines.
     Cite(cite::CiteArgs),
     /// Print a completion script for a shell.
     Completions(completions::CompletionsArgs),
@@ -215,15 +215,15 @@ mod tests {
     use super::*;
     use clap::CommandFactory;
 
-    /// Returns the lines of a text that begin with the command `pxpl5`, split into words. Lines that end in a backslash
-    /// are joined. Comments and shell variables are replaced.
+    /// Returns the command lines in a text that begin with `pxpl5`, each split into words. A backslash at the end of a
+    /// line joins the line with the next line.
     fn commands(text: &str) -> Vec<Vec<String>> {
         let joined = text.split("\\\n").map(str::trim).collect::<Vec<_>>().join(" ");
         let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
         lines.map(words).collect()
     }
 
-    /// Returns the words of a command line, without the explanation that follows the command.
+    /// Splits a command line into words. Removes quotes, comments, redirections, and an explanation after three spaces.
     fn words(line: &str) -> Vec<String> {
         let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
         // Help texts separate an explanation by three spaces.

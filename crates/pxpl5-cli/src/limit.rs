@@ -43,21 +43,21 @@ pub(crate) struct LimitArgs {
     /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel.
     #[arg(long)]
     display: Option<String>,
-    /// Triangles: full-screen, typical (small ones that touch 1.3 regions on average), or a built-in scene or model
-    /// file that is decimated evenly. Default: full-screen for pipelines that send all triangles to every region,
-    /// typical for all others.
+    /// Triangles to draw: full-screen, typical (small triangles that touch 1.3 regions on average), or a scene that is
+    /// decimated evenly (a built-in scene or a model file). Default: full-screen for pipelines that send all triangles
+    /// to every region, otherwise typical.
     #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
     scene: Option<String>,
-    /// Setting that is varied: triangles, or any numeric key of an experiment file, such as machine.n_gps; default
-    /// triangles. The default pipeline is slats for triangles, and rendering-control for other settings.
+    /// Setting to vary: triangles, or any numeric key of an experiment file, such as machine.n_gps; default triangles.
+    /// The default pipeline is slats for triangles, and rendering-control for other settings.
     #[arg(long, value_name = "KEY")]
     over: Option<String>,
-    /// Smallest value of --over that is tried; default: for numbers of boards 1, otherwise the smallest value that the
-    /// sources allow.
+    /// Smallest value of --over to try; default: 1 for numbers of boards, otherwise the smallest value of the range
+    /// that the papers support.
     #[arg(long, value_name = "VALUE", requires = "over")]
     from: Option<f64>,
-    /// Greatest value of --over that is tried. Default: for numbers of boards the number in the largest preset,
-    /// otherwise the greatest value that the sources allow.
+    /// Greatest value of --over to try. Default: for numbers of boards the number in the largest preset, otherwise the
+    /// greatest value of the range that the papers support.
     #[arg(long, value_name = "VALUE", requires = "over")]
     to: Option<f64>,
     /// Goal: at least this many updates per second.

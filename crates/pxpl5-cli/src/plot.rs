@@ -21,8 +21,9 @@ use std::path::{Path, PathBuf};
 /// Plot the results of a sweep or a comparison with intervals, and write the numbers to a second file.
 ///
 /// The command writes three files: the figure, FIG.csv and FIG.json. For every point, FIG.csv has the mean, the
-/// standard deviation, n and the interval of the mean. The interval is Student's t; for positive values it is computed
-/// from their logarithms. Rows of a comparison keep the interval and the method of that comparison. FIG.json states the results and options from which the figure was made.
+/// standard deviation, the number of values (n) and the confidence interval of the mean. The interval is Student's t
+/// interval; for positive values it is computed from their logarithms. Rows of a comparison keep the interval and the
+/// method of that comparison. FIG.json states the results and options from which the figure was made.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 plot out/slats --x triangles --y missed_retraces --by copy --where code=1994 --out fig.svg
@@ -36,10 +37,10 @@ pub(crate) struct PlotArgs {
     /// Results of `pxpl5 sweep --out` or `pxpl5 compare --out`: the folder, or its rows.jsonl or comparison.json.
     #[arg(value_name = "DIR|FILE")]
     results: PathBuf,
-    /// Column on the x axis, a number or a name.
+    /// Column for the x axis, with numbers or names.
     #[arg(long, value_name = "COLUMN")]
     x: String,
-    /// Column on the y axis, a number.
+    /// Column for the y axis, with numbers.
     #[arg(long, value_name = "COLUMN")]
     y: String,
     /// Draw a separate curve for each value, or combination of values, of these columns.

@@ -24,7 +24,7 @@ use std::fmt::Write;
   pxpl5 readings --best 5 --rows 40
   pxpl5 readings --json > readings.json")]
 pub(crate) struct ReadingsArgs {
-    /// Number of interpretations, from the best on, that are also simulated with events.
+    /// Number of the best interpretations that are also simulated at the transaction level.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = whole::<u64>(0, 256))]
     best: u64,
     /// Number of interpretations printed for each level.
@@ -39,7 +39,7 @@ pub(crate) struct ReadingsArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Print nothing but errors (and the object of --json).
+    /// Print nothing but errors and, with --json, the JSON object.
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]

@@ -13,7 +13,7 @@ use files::Files;
 use pxpl5::views::page;
 use std::path::PathBuf;
 
-/// Write one self-contained HTML page of a results folder.
+/// Write one self-contained HTML page with the results of a folder.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 run --pipeline slats --scene mig --triangles 140 --out out/mig

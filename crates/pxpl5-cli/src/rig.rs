@@ -20,8 +20,9 @@ use std::fmt::Write;
 ///
 /// A tracker on a pendulum's bob feeds the host. When the host detects the low point, the host starts a frame. Frames
 /// alternate between dark and light under a photodiode in the middle of a line of the screen. The pipeline draws
-/// nothing else, so it is never full. Displays that follow the head's rotation and frameless rendering are refused,
-/// because their light does not identify a frame. A disagreement between outside and inside measurements is an error.
+/// nothing else, so a frame never waits for earlier frames. Displays that follow the head's rotation and frameless
+/// rendering are refused, because their light does not identify a frame. A disagreement between outside and inside
+/// measurements is an error.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 rig --pipeline rendering-control
@@ -33,7 +34,7 @@ do not apply.")]
 pub(crate) struct RigArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Number of the pendulum's low points to measure, 2 to 10,000.
+    /// Number of passes of the pendulum through its low point to measure, 2 to 10,000.
     #[arg(long, default_value_t = PASSES as u64, value_name = "N", value_parser = whole::<u64>(2, 10_000))]
     passes: u64,
     /// Position of the photodiode: line of a field on the screen, 0 at the top; default 120, the middle of NTSC's 240.

@@ -51,8 +51,8 @@ pub(crate) struct RunArgs {
     snapshot: SnapshotArgs,
     #[command(flatten)]
     budget: BudgetArgs,
-    /// Also print the effect of 10 % more of each resource: by the pipeline's closed-form formula if it applies,
-    /// otherwise by six more runs.
+    /// Also print the effect of 10 % more of each resource. The effect comes from the pipeline's closed form if the
+    /// form applies, otherwise from six more runs.
     #[arg(long)]
     what_if: bool,
     /// Also print the definitions of latency and of a picture that is due.
@@ -61,7 +61,7 @@ pub(crate) struct RunArgs {
     /// Print the report as one JSON object.
     #[arg(long)]
     json: bool,
-    /// Print nothing but errors (and the object of --json).
+    /// Print nothing but errors and, with --json, the JSON object.
     #[arg(long, short)]
     quiet: bool,
 }

@@ -41,13 +41,13 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = signed)]
     renderers: Option<i64>,
     /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED,
-    /// walk:M_PER_S along the scene's path (walk:M_PER_S:SEED looks around as synthetic:SEED) or a recording. A
-    /// recording is a FILE.csv, .txt, .tum or .jsonl with time_s,x,y,z,qw,qx,qy,qz, in the format of EuRoC or TUM, a
-    /// pose log, or any table with --columns.
+    /// walk:M_PER_S along the scene's path, walk:M_PER_S:SEED (a walk that looks around as synthetic:SEED does), or a
+    /// recording. A recording is a FILE.csv, .txt, .tum or .jsonl: a table with time_s,x,y,z,qw,qx,qy,qz, a file of
+    /// EuRoC or TUM, a pose log, or any table with --columns.
     #[arg(long, alias = "motion", value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
-    /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz (t, t_ms, t_us or
-    /// t_ns; x or x_mm).
+    /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz. The time is t,
+    /// t_ms, t_us or t_ns; positions are x,y,z or x_mm and so on.
     #[arg(long, value_name = "FIELD=COLUMN,...")]
     columns: Option<String>,
     /// Distance from the eye, in metres, at which pixel errors are evaluated; default: the distance of the scene's
@@ -61,20 +61,20 @@ pub(crate) struct SettingArgs {
     /// Predictor of the head's pose: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
-    /// Meaning of the poses of --head: scene (the motion begins where the scene's own motion begins) or world (the poses
-    /// are metres in the scene's coordinates); default scene.
+    /// Meaning of the poses of --head: scene (the motion begins where the scene's own motion begins) or world (the
+    /// poses are metres in the scene's coordinates); default scene.
     #[arg(long)]
     place: Option<String>,
     /// Instant during a picture's display for which the head's pose is predicted: middle, first-pixel, last-pixel or
     /// retrace; default middle.
     #[arg(long)]
     aim: Option<String>,
-    /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel; default ntsc. (plain and vdrt set
-    /// --raster.)
+    /// Display of the pipeline's pictures: ntsc, hires, oled-90, lcd-120 or panel; default ntsc. Also plain and vdrt,
+    /// with the meaning of --raster.
     #[arg(long)]
     display: Option<String>,
-    /// Raster of a tracked head's display: plain or vdrt (shifted by the error of the predicted pose). With shift,
-    /// rotation or depth a device moves pictures to the newest pose. Default plain.
+    /// Correction of the picture at scan-out, for a tracked head; default plain (none). vdrt shifts the raster by the
+    /// error of the predicted pose. With shift, rotation or depth, a device moves the picture to the newest pose.
     #[arg(long)]
     raster: Option<String>,
     /// Number of display periods to simulate: NTSC fields of 1/60 s; default 120.
@@ -86,7 +86,7 @@ pub(crate) struct SettingArgs {
     /// Pixels that are computed: off, lazy (only pixels that are read) or all; default lazy.
     #[arg(long)]
     pixels: Option<String>,
-    /// Seed of the sway in the head motion, or with --head of the tracker's noise; default 1.
+    /// Seed of the random sway of the head or, with --head, of the tracker's noise; default 1.
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = signed)]
     seed: Option<i64>,
     /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000 or tracking.optical.latency=20; `pxpl5

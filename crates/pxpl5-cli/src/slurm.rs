@@ -295,8 +295,8 @@ mod tests {
 
     const SAMPLED: Sample = Sample { points: 20_000, mean_s: 0.9, most_s: 3.0, most_bytes: 40e6 };
 
-    /// Tests the formulas. 20,000 points of 0.9 s are 18,000 s: 20 tasks of 900 s on one thread. The next number
-    /// without a common factor with 20,000 = 2^5 5^4 is 21.
+    /// Tests the resources of a job array. 20,000 points of 0.9 s take 18,000 s, which is 20 tasks of 900 s on one
+    /// thread. The number of tasks must have no common factor with 20,000 = 2^5 5^4, so the next number is 21.
     #[test]
     fn resources_follow_the_formulas() {
         let one = Resources::of(SAMPLED, None, 1);

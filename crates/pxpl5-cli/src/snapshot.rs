@@ -26,8 +26,8 @@ pub(crate) struct SnapshotArgs {
     /// File into which the checkpoint is saved.
     #[arg(long, value_name = "FILE", requires = "save_at")]
     save: Option<PathBuf>,
-    /// Resume from a checkpoint. The run is repeated without pixels up to the saved field, compared with the checkpoint,
-    /// and continued.
+    /// Resume a run from a checkpoint. The run is repeated without pixels up to the saved field, compared with the
+    /// checkpoint, and continued.
     #[arg(long, value_name = "FILE")]
     restore: Option<PathBuf>,
 }

@@ -47,7 +47,7 @@ pub(crate) struct SweepArgs {
 /// The file of a sweep, and the folder that stores its rows.
 #[derive(Args, Debug)]
 pub(crate) struct SweepFolderArgs {
-    /// File of settings with a table `sweep`.
+    /// File of settings. Its table `sweep` describes the points.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Folder for rows.jsonl, times.jsonl and results.csv.
@@ -56,7 +56,7 @@ pub(crate) struct SweepFolderArgs {
     /// Keep the finished points and run only the others.
     #[arg(long)]
     resume: bool,
-    /// Run only share I of N disjoint shares of the points.
+    /// Run only shard I of N. Each of the N shards has its own points.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     pub(crate) shard: Shard,
     /// Set any key of the file for all points; may be repeated.

@@ -43,7 +43,7 @@ enum VolumeCommand {
     Compare(compare::CompareArgs),
     /// Draw a volume at every point of a parameter space.
     Sweep(sweep::SweepArgs),
-    /// Compare the paper's figures with the model and redraw its drawings.
+    /// Compare the figures of the SpatialGL paper with the model, and redraw the drawings of the paper.
     Figures(figures::FiguresArgs),
 }
 

@@ -84,9 +84,9 @@ fn rows_of_other_settings_are_refused_and_the_key_is_named() {
     for (more, key) in [
         (&["--set", "machine.gp.triangle_ns=20000"][..], "machine.gp.triangle_ns was not set, expected 20000"),
         (&["--set", "hmd.near=0.1"], "hmd.near was not set, expected 0.1"),
-        (&["--confidence", "0.9"], "--confidence was 0.95, expected 0.9"),
-        (&["--until-precision", "10%"], "--max-seeds was none, expected 50"),
-        (&["--seed", "3"], "--seeds was [1, 2], expected [3, 4]"),
+        (&["--confidence", "0.9"], "confidence was 0.95, expected 0.9"),
+        (&["--until-precision", "10%"], "max_seeds was none, expected 50"),
+        (&["--seed", "3"], "seeds was [1, 2], expected [3, 4]"),
     ] {
         let refused = folder.run(&with(&[&["--out", "o", "--resume"], more].concat()));
         assert_eq!(refused.status.code(), Some(2), "{more:?}");
@@ -103,7 +103,8 @@ fn rows_of_other_settings_are_refused_and_the_key_is_named() {
     assert!(err(&damaged).contains("rows.jsonl, line 2: expected a row of a comparison"), "{}", err(&damaged));
 }
 
-/// Writes a recording of a head that turns back and forth, one pose for each hundredth of a second, from 0 to `hundredths`.
+/// Writes a recording of a head that turns back and forth, one pose for each hundredth of a second, from 0 to
+/// `hundredths`.
 fn recording(folder: &Folder, name: &str, hundredths: u32) {
     let mut text = "time_s,x,y,z,qw,qx,qy,qz\n".to_owned();
     for n in 0..=hundredths {

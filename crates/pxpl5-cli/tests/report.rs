@@ -230,7 +230,8 @@ fn fields_that_a_run_needs_are_told_of_every_pipeline() {
     }
 }
 
-/// Tests that `diff` compares only pictures that the manifests of both folders list, and keeps the numbers of both runs.
+/// Tests that `diff` compares only pictures that the manifests of both folders list, and keeps the numbers of both
+/// runs.
 #[test]
 fn a_difference_is_of_two_runs_and_not_of_what_lies_beside_them() {
     let folder = Folder::new("diff-manifest");

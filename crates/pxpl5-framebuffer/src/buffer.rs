@@ -195,7 +195,8 @@ mod tests {
         }
     }
 
-    /// Returns the target of a region for the test. `random` selects one of four combinations of lines and grid.
+    /// Returns the destination of a random region. The low bits of `random` select the lines and the grid, and the high
+    /// bits select the region.
     fn target(picture: u64, random: u64) -> CopyTarget {
         let cut = |region_width, region_height| RegionGrid { width: 640, height: 240, region_width, region_height };
         let (lines, grid) = [
@@ -209,7 +210,7 @@ mod tests {
         CopyTarget { frame_buffer: NodeId(7), buffer: 0, lines, grid, region, picture }
     }
 
-    /// Reference model: writes the picture number of a region into all its pixels, without the function `segments`.
+    /// Reference model of `segments`: writes the picture number of a region into all pixels of the region.
     fn paint(frame: &mut [u64], target: &CopyTarget) {
         let [left, top, width, height] = target.grid.rectangle(target.region);
         for row in top..top + height {
@@ -228,8 +229,8 @@ mod tests {
         frame
     }
 
-    /// A search removes exactly the regions without a visible pixel. Between two searches, the number of kept regions
-    /// stays limited.
+    /// Tests that the buffer discards exactly those regions whose pixels later regions have all overwritten. The number
+    /// of regions in the buffer must stay limited.
     #[test]
     fn discarded_regions_are_exactly_those_that_later_regions_cover() {
         let video = crate::FrameBufferConfig::NTSC.video.video().expect("valid");

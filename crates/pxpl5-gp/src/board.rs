@@ -393,7 +393,7 @@ mod tests {
         }
     }
 
-    /// Echoes each message to its sender after 100 ns of work.
+    /// Sends each message back to its sender after 100 ns of work.
     async fn echo(gp: Gp) -> Result<(), Fault> {
         loop {
             let received = gp.receive().await;
@@ -410,7 +410,7 @@ mod tests {
         board
     }
 
-    /// Runs the board on the bench. Every message is accepted as soon as it has left the board.
+    /// Simulates the board until it sends nothing more. Each message of the board is accepted at once.
     fn run(board: &mut GpBoard, bench: &mut TestBench<GpEvent, GpOutput>) {
         let mut told = 0;
         loop {

@@ -170,7 +170,6 @@ mod tests {
     use crate::{CodeVersion, GpBoard, GpEvent, GpOutput, GpTiming};
     use pxpl5_sim::{Phase, TestBench, Time};
 
-    /// Sends each message back to its sender.
     async fn echo(gp: Gp) -> Result<(), Fault> {
         loop {
             let received = gp.receive().await;
@@ -178,8 +177,7 @@ mod tests {
         }
     }
 
-    /// Waits for a message without spending its CPU time. The message is thus in the inbox when the other program stops
-    /// the board.
+    /// Waits forever, so that messages stay in the inbox until the interrupt program reads them.
     async fn wait(gp: Gp) -> Result<(), Fault> {
         gp.until("nothing", || None::<()>).await;
         Ok(())
@@ -197,8 +195,7 @@ mod tests {
         board
     }
 
-    /// Sends messages of the given lengths to a board. Returns the busy time of the board and the number of messages
-    /// that it has sent.
+    /// Sends messages of `lengths` words to a board. Returns the CPU time of the board and the number of its replies.
     fn fed(board: &mut GpBoard, lengths: &[usize]) -> (Span, usize) {
         let mut bench: TestBench<GpEvent, GpOutput> = TestBench::new();
         for (number, words) in (1..).zip(lengths) {

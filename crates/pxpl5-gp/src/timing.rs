@@ -244,8 +244,8 @@ mod tests {
         assert_eq!(HostTiming::PAPERS.out_of_range(), []);
     }
 
-    /// The fitted times of primitives follow from published limits of triangles. These times may lie outside the range
-    /// of plausible times for PPHIGS, but must lie within the limits of the model.
+    /// Tests the presets of Slats. Their times were fitted to published limits of triangles, so they can lie outside
+    /// the plausible range for PPHIGS. They must lie within the limits of the model.
     #[test]
     fn every_preset_is_within_the_limits() {
         for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
@@ -253,9 +253,9 @@ mod tests {
         }
     }
 
-    /// The times of 30.0 and 55.8 us are fitted to the published limits: 110 triangles in 1994, 100 triangles in 1995.
-    /// The third time is a third of the time of 1994. I3D95 expects this time for code that fits the instruction cache.
-    /// Slats has no bins, so a bin entry takes no time.
+    /// Tests the times per triangle: 30.0 us fits the published limit of 110 triangles (1994), and 55.8 us fits 100
+    /// triangles (1995). I3D95 expects a third of the time of 1994 for code that fits the instruction cache. Slats has
+    /// no bins, so a bin entry takes no time.
     #[test]
     fn slats_takes_what_its_published_limits_ask_for() {
         let presets = [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED];
@@ -263,8 +263,8 @@ mod tests {
         assert_eq!(times, [30_000, 55_800, 10_000].map(|ns| [ns, ns, 0]));
     }
 
-    /// A table with times of i860 code replaces every time of the base table. A test of pxpl5-lab compares the replaced
-    /// times with the code.
+    /// Tests the timing tables with times of i860 code. They must replace every time of the published table that i860
+    /// code determines.
     #[test]
     fn tables_of_code_leave_no_time_of_code_as_it_was() {
         let mut before = GpTiming::PAPERS;

@@ -85,7 +85,7 @@ mod tests {
 
     const SCHEDULED: Option<CodeVersion> = Some(CodeVersion::Scheduled);
 
-    /// Work whose i860 code is a loop with this number of iterations. For `None`, the code traps.
+    /// Test work: i860 code with a loop of so many iterations. Without a number, the code executes a trap.
     struct Turns(Option<u32>);
 
     impl Work for Turns {
@@ -127,7 +127,8 @@ mod tests {
         assert_eq!(twenty.0 - ten.0, 10 * 4 * Processor::CLOCK.0);
     }
 
-    /// Regression test: a change of the timing table by one nanosecond must not decide whether the code runs.
+    /// Regression test: a timing table that differs from the published table by one nanosecond must not turn off the
+    /// i860 code.
     #[test]
     fn a_changed_time_per_triangle_still_runs_the_code() {
         let table = run(GpTiming::PAPERS, SCHEDULED, Some(10)).busy();
@@ -148,7 +149,7 @@ mod tests {
         assert_eq!(fault, "graphics processor at node 5: trap at 0x00001010: trap instruction");
     }
 
-    /// Writes data to the memory of the i860 at an address and reads the data back.
+    /// Writes a word to the i860's memory at `address`, and checks that the word can be read.
     async fn install(gp: Gp, address: u32) -> Result<(), crate::Fault> {
         gp.install(|processor| processor.write(address, &[7]))?;
         gp.install(|processor| {

@@ -326,7 +326,7 @@ mod tests {
         computes_all_pixels: false,
     };
 
-    /// Measured runs under `/usr/bin/time`: the work and the peak memory in MB.
+    /// Measured runs: the work, and the peak memory in MB as `/usr/bin/time` reports it.
     const MEASURED: [(RunWork, f64); 12] = [
         (SMALL, 13.8),
         (RunWork { fields: 12_000, keeps_everything: true, ..SMALL }, 61.4),
@@ -357,8 +357,8 @@ mod tests {
         }
     }
 
-    /// Tests the estimated times of the runs in `MEASURED`, which were measured on two busy cores. An estimate must lie
-    /// between a tenth of the measured time and twice the measured time.
+    /// Tests the estimated time of four runs whose time was measured on a busy computer. The estimate must be 0.1 to 2
+    /// times the measured time.
     #[test]
     fn time_is_estimated_between_a_tenth_and_the_double_of_a_busy_computer() {
         for (work, seconds) in [
@@ -385,7 +385,8 @@ mod tests {
         assert!(RunWork { block: 16, batch: 5, ..SMALL }.estimate().bytes > least.bytes);
     }
 
-    /// Studies with their measured CPU seconds and peak memory in MB. No constant was fitted to the last two studies.
+    /// Measured studies: the study, its CPU time in seconds, and its peak memory in MB. The last two studies were not
+    /// used to fit the constants of the estimates.
     const STUDIES: [(Study, f64, f64); 11] = [
         (Study::Figures, 36.1, 280.0),
         (Study::Readings { seeds: 6, frames: 150, best: 20 }, 69.8, 52.7),

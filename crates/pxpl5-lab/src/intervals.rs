@@ -321,8 +321,8 @@ mod tests {
     use super::*;
     use crate::figures::{Figure, FigureValue};
 
-    /// Returns row 2 of ACCURACY.md, published as 31.2 ms. The analytic level gives an interval of 20 to 22 ms, and 21
-    /// ms for the presets.
+    /// Returns row 2 of ACCURACY.md for a simulated value. The published value of this row is 31.2 ms. The interval of
+    /// the analytic level is 20 to 22 ms, with 21 ms for the presets.
     fn row_of_figure_2(simulated: f64) -> FigureRow {
         let figure: &Figure = FIGURES.iter().find(|figure| figure.id == "2").expect("listed");
         let interval = Interval {
@@ -367,8 +367,8 @@ mod tests {
         assert!(!rows[0].is_out_of_reach());
     }
 
-    /// Tests the photodiode's effect. The beam scans a field line by line. Two lines are 63.56 us apart, and 239 line
-    /// times separate the first line from the last.
+    /// Tests the effect of the line at which the photodiode is mounted. The last of the 240 lines lights 239 times
+    /// 63.56 us after the first line.
     #[test]
     fn the_figure_of_the_rig_moves_with_the_photodiode_as_the_beam_does() {
         let interval = of_rig(&Bench::new(Level::Analytic)).expect("it is measured");

@@ -326,7 +326,7 @@ mod tests {
     use super::*;
     use pxpl5_run::RenderingControl;
 
-    /// Compares three photodiodes in one run with three runs of one photodiode each.
+    /// Tests that one run with three photodiodes gives the same results as three runs with one photodiode each.
     #[test]
     fn photodiodes_of_one_run_measure_what_each_measures_alone() {
         let rig = Rig { passes: 4, ..Rig::assumed(TrackerConfig::optical_ceiling()) };

@@ -257,7 +257,7 @@ mod tests {
     use tracking::predict::PredictorKind;
     use tracking::tracker::TrackerConfig;
 
-    /// Returns a plan (checked experiment), a snapshot of the run at field 9, and the trace hash at the end of the run.
+    /// Runs an experiment. Returns its plan, its checkpoint at field 9, and its trace hash at the end.
     fn saved() -> (Plan, Snapshot, String) {
         let text = "pipeline = \"rendering-control\"\nscene = \"mig\"\ntriangles = 40\nfields = 24\nseed = 5\n";
         let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");
@@ -295,7 +295,8 @@ mod tests {
         assert_eq!(outcome.expect("it runs").report().trace_hash, end);
     }
 
-    /// An experiment that no file describes: its motion is a function.
+    /// Returns an experiment whose motion is a function, so no experiment file can describe it. The head turns at
+    /// `rate` rad/s.
     fn built_in_code(rate: f64) -> Experiment {
         let turn = move |s: f64| Pose { position: DVec3::ZERO, orientation: DQuat::from_rotation_y(rate * s) };
         let head = Head::new(Arc::new(from_fn(turn)), TrackerConfig::fastrak(), PredictorKind::None, 1);

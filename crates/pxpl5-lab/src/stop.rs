@@ -53,7 +53,8 @@ mod tests {
     use crate::{StudyError, readings};
     use pxpl5_run::{Goal, Level};
 
-    /// Tests that each study ends with the error of a stop, when its own report of progress stops the study.
+    /// Tests that each study returns the error `Stopped` after its stop flag was set. The flag is set at the first
+    /// report of progress.
     #[test]
     fn a_study_ends_with_an_error_soon_after_its_flag_is_set() {
         let is_stopped = |result: Option<ExperimentError>| matches!(result, Some(ExperimentError::Stopped(_)));

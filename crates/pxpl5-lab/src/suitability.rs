@@ -74,8 +74,8 @@ mod tests {
         }
     }
 
-    /// Tests that the start of a run finds the same missing resources as the simulation of a whole field. The machines
-    /// have all resources, or lack boards, or have too little memory for the programs.
+    /// Tests that the first instant of a run and the simulation of a whole field find the same missing resources. Some
+    /// of the machines lack boards or memory.
     #[test]
     fn the_begin_of_a_run_says_what_a_whole_field_says() {
         let small = |n_gps, n_renderers, memory_bytes| {

@@ -98,7 +98,6 @@ mod tests {
         assert_eq!(happening.to_string(), format!("{} renderer 3: copy command begins", Time(7)));
     }
 
-    /// Port 0 belongs to the host, and the following ports belong to the graphics processors.
     #[test]
     fn boards_with_processors_are_numbered_behind_the_host() {
         assert_eq!([0, 1, 4].map(Board::of_processor), [Board::Host, Board::Gp(0), Board::Gp(3)]);

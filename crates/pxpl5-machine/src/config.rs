@@ -186,8 +186,8 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the path is unknown, if the parameter is a fixed property of a chip, or if the value
-    /// has a fraction where an integer is expected.
+    /// Returns a [`SettingError`] if the path is unknown, if the parameter is a fixed property of a chip, or if the
+    /// value has a fraction where an integer is expected.
     pub fn set(&mut self, path: &str, value: impl Into<Value>) -> Result<(), SettingError> {
         let value = value.into();
         match path {
@@ -345,7 +345,7 @@ mod tests {
 
     pxpl5_sim::parameters::parameter_table! {
         struct Numbers {
-            /// A time within a range.
+            /// A time that is only used in this test.
             step_ns: 500, "ns", Assumed, 100..=900, "made up";
         }
     }

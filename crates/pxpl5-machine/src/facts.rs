@@ -57,8 +57,8 @@ mod tests {
         assert_eq!(host_line_facts(6, &Body::Commands(list)), [10, 6]);
     }
 
-    /// Published trace hashes depend on these codes: 2 means no surface, and surfaces from the third on have their
-    /// number plus 1.
+    /// Tests the number of a surface in the trace hash. Published hashes depend on these numbers: 0 and 1 for the first
+    /// two surfaces, 2 for no surface, then 3 and up.
     #[test]
     fn marks_are_told_with_their_surfaces_as_ever() {
         let surfaces = [Some(0), Some(1), None, Some(2), Some(3)];

@@ -225,8 +225,8 @@ mod tests {
 
     const EYES: [SurfaceId; 2] = [SurfaceId(0), SurfaceId(1)];
 
-    /// Returns an observation of two eyes that each swap every second period. The second eye swaps one period after the
-    /// first.
+    /// Returns the swaps of two eyes. Each eye swaps every second period, and the second eye swaps one period after the
+    /// first eye.
     fn stereo() -> Observation {
         let swap = |number: u64| {
             EYES.map(|surface| {

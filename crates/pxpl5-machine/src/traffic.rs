@@ -168,8 +168,7 @@ mod tests {
         assert_eq!(traffic.fifo_changes, [(0, Time(20), 5)]);
     }
 
-    /// Returns the value of a recorded quantity at an instant: the value of the last entry that is not later than the
-    /// instant.
+    /// Returns the value at `instant` from a list of changes, or `None` before the first change.
     fn at<T: Copy>(history: &[(Time, T)], instant: u64) -> Option<T> {
         history.iter().rev().find(|(time, _)| time.0 <= instant).map(|(_, state)| *state)
     }

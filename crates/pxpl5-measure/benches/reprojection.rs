@@ -1,6 +1,7 @@
 //! Host time of moving one picture to another pose on one thread: by rotation, and by the depths of its pixels.
 //!
-//! The limits are 4 ms for a rotation and 8 ms with depth for a picture of 640 x 480, and in proportion for other sizes.
+//! The limits are 4 ms for a rotation and 8 ms with depth for a picture of 640 x 480, and in proportion for other
+//! sizes.
 
 #![allow(missing_docs, reason = "the macros of criterion make public functions without any")]
 

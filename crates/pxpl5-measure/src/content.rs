@@ -258,7 +258,8 @@ mod tests {
         }
     }
 
-    /// Searches the smallest distance by stepping along the line, and compares it with `passes` and `meets_sphere`.
+    /// Tests the distance of a line from a sphere's centre against the smallest distance among 20,001 points of the
+    /// line.
     #[test]
     fn a_line_passes_a_centre_at_its_least_distance_and_enters_a_sphere_on_its_surface() {
         let centre = DVec3::new(0.5, -1.0, -6.0);

@@ -390,7 +390,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [640, 480];
 
-    /// Returns a picture in which the colour of every pixel encodes its position.
+    /// Returns a picture in which each pixel's colour contains the pixel's column and row.
     fn places() -> RgbImage {
         RgbImage::from_fn(SIZE[0], SIZE[1], |x, y| Rgb([(x >> 8) as u8 + 1 + 8 * (y >> 8) as u8, x as u8, y as u8]))
     }
@@ -405,7 +405,7 @@ mod tests {
         reproject_with_depth(&places(), &depths, &Hmd::unc(), &Pose::IDENTITY, now).expect("the size of the view")
     }
 
-    /// A head that has passed a wall two metres ahead sees nothing of it.
+    /// Tests a head that has moved 3 m ahead, past a wall at 2 m.
     #[test]
     fn a_wall_behind_the_eye_is_not_seen() {
         let now = Pose { position: DVec3::new(0.0, 0.0, -3.0), ..Pose::IDENTITY };
@@ -437,7 +437,8 @@ mod tests {
         assert_eq!(picture, places());
     }
 
-    /// A turn needs no depth, so all depths give the picture that the homography gives, up to the nearest pixel.
+    /// Tests that a rotation of the head moves a picture as the homography does, for any depth. Pixels may differ by
+    /// one column or row.
     #[test]
     fn a_turn_gives_the_picture_of_the_homography() {
         let now = Pose::facing(rotation::from_yaw_pitch_roll(0.05, -0.02, 0.01));
@@ -456,8 +457,9 @@ mod tests {
         }
     }
 
-    /// A step of t metres to the right moves a plane at z metres by f t / z pixels to the left. A near plane in front
-    /// of a far plane hides f t (1 / near - 1 / far) columns.
+    /// Tests a head that moves t metres to the right. A plane at the depth z moves f t / z pixels to the left, where f
+    /// is the focal length in pixels. To the right of a near plane, f t (1 / near - 1 / far) columns stay empty. The
+    /// near plane hid this part of the far plane.
     #[test]
     fn a_step_moves_planes_by_f_t_by_z_and_opens_the_difference() {
         let focal = Hmd::unc().focal_px();
@@ -478,8 +480,8 @@ mod tests {
         }
     }
 
-    /// Checks a picture that grows because the head approaches, and a slanted floor that is seen from above. Neither
-    /// picture may have cracks.
+    /// Tests a picture that grows as the head moves ahead, and a floor that slants away from the eye. No pixel inside
+    /// the picture may stay empty.
     #[test]
     fn surfaces_that_grow_or_lean_have_no_cracks() {
         let floor = |_: u32, y: u32| 1.6 * Hmd::unc().focal_px() as f32 / (y as f32 + 60.0);
@@ -492,7 +494,7 @@ mod tests {
         assert!(found.pixels().all(|pixel| place(pixel).is_some()), "magnified by 1.67");
     }
 
-    /// A device that takes a pose for each strip draws each strip from the rows that can lie in it.
+    /// Tests that strips with equal poses together give the same picture as one move of the whole picture.
     #[test]
     fn strips_of_one_pose_make_the_whole_picture_of_this_pose_in_frames_and_fields() {
         let now = Pose {

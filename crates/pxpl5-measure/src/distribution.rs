@@ -83,7 +83,7 @@ const fn middle(bin: u64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns numbers of different magnitudes in pseudo-random order.
+    /// Returns `n` numbers from about 1 to 1,000,000 in pseudo-random order.
     fn numbers(n: u64) -> impl Iterator<Item = f64> + Clone {
         (0..n).map(move |i| {
             let place = i * 7_919 % n;
@@ -115,7 +115,8 @@ mod tests {
         }
     }
 
-    /// Bins between 1 and 2 are 1/1024 wide. Bins between 4 and 8 are four times as wide.
+    /// Tests that the percentiles of a histogram are middles of bins. The bins are 1/1024 wide between 1 and 2, and
+    /// 4/1024 wide between 4 and 8.
     #[test]
     fn a_bin_stands_for_its_middle() {
         for (value, middle) in [(1.0, 1.0 + 1.0 / 2_048.0), (1.000_9, 1.0 + 1.0 / 2_048.0), (6.0, 6.0 + 4.0 / 2_048.0)]

@@ -442,7 +442,7 @@ mod tests {
     use tracking::predict::PredictorKind;
     use tracking::tracker::TrackerConfig;
 
-    /// A streaming observer that records the number of views in memory after each step of a run.
+    /// A streaming observer that counts the views in memory after each step of a run.
     #[derive(Debug, Default)]
     struct Watched {
         sum: ErrorSum,
@@ -460,7 +460,7 @@ mod tests {
         }
     }
 
-    /// A run that discards records must not have more views in memory at its end than after the first discard.
+    /// Tests that the number of views in memory does not grow during a run that discards records.
     #[test]
     fn what_is_held_of_a_run_does_not_grow_with_it() {
         for (name, scene, fields) in [
@@ -481,8 +481,8 @@ mod tests {
         }
     }
 
-    /// Evaluates five fields with a limit of three. The middle pixel of field n has an error of n pixels and n/8
-    /// degrees.
+    /// Tests an observer that stores three fields one by one and counts five. In field n, the middle pixel has an error
+    /// of n pixels and n/8 degrees.
     #[test]
     fn so_many_fields_are_kept_one_by_one_and_all_of_them_counted() {
         let mut collected = Collected::keeping(3, EyeSum::keeping(3, false, None));

@@ -188,7 +188,7 @@ mod tests {
     use tracking::tracker::TrackerConfig;
     use tracking::{Pose, SettingSink};
 
-    /// A head that slides to the right at 1 m/s and turns to the left at 1 rad/s.
+    /// A head that moves to the right at 1 m/s and turns to the left at 1 rad/s.
     #[derive(Clone, Copy, Debug)]
     struct SlidingTurn;
 
@@ -208,8 +208,8 @@ mod tests {
         }
     }
 
-    /// The reference casts rays into the scene from both poses. Both ways take the same picture, so they may differ by
-    /// the rounding to a pixel, and at the edges of objects.
+    /// Tests a picture that is moved with its depths against rays into the scene. The two pictures may differ at the
+    /// edges of objects, and elsewhere by one pixel because of rounding.
     #[test]
     fn a_mesh_with_depth_shows_what_rays_from_both_poses_find() {
         let registry = Registry::of_papers();

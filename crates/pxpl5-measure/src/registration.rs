@@ -242,7 +242,6 @@ mod tests {
         assert_eq!(middle(0, 7), DVec2::new(0.5, 7.5));
     }
 
-    /// Interpolates the positions of objects and the pose of the head with the same factor.
     #[test]
     fn between_two_moments_objects_and_head_are_the_same_part_of_the_way() {
         let moment = |at: u64| Moment { pose: Pose::at(DVec3::X * at as f64), objects_at: Time(at), measured_at: None };

@@ -329,7 +329,7 @@ mod tests {
     use pxpl5_renderer::Layout;
     use pxpl5_wire::{Body, swap_request};
 
-    /// Runs a program that requests the invalid buffer 2 of a double-buffered frame buffer `asks` times.
+    /// Tests a program that asks a display with the buffers 0 and 1 for buffer 2, `asks` times.
     #[test]
     fn displays_say_what_they_could_not_use_and_nothing_else() {
         for asks in [0, 1, 3] {

@@ -129,7 +129,7 @@ mod tests {
     use super::*;
     use tracking::rotation;
 
-    /// Returns a picture in which the colour of every pixel encodes its position.
+    /// Returns a picture in which each pixel's colour contains the pixel's column and row.
     fn places(width: u32, height: u32) -> RgbImage {
         RgbImage::from_fn(width, height, |x, y| Rgb([(x >> 8) as u8 + 1, x as u8, y as u8]))
     }
@@ -149,8 +149,8 @@ mod tests {
         }
     }
 
-    /// Under a turn to the left by angle a, column x (counted from the middle) shows the source column `f tan(atan(x /
-    /// f) - a)`.
+    /// Tests a head that turns to the left by the angle a. Column x then shows the old column f tan(atan(x / f) - a).
+    /// Columns are counted from the middle, and f is the focal length in pixels.
     #[test]
     fn under_a_turn_columns_come_from_where_the_tangents_say() {
         let view = Hmd::unc();

@@ -102,7 +102,7 @@ mod tests {
 
     const GRID: RegionGrid = RegionGrid { width: 256, height: 256, region_width: 128, region_height: 128 };
 
-    /// Returns a target in buffer 0. Region 3 of the grid is the lower right one.
+    /// Returns the destination of region 3, the lower right region, in buffer 0.
     fn target(lines: Lines, picture: u64) -> CopyTarget {
         let (frame_buffer, picture) = (NodeId(1), PictureNumber(picture));
         CopyTarget { frame_buffer, buffer: 0, lines, grid: GRID, region: RegionId(3), picture }

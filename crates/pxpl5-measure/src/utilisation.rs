@@ -238,7 +238,8 @@ mod tests {
         assert_eq!(Shares::of([Span(0)], Time::ZERO), None);
     }
 
-    /// A message counts at its end, so its time may extend beyond the end of a run by a few microseconds.
+    /// Tests a busy time that exceeds the time of the run. A message counts at its end, so it may end a few
+    /// microseconds after the run.
     #[test]
     fn no_share_is_above_one() {
         assert_eq!(share(Span(101), Time(100)), 1.0);

@@ -25,8 +25,8 @@ use tracking::{Pose, SettingSink};
 
 const FIELDS: u64 = 30;
 
-/// Time of an NTSC line: 780 pixel periods, of which the last 640 are visible. A field has 262.5 lines, and the first 22 are
-/// blanked. An odd field begins with half a line.
+/// Time of an NTSC line: 780 pixel periods, of which the last 640 are visible. A field has 262.5 lines, and the first
+/// 22 are blanked. An odd field begins with half a line.
 const LINE_S: f64 = 4004.0 / 63.0 * 1e-6;
 
 fn beam(field: u64, row: u64, x: f64) -> f64 {
@@ -224,7 +224,8 @@ fn a_global_display_is_right_everywhere_and_a_rolling_one_in_the_middle_of_its_s
         outcome.pixel_errors().expect("a head")
     });
     assert!(global.evaluated > 0 && global.pixels.max < 1e-3, "{}", global.pixels.max);
-    // A pixel lights by its number in the scan, of 96 lines of 128; the picture is drawn for half of the number of the last one.
+    // A pixel lights by its number in the scan, of 96 lines of 128; the picture is drawn for half of the number of the
+    // last one.
     let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
     let pixels = places(96).flat_map(|y| places(128).map(move |x| (x, y)));
     let expected = mean(pixels.map(|(x, y)| {

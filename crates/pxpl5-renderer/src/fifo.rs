@@ -476,7 +476,7 @@ mod tests {
 
     const WORD: Span = Span(50_000);
 
-    /// A reference model of the FIFO's rules, which handles one word at a time.
+    /// Reference model of the FIFO, which handles one word at a time.
     struct ReferenceFifo {
         depth: usize,
         held: VecDeque<Time>,

@@ -226,8 +226,7 @@ mod tests {
         }
     }
 
-    /// Returns the pixels of a region after a clear command with the background colour `colour`. `picture` is the
-    /// picture number of the region.
+    /// Returns the pixels of region 3 after the region was cleared to `colour`. `picture` is the number of the picture.
     fn cleared(pool: &Arc<ArrayPool>, colour: Word, picture: u64) -> Arc<[Word]> {
         let target = CopyTarget {
             frame_buffer: NodeId(9),

@@ -252,7 +252,7 @@ mod tests {
         assert_eq!(executed.clocks, u64::from(clocks));
     }
 
-    /// Eight random triangles, with commands before and after the triangles.
+    /// A batch of eight random triangles.
     #[derive(Debug)]
     struct SomeTriangles {
         layout: Layout,
@@ -284,8 +284,8 @@ mod tests {
             }
         }
 
-        /// Creates triangles that are a few columns wide and at least as many rows high. The triangles can cross the
-        /// borders of the region.
+        /// Returns triangles that are a few columns wide and at least as high. Some of them cross the borders of the
+        /// region.
         fn slim(layout: Layout, random: &mut Random, with_normals: bool) -> Self {
             let mut all = Self::random(layout, random, with_normals);
             for i in 0..LANES {
@@ -346,8 +346,8 @@ mod tests {
         }
     }
 
-    /// Draws each triangle twice, from command words and from a batch, on all vector units. Compares the two results
-    /// and returns the number of covered pixels.
+    /// Draws `rounds` batches, each from command words and from a list of triangles, with all vector units of this
+    /// computer. Checks that the pixels are equal, and returns the number of drawn pixels.
     fn covered_alike(rounds: u32, some: fn(Layout, &mut Random, bool) -> SomeTriangles) -> usize {
         let mut random = Random::new(20);
         let mut covered = 0;

@@ -338,7 +338,7 @@ impl SimdVector for PortableVector {
 mod tests {
     use super::*;
 
-    /// A test loop that shifts all lanes of a vector left and right.
+    /// Test code that shifts all integers of a vector to the right and to the left by `by` bits.
     struct Shifts {
         values: [u32; 16],
         by: u32,
@@ -376,10 +376,10 @@ mod tests {
         }
     }
 
-    /// Results of the operations of a vector unit, each with the name of the operation.
+    /// Results of the operations of a vector unit, each with the operation's name.
     type Done = Vec<(&'static str, Vec<u32>)>;
 
-    /// A test loop that applies every operation to integers in all lanes, and to rows of pixels.
+    /// Test code that applies every operation of a vector unit to integers and to rows of pixels.
     struct Everything {
         a: [u32; 16],
         b: [u32; 16],
@@ -439,7 +439,7 @@ mod tests {
     }
 
     impl Everything {
-        /// Computes the expected results of all operations, one integer at a time.
+        /// Returns the expected results, computed for one integer after the other without a vector unit.
         fn by_numbers(&self, lanes: usize) -> Done {
             let Self { a, b, c, rows } = self;
             let each = |f: &dyn Fn(usize) -> i32| -> Vec<u32> { (0..lanes).map(|k| f(k) as u32).collect() };

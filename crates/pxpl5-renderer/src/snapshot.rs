@@ -164,8 +164,8 @@ mod tests {
         Message { source: NodeId(0), destination: NodeId(1), words: list.words(), body: Body::Commands(list) }
     }
 
-    /// A renderer draws a region from the first started command until its copy command starts. The release of another
-    /// region from the backing store does not end the region.
+    /// Tests which region a renderer draws: from the first command of a region until its copy command. A copy of an
+    /// older region from the backing store, in between, changes nothing.
     #[test]
     fn a_region_is_drawn_from_its_first_command_to_its_copy_command() {
         let [select, clear, triangle, copy] =

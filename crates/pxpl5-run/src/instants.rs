@@ -136,7 +136,7 @@ mod tests {
         }
     }
 
-    /// Steps of two and three fields in turn, each rounded down to a picosecond, take at most three bytes.
+    /// Tests the memory for instants that are two or three fields apart, in turn: at most three bytes for each instant.
     #[test]
     fn even_steps_take_three_bytes_at_most() {
         let field_ps = |n: u64| n * 1_001_000_000_000 / 60;

@@ -83,7 +83,8 @@ mod tests {
     }
 
     proptest! {
-        /// The reference model is a list of all reports. Several reports may arrive at the same poll of a kernel.
+        /// Tests a schedule that discards old tracker reports against a list of all reports. Several reports can arrive
+        /// at one instant.
         #[test]
         fn discarded_reports_are_not_needed_for_later_instants(
             mut all in proptest::collection::vec(0u64..200, 0..60), questions in proptest::collection::vec(0u64..220, 1..60),

@@ -73,7 +73,7 @@ mod tests {
 
     const INTERVAL_PS: u64 = 40_000_000_000;
 
-    /// Tunes once with the cache and once without it. The results must be equal for every difference that matters.
+    /// Tests that a tuning from the cache equals a new tuning, for different motions, trackers, intervals and seeds.
     #[test]
     fn a_shared_tuning_is_the_tuning_of_a_head_alone() {
         let tunings = Tunings::default();

@@ -163,7 +163,8 @@ proptest! {
     }
 }
 
-/// Decimates to numbers in an order in which later calls continue from states of earlier calls, and in which they cannot.
+/// Decimates to numbers in an order in which later calls continue from states of earlier calls, and in which they
+/// cannot.
 #[test]
 fn a_decimation_that_goes_on_from_an_earlier_one_gives_the_same_scene() {
     for (name, numbers) in [

@@ -1,5 +1,5 @@
-//! glTF files made by a writer of this test. Expected values are the numbers that the writer was given. Transforms of the
-//! glTF 2.0 specification are worked out by hand. Colours come from the sRGB transfer function.
+//! glTF files made by a writer of this test. Expected values are the numbers that the writer was given. Transforms of
+//! the glTF 2.0 specification are worked out by hand. Colours come from the sRGB transfer function.
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;

@@ -107,7 +107,7 @@ mod tests {
     }
 
     proptest! {
-        /// About half of the tested edges need more than 64 bits.
+        /// Tests the fast path in 64 bits. About half of the random edges need the 128 bits of the slow path.
         #[test]
         fn an_edge_is_the_same_in_64_bits_as_in_128(period_bits in 1u32..64, bits in 0u32..64, seed: [u64; 3]) {
             let [numerator, denominator] = [seed[0] >> (64 - period_bits), seed[1] >> (64 - period_bits)];

@@ -137,7 +137,7 @@ impl<E, O> TestBench<E, O> {
 mod tests {
     use super::*;
 
-    /// A device that outputs the number of each event 10 ps after the event. Event 3 also schedules event 2.
+    /// A device that outputs the number of an event 10 ps after the event. Event 3 also schedules event 2 after 5 ps.
     fn echo(event: u32, context: &mut Context<u32, u32>) {
         context.output(context.now() + Span(10), event);
         if event == 3 {

@@ -273,9 +273,8 @@ mod tests {
         assert_ne!(order_of_ties(1), (0..100).collect::<Vec<_>>());
     }
 
-    /// The test counts the different first events of 64 shuffled queues of 100 events. A fair shuffle gives 100 (1 -
-    /// 0.99^64) = 47 on average, with a standard deviation of 3. Seeds with very few or very many set bits must give
-    /// similar counts.
+    /// Tests the shuffle with seeds that differ in one bit. Each of 64 seeds shuffles 100 events. A fair shuffle has
+    /// 100 (1 - 0.99^64) = 47 different first events on average, with a standard deviation of 3.
     #[test]
     fn seeds_that_are_nearly_the_same_shuffle_as_fairly_as_any() {
         for bits in [0, u64::MAX] {
@@ -293,10 +292,10 @@ mod tests {
         queue.schedule(Time(4), Phase::Work, ());
     }
 
-    /// Delay and phase of an event that the current event schedules.
+    /// Delay and phase of an event that an earlier event schedules.
     type Follow = (u64, u8);
 
-    /// Reference model: a queue that keeps all events in one sorted list.
+    /// Reference model: an event queue that searches a list for the first event.
     #[derive(Default)]
     struct Plain {
         waiting: Vec<(u64, u8, usize)>,
@@ -319,8 +318,8 @@ mod tests {
     }
 
     proptest! {
-        /// The test compares the queue with a sorted list. Events that are scheduled in phase `Work` for the current
-        /// instant test the separate path through `soon`.
+        /// Tests the queue against the reference model. The delays include 0, because the queue stores events of the
+        /// current instant separately.
         #[test]
         fn what_events_schedule_comes_as_from_a_sorted_list(
             begun in proptest::collection::vec((0u64..4, 0u8..3), 1..60),

@@ -64,7 +64,7 @@ impl SplitMix64 {
 mod tests {
     use super::*;
 
-    /// First outputs for the seed 1234567, as Vigna's reference program prints them.
+    /// First outputs of the generator for the seed 1234567, as printed by Vigna's reference program.
     const PUBLISHED: [u64; 5] = [
         6_457_827_717_110_365_317,
         3_203_168_211_198_807_973,

@@ -124,8 +124,8 @@ mod tests {
         assert!([mean, sd, min, max].iter().all(|number| number.is_nan()));
     }
 
-    /// Without removal of rounding effects, three times 0.1 has a mean of 0.10000000000000002 and a deviation of
-    /// 1.7e-17.
+    /// Tests equal numbers, whose deviation must be exactly 0. With rounding errors, three times 0.1 would have the
+    /// deviation 1.7e-17.
     #[test]
     fn what_does_not_vary_is_told_without_deviation() {
         for values in [[0.1; 3], [30.949_033_339, 30.949_033_340, 30.949_033_340]] {

@@ -144,7 +144,6 @@ mod tests {
         assert_eq!(span, Span(22));
     }
 
-    /// A field of NTSC video takes 1,001 / 60,000 s.
     #[test]
     fn a_field_is_told_in_milliseconds_and_printed_in_microseconds() {
         let field = Span(1_001_000_000_000_000 / 60_000);

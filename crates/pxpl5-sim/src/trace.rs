@@ -69,9 +69,8 @@ mod tests {
         assert_ne!(base, hash(&[(1, &[2, 3]), (1, &[4]), (1, &[4])]));
     }
 
-    /// The time and the described number of the record are equal. The mixed values of both are then equal too, so the
-    /// exclusive or of these values is 0. The hash is then the mix of 0, the first output of SplitMix64 with seed 0
-    /// (Vigna's reference program).
+    /// Tests a record whose only number equals its time. The hash mixes both, and their exclusive or is 0. The result
+    /// is the first output of SplitMix64 for the seed 0 (Vigna's reference program).
     #[test]
     fn a_fact_that_is_its_own_time_leaves_the_hash_of_zero() {
         for both in [0, 1, 1_234_567, u64::MAX] {

@@ -90,8 +90,7 @@ mod tests {
         assert_eq!(seconds(&FrameBufferConfig::NTSC), (1_001, 60_000));
     }
 
-    /// A line takes 4004/63 us, and a field has half of the frame's lines. With 625 lines, a field takes 625 x 4004 /
-    /// (2 x 63 x 10^6) s = 143/7200 s.
+    /// Tests the time of a field with half of 625 lines. A line takes 4004/63 us, so the field takes 143/7200 s.
     #[test]
     fn a_frame_of_625_lines_takes_longer_in_the_same_proportion() {
         let video = VideoTiming { frame_lines: 625, ..FrameBufferConfig::NTSC.video };

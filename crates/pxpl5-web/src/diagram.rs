@@ -115,8 +115,7 @@ mod tests {
         Session::new(&settings, &Files::default()).expect("known settings")
     }
 
-    /// Tests the order of work in TR94: first the graphics processors execute TRANSFORM, then renderers get commands,
-    /// then renderers copy regions to the frame buffers.
+    /// Tests the order of the stages in TR94: TRANSFORM, then commands on the ring, then RENDER, then COPY.
     #[test]
     fn stages_messages_and_regions_appear_in_the_order_of_the_paper() {
         let mut session = session("rendering-control");
@@ -142,15 +141,14 @@ mod tests {
         assert!(transform < commands && commands <= drawn && drawn < copied, "{first:?}");
     }
 
-    /// Returns the number of regions in a stage.
+    /// Returns the number of regions that are now in the stage `stage`.
     fn in_stage(stepper: &Stepper, stage: &str) -> usize {
         let all = regions(stepper);
         all.as_array().expect("a list").iter().filter(|region| region["stage"] == stage).count()
     }
 
-    /// TR94: a renderer draws a region, then copies the same region to the frame buffer of the same eye. Each region
-    /// has 20 triangles of 258 clocks, so drawing takes 129 us. A test that reads the state every 20 us therefore finds
-    /// each region.
+    /// Tests that a renderer copies the regions that it has drawn, to the frame buffer of the same eye. A region takes
+    /// 20 triangles of 258 clocks, 129 us together. Snapshots 20 us apart therefore show every region.
     #[test]
     fn a_region_is_copied_by_the_renderer_that_drew_it_and_where_it_was_drawn() {
         let settings = "pipeline=rendering-control\nscene=full-screen:20\nfields=60\n";
@@ -204,8 +202,8 @@ mod tests {
         assert!(seen > 100, "{seen}");
     }
 
-    /// TR94: Slats shows a picture for the pose of one field ago. The picture is thus one field old at the retrace, and
-    /// its age grows until the next retrace.
+    /// Tests the age of the shown picture under Slats: one field at the retrace (TR94), and two fields before the next
+    /// retrace.
     #[test]
     fn under_slats_a_picture_is_one_field_old_when_it_is_shown() {
         let mut session = session("slats");

@@ -181,7 +181,8 @@ mod tests {
         session
     }
 
-    /// The depth of a plane is linear on the screen, so that a plane has no edges.
+    /// Tests the outlines, which are drawn where the depth changes suddenly. The depth of a plane is linear on the
+    /// screen, so a plane has none.
     #[test]
     fn a_plane_that_covers_the_screen_has_no_outlines_and_an_aircraft_has() {
         let opaque =

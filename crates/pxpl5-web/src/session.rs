@@ -171,7 +171,7 @@ mod tests {
 
     const SETTINGS: &str = "pipeline=slats\nscene=full-screen:2\nfields=7\n";
 
-    /// The page reports the hash of an uninterrupted run, which is the hash that the command-line program prints.
+    /// Tests that a run of the web page in several steps has the trace hash of a single run.
     #[test]
     fn a_run_of_the_page_has_the_trace_hash_of_the_run() {
         let mut session = new(SETTINGS).expect("known settings");
@@ -193,7 +193,7 @@ mod tests {
         assert_eq!(session.state()["config_hash"], outcome.experiment().config_hash().to_string());
     }
 
-    /// Returns row `n` of a recording with sixty samples per second, as the page creates it.
+    /// Returns row `n` of a recording with 60 samples per second, in the format of the web page.
     fn row(n: u64) -> String {
         let half = f64::sin(n as f64 / 9.0) / 8.0;
         format!("{:.6},0,0,0,{:.9},0,{:.9},0\n", n as f64 / 60.0, half.cos(), half.sin())
@@ -207,8 +207,7 @@ mod tests {
         Files([(name.to_owned(), rows.into_bytes().into())].into_iter().collect())
     }
 
-    /// A link can repeat a session: the recorded motion gives the same run as the motion that the visitor made during
-    /// the session.
+    /// Tests that a run with live head motion can be repeated: the recording of this motion gives the same run.
     #[test]
     fn a_head_that_is_moved_while_the_machine_runs_is_its_recording() {
         for pipeline in
@@ -288,8 +287,9 @@ mod tests {
         assert!(session.step("pixel").is_err());
     }
 
-    /// TR94 gives the limit of Slats: about 140 triangles of any size. The Mig has ten times as many. For just-in-time
-    /// pixels, the decimated scene is shown in time, but a scene with twice as many triangles is not.
+    /// Tests the reports on scenes that are too large. Slats can draw about 140 triangles in a field (TR94), and the
+    /// Mig has ten times as many. For a scene that is too large, the page reports the number of triangles that would be
+    /// drawn in time. With just-in-time pixels, this number must be drawn in time, and twice this number must not.
     #[test]
     fn a_scene_that_is_too_heavy_is_reported_with_what_would_fit() {
         let misses_all = |settings: &str| {

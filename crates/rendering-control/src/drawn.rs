@@ -1,4 +1,5 @@
-//! The kind of pictures that the firmware draws: the part that Rendering Control and Cube control do not share.
+//! The interface between the programs of Rendering Control and the pictures that they draw: frames of a display, or
+//! faces of a cube.
 
 use crate::rules::Drawing;
 use pphigs::{FrameView, Pass, Picture, Share};
@@ -7,83 +8,86 @@ use pxpl5_wire::{Body, CopyContent, CopyTarget, NodeId, PictureNumber, RegionId,
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Content of the message that the host sends for a picture (SEND).
+/// The host's message for one picture (SEND).
 pub trait Sent: Clone + Debug + PartialEq + 'static {
     /// Returns the number of the picture.
     fn number(&self) -> PictureNumber;
 
-    /// Returns the view of the picture, with the edits of structures.
+    /// Returns the views of all eyes, with the edits of structures.
     fn view(&self) -> &FrameView;
 
-    /// Encodes the content as words.
+    /// Encodes the message as words.
     fn to_words(&self) -> Vec<Word>;
 
-    /// Decodes the content, or returns `None` for invalid words.
+    /// Decodes the message, or returns `None` if the words are invalid.
     fn from_words(words: &[Word]) -> Option<Self>;
 }
 
-/// A kind of pictures. A picture consists of one or more *drawings*, and each drawing passes TRANSFORM, RENDER and COPY
-/// alone.
+/// The kind of pictures that the programs draw: frames of a display, or faces of a cube.
+///
+/// A picture consists of one drawing for each eye. TRANSFORM, RENDER and COPY process one drawing after the other.
 pub trait Drawn: Clone + 'static {
-    /// Content of the host's messages.
+    /// The host's message for one picture.
     type Sent: Sent;
 
-    /// Number of views of a drawing. The regions of all views are counted one view after the other.
+    /// Number of views of a drawing, such as the six faces of a cube. The regions of all views are numbered together:
+    /// first the regions of view 0, then those of view 1, and so on.
     const VIEWS: u16 = 1;
 
     /// True if the master announces each drawing to its frame buffer before COPY. The announcement lists the regions
-    /// that will arrive, so empty regions are neither drawn nor copied. The announcement also requests the swap.
+    /// that will arrive and requests the swap. Empty regions are then neither drawn nor copied.
     ///
-    /// Otherwise all regions are copied, and the master requests a swap when the whole picture has arrived.
+    /// If false, all regions are copied, and the master requests the swap when the whole picture has arrived.
     const ANNOUNCES: bool = false;
 
-    /// Returns the parameters of the picture of one view.
+    /// Returns the viewport, shading and layout of a view.
     fn picture(&self) -> &Picture;
 
-    /// Returns the number of drawings in a picture: the number of eyes.
+    /// Returns the number of drawings in a picture, which is the number of eyes.
     fn eyes(&self) -> u64 {
         1
     }
 
-    /// Returns the contents of a pixel that are copied to the frame buffer.
+    /// Returns the parts of a pixel that are copied to the frame buffer, such as colour and depth.
     fn content(&self) -> CopyContent {
         CopyContent::Colour
     }
 
-    /// Returns the largest number of finished regions in the backing store of a renderer.
+    /// Returns the number of finished regions that a renderer may store in its backing store.
     fn regions_stored(&self) -> usize {
         0
     }
 
-    /// Returns the destination of a region of an eye.
+    /// Returns the destination of a region of the picture of `eye`: ring port, buffer, and place in the picture.
     fn target(&self, sent: &Self::Sent, eye: u64, region: RegionId) -> CopyTarget;
 
-    /// Returns the eye to whose frame buffer a port belongs. Returns `None` if the node is not a frame-buffer port.
+    /// Returns the eye of a frame buffer, found by the ring port `port`. Returns `None` if no frame buffer has this
+    /// port.
     fn eye_at(&self, port: NodeId) -> Option<u64>;
 
-    /// Returns the number of swaps so far, from the status signals of the frame buffers. The master looks for work when
-    /// the number increases.
+    /// Returns the number of swaps of the frame buffers so far. When the number increases, the master may begin new
+    /// work.
     fn swaps(&self, gp: &Gp) -> u64;
 
-    /// Returns the messages that announce a drawing to its frame buffer ([`Drawn::ANNOUNCES`]).
+    /// Returns the messages that announce a drawing to its frame buffer, if [`Drawn::ANNOUNCES`] is true.
     fn announcement(&self, _sent: &Self::Sent, _regions: &[RegionId]) -> Vec<(u32, Body)> {
         Vec::new()
     }
 
-    /// Returns the messages that request a swap after COPY of a picture.
+    /// Returns the messages that request the swap after COPY of a picture, if [`Drawn::ANNOUNCES`] is false.
     fn swap_requests(&self, _picture: PictureNumber) -> Vec<(NodeId, u32, Body)> {
         Vec::new()
     }
 
-    /// Returns the share of a slave with the vertices of a picture. The default leaves all vertices in place.
+    /// Returns a slave's share with the vertices of a picture. By default, all vertices stay in place.
     fn placed(&self, share: &Share, _sent: &Self::Sent) -> Share {
         share.clone()
     }
 
-    /// Transforms a share for all views of an eye's drawing.
+    /// Transforms the triangles and spheres of a share for the picture of `eye`. Returns one pass for each view.
     fn passes(&self, share: &Share, sent: &Self::Sent, eye: u64) -> Vec<Arc<Pass>>;
 
-    /// Returns the CPU work of TRANSFORM for these passes. `context` is the bin context of the drawing, 0 or 1.
+    /// Returns the CPU work of TRANSFORM. `context` is the index of the set of bins, 0 or 1.
     fn work(&self, share: &Share, sent: &Self::Sent, passes: &[Arc<Pass>], context: u8) -> impl Work;
 
     /// Returns the number of regions of a view.
@@ -91,17 +95,17 @@ pub trait Drawn: Clone + 'static {
         self.picture().viewport.grid().regions() as u16
     }
 
-    /// Returns the number of regions of a drawing.
+    /// Returns the number of regions of a drawing, which is the sum over its views.
     fn regions(&self) -> u16 {
         self.view_regions() * Self::VIEWS
     }
 
-    /// Returns the view that contains a region, and the index of the region within this view.
+    /// Returns the view that contains `region`, and the number of the region within this view.
     fn on_view(&self, region: RegionId) -> (usize, RegionId) {
         (usize::from(region.0 / self.view_regions()), RegionId(region.0 % self.view_regions()))
     }
 
-    /// Returns the number of entries in the bin of each region of a drawing.
+    /// Returns the number of entries in each region's bin.
     fn entries(&self, passes: &[Arc<Pass>]) -> Vec<u32> {
         let entries = |region: u16| {
             let (view, region) = self.on_view(RegionId(region));
@@ -111,18 +115,18 @@ pub trait Drawn: Clone + 'static {
     }
 }
 
-/// The boards that run the firmware, and the kind of pictures that they draw.
+/// Ring ports of the boards, and the kind of pictures that they draw.
 #[derive(Clone, Debug)]
 pub struct RenderingControlConfig<D> {
-    /// Ring port of the host, which sends views and edits.
+    /// Ring port of the host, which sends views and edits of structures.
     pub host: NodeId,
-    /// Ring port of the master, which begins every stage.
+    /// Ring port of the master, the graphics processor that permits each stage to begin.
     pub master: NodeId,
-    /// Ring ports of the slaves, at least one.
+    /// Ring ports of the slaves. There is at least one.
     pub slaves: Vec<NodeId>,
-    /// Ring ports of the renderers, at least one.
+    /// Ring ports of the renderers. There is at least one.
     pub renderers: Vec<NodeId>,
-    /// Kind and destination of the pictures.
+    /// Kind of pictures, with the ring ports to which they are copied.
     pub drawn: D,
 }
 
@@ -139,7 +143,7 @@ impl<D: Drawn> RenderingControlConfig<D> {
         drawing.eye(self.drawn.eyes())
     }
 
-    /// Returns the share of the primitives that the slave with index `index` holds.
+    /// Returns the share of the slave `index`: the triangles and spheres that it stores and transforms.
     #[must_use]
     pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(Arc::clone(list), index, self.slaves.len())

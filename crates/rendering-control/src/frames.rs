@@ -1,4 +1,4 @@
-//! Frames of one or two eyes, which Rendering Control draws into frame buffers (TR94).
+//! Frames of one or two eyes, which are drawn into frame buffers (TR94).
 
 use crate::drawn::{Drawn, Sent};
 use pphigs::{FrameView, Pass, Picture, Share, TransformWork};
@@ -6,23 +6,22 @@ use pxpl5_gp::{Gp, Work};
 use pxpl5_wire::{Body, CopyTarget, Lines, NodeId, PictureNumber, RegionId, Word, swap_request};
 use std::sync::Arc;
 
-/// Frames of one or two eyes in frame buffers that swap together.
+/// Frames of one or two eyes. The frame buffers of the eyes swap together.
 #[derive(Clone, Debug)]
 pub struct Frames {
-    /// First ring port of each frame buffer. A mono picture has one frame buffer. A stereo picture has one frame buffer
-    /// for the left eye and one for the right eye.
+    /// First ring port of the frame buffer of each eye: one port for a mono picture, and two ports for a stereo
+    /// picture.
     pub frame_buffers: Vec<NodeId>,
-    /// All ring ports of the frame buffers. The list starts with the first port of each frame buffer, followed by the
-    /// second ports, and so on. The regions of an eye use the ports of its frame buffer in turn.
+    /// All ring ports of the frame buffers: the first port of each frame buffer, then the second port of each, and so
+    /// on. The regions of an eye use the ports of the eye's frame buffer in turn.
     pub frame_buffer_ports: Vec<NodeId>,
-    /// Parameters of the picture that is drawn for each eye.
+    /// Viewport, shading and layout of the picture of each eye.
     pub picture: Picture,
-    /// Largest number of finished regions in the backing store of a renderer. A finished region waits there until its
-    /// frame buffer is available.
+    /// Number of finished regions that a renderer may store in its backing store until the frame buffer is available.
     ///
-    /// In the meantime, the renderer continues with the next region. With a value of 0, the renderer keeps a finished
-    /// region in pixel memory and waits until the region is copied. The size of the backing store limits the number to
-    /// `renderer.backing_bits / renderer.kept_bits`.
+    /// If the number is 0, a renderer keeps a finished region in pixel memory and waits until the region is copied.
+    /// Otherwise the renderer draws its next region in the meantime. The maximum is `renderer.backing_bits /
+    /// renderer.kept_bits`.
     pub regions_stored: usize,
 }
 
@@ -44,8 +43,8 @@ impl Sent for FrameView {
     }
 }
 
-/// Returns the index of the half of the frame buffer that receives a frame. This half is hidden while the frame is
-/// drawn. Half 0 is visible at the start.
+/// Returns the buffer into which a frame is drawn, 0 or 1. Buffer 0 is shown at the start, so frame 0 is drawn into
+/// buffer 1.
 const fn buffer_of(frame: PictureNumber) -> u8 {
     (frame.next().0 % 2) as u8
 }
@@ -84,7 +83,6 @@ impl Drawn for Frames {
         Some(place as u64 % self.eyes())
     }
 
-    /// Returns the number of frames that all frame buffers have made visible.
     fn swaps(&self, gp: &Gp) -> u64 {
         self.frame_buffers.iter().map(|node| gp.status(*node)).min().unwrap_or(0)
     }

@@ -1,4 +1,4 @@
-//! Program of the host, which chooses the next picture and performs SEND.
+//! The host's program, which decides when each picture is sent, and sends it (SEND).
 
 use crate::drawn::{Drawn, RenderingControlConfig, Sent};
 use crate::protocol::StageOrder;
@@ -7,26 +7,25 @@ use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
-/// An action of the host. The host chooses an action whenever it is ready for a picture.
+/// The next action of the host.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HostAction<S> {
-    /// Send this picture now.
+    /// Sends this picture now.
     Send(S),
-    /// Call the function `plan` again at this time.
+    /// Waits until this time, and then calls `plan` again.
     Wait(Time),
-    /// Send no more pictures.
+    /// Ends the program.
     Nothing,
 }
 
-/// Runs the host program, which sends one picture after the other over the host's link and the ring to all graphics
-/// processors.
+/// Runs the host's program, which sends one picture after the other to all graphics processors.
 ///
-/// SEND of a picture begins after EDIT of the previous picture has finished (TR94). Whenever the host is ready for a
-/// picture, the host program calls `plan` with the number of the next picture and the current time.
+/// SEND of a picture may begin when EDIT of the previous picture has finished (TR94). Each time the host may send a
+/// picture, the host's program calls `plan` with the number of the picture and the current time.
 ///
 /// # Errors
 ///
-/// Returns [`Fault::Protocol`] if a message other than the master's answer arrives.
+/// Returns [`Fault::Protocol`] if the host gets any message except the master's report that EDIT has finished.
 pub async fn host<D: Drawn>(
     gp: Gp,
     config: RenderingControlConfig<D>,
@@ -66,11 +65,10 @@ async fn send<D: Drawn>(gp: &Gp, config: &RenderingControlConfig<D>, timing: Hos
     gp.end(Stage::Send, number, None);
 }
 
-/// Returns the plan of a host that sends one frame after the other.
+/// Returns a function for the argument `plan` of `host`, which sends frames of a display one after the other.
 ///
-/// The argument of `start_of` is the time at which the host is ready for a frame. `start_of` returns the time at which
-/// the frame begins, or `None` if no more frames begin. `view_of` returns a view whose pose is sampled at the given
-/// time.
+/// `start_of` gets the time at which the host may send a frame. It returns the time at which the frame begins, or
+/// `None` after the last frame. `view_of` returns the view for the pose of the head at a time.
 pub fn frames(
     start_of: impl Fn(Time) -> Option<Time>,
     mut view_of: impl FnMut(ViewNumber, Time) -> FrameView,

@@ -1,4 +1,4 @@
-//! Program of the master, which synchronizes host, slaves, renderers and frame buffers.
+//! The master's program, which permits each stage to begin and assigns regions to renderers.
 
 use crate::drawn::{Drawn, RenderingControlConfig, Sent};
 use crate::protocol::{RegionEnd, StageOrder, Token};
@@ -9,17 +9,17 @@ use pxpl5_wire::{Body, CopyOrder, CopyPath, CopyTarget, NodeId, PictureNumber, R
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-/// State of a renderer, derived from the messages that the master has received.
+/// Use of a renderer, as far as the master can infer it from messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
-    /// The slaves hold the token of a region that this renderer draws.
+    /// The slaves send the bins of a region to this renderer.
     Receiving,
-    /// The renderer holds a finished region in pixel memory until the region's frame buffer is available.
+    /// The renderer keeps a finished region in pixel memory, because the region cannot be copied yet.
     Holding(Drawing, RegionId),
 }
 
-/// A copy that the rules permit now.
+/// A copy of a finished region that may begin now.
 #[derive(Clone, Copy, Debug)]
 struct AllowedCopy {
     renderer: usize,
@@ -28,26 +28,26 @@ struct AllowedCopy {
     way: CopyPath,
 }
 
-/// Progress of a drawing that is not complete.
+/// Progress of a drawing that the host has sent and that is not complete in its frame buffer.
 #[derive(Debug)]
 struct DrawingProgress<S> {
     drawing: Drawing,
     sent: Arc<S>,
-    /// Number of earlier drawings in the same frame buffer. When the number of swaps of the frame buffer reaches this
-    /// value, its hidden half is free.
+    /// Number of earlier drawings in the same frame buffer. The hidden half of the frame buffer is free after this
+    /// number of swaps.
     before: u64,
     /// Number of slaves that have transformed the drawing.
     slaves: usize,
     /// Number of entries in each region's bin, summed over the slaves that have transformed the drawing.
     entries: Vec<u64>,
     announced: bool,
-    /// Number of regions that have not arrived in the frame buffer. `None` before RENDER begins.
+    /// Number of regions that have not arrived in the frame buffer yet. `None` before RENDER.
     missing: Option<u64>,
 }
 
 impl<S> DrawingProgress<S> {
-    /// Returns the regions to draw, in descending order of their bin entries. Without `empty` regions, a drawing
-    /// without primitives has one region, so that its end is detected.
+    /// Returns the regions to draw, those with the most bin entries first. Regions without entries are included only if
+    /// `empty` is true. If no region has entries, region 0 is drawn, so that the end of the drawing can be detected.
     fn regions(&self, empty: bool) -> VecDeque<RegionId> {
         let mut regions: Vec<usize> = (0..self.entries.len()).filter(|i| empty || self.entries[*i] > 0).collect();
         if regions.is_empty() {
@@ -62,11 +62,11 @@ impl<S> DrawingProgress<S> {
 #[derive(Debug)]
 struct RenderStage {
     drawing: Drawing,
-    /// Regions without a renderer, the regions with the most bin entries first.
+    /// Regions without a renderer, in the order in which they will be drawn.
     unassigned: VecDeque<RegionId>,
-    /// Number of regions that are drawn.
+    /// Number of regions to draw.
     regions: u16,
-    /// Number of tokens that have not returned from the slaves.
+    /// Number of tokens that are still with the slaves.
     tokens_out: u16,
 }
 
@@ -74,30 +74,30 @@ struct RegionMaster<D: Drawn> {
     gp: Gp,
     config: RenderingControlConfig<D>,
     completed: Completed,
-    /// The first picture for which the master has not ordered EDIT.
+    /// First picture for which the master has not permitted EDIT.
     next_edit: PictureNumber,
-    /// The first drawing for which the master has not permitted TRANSFORM.
+    /// First drawing for which the master has not permitted TRANSFORM.
     next_transform: Drawing,
-    /// The next picture for which a swap will be requested.
+    /// First picture for which the master has not requested the swap.
     next_swap: PictureNumber,
-    /// Number of slaves that have applied the edits of the current picture.
+    /// Number of slaves that have finished EDIT of the current picture.
     edited: usize,
-    /// Drawings that the host has sent and that are not complete, in order.
+    /// Drawings that the host has sent and that are not complete in a frame buffer, oldest first.
     under_way: VecDeque<DrawingProgress<D::Sent>>,
-    /// Number of drawings that the host has sent so far for each frame buffer.
+    /// Number of drawings for each frame buffer that the host has sent so far.
     of_buffers: BTreeMap<NodeId, u64>,
     rendering: Option<RenderStage>,
     renderers: Vec<RendererUse>,
-    /// Finished regions in the backing store of each renderer, oldest first. The regions wait for their frame buffer.
+    /// Finished regions in the backing store of each renderer, oldest first.
     stored: Vec<VecDeque<(Drawing, RegionId)>>,
     next_slave: usize,
 }
 
-/// Runs the program of the master.
+/// Runs the master's program.
 ///
 /// # Errors
 ///
-/// Returns [`Fault::Protocol`] for an unknown message, or [`Fault::Memory`] if the program does not fit in memory.
+/// Returns [`Fault::Protocol`] after an unknown message, or [`Fault::Memory`] if the program does not fit into memory.
 pub async fn master<D: Drawn>(gp: Gp, config: RenderingControlConfig<D>) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     let mut master = RegionMaster::new(gp, config);
@@ -129,13 +129,13 @@ impl<D: Drawn> RegionMaster<D> {
         }
     }
 
-    /// Waits for a message or for a swap of the frame buffers.
+    /// Waits for a message or a swap. Returns `None` after a swap.
     async fn wait(&self) -> Option<Received> {
         self.gp.until("a message or a swap", || self.message_or_swap()).await
     }
 
-    /// Returns `Some(Some(message))` if a message has arrived. Returns `Some(None)` if frame buffers have swapped since
-    /// the last call of `begin_one`. Otherwise returns `None`.
+    /// Returns the next message as `Some(Some(message))`. Returns `Some(None)` if no message has arrived and frame
+    /// buffers have swapped since the last call of `begin_one`. Returns `None` if the master must wait.
     fn message_or_swap(&self) -> Option<Option<Received>> {
         match self.gp.take_message() {
             Some(received) => Some(Some(received)),
@@ -164,7 +164,7 @@ impl<D: Drawn> RegionMaster<D> {
         SurfaceId(self.config.eye_of(drawing) as u16)
     }
 
-    /// Begins the most urgent action that the rules permit. Returns false if the rules permit no action.
+    /// Begins the most urgent action that the rules permit now. Returns false if the rules permit none.
     async fn begin_one(&mut self) -> bool {
         self.completed.swapped = self.config.drawn.swaps(&self.gp);
         self.begin_render();
@@ -187,8 +187,8 @@ impl<D: Drawn> RegionMaster<D> {
         true
     }
 
-    /// Returns the first drawing that the master can announce, as an index of `under_way`. All slaves must have
-    /// transformed the drawing, and its frame buffer must show its previous drawing.
+    /// Returns the place in `under_way` of the first drawing that can be announced. All slaves must have finished
+    /// TRANSFORM of the drawing, and the hidden half of its frame buffer must be free.
     fn next_announcement(&self) -> Option<usize> {
         let may_begin = |one: &DrawingProgress<D::Sent>| {
             let is_known = one.slaves == self.config.slaves.len();
@@ -197,7 +197,7 @@ impl<D: Drawn> RegionMaster<D> {
         self.under_way.iter().position(may_begin).filter(|_| D::ANNOUNCES)
     }
 
-    /// Sends a frame buffer the list of regions that will arrive, and requests the swap.
+    /// Announces a drawing to its frame buffer: sends the list of regions that will arrive, and the swap request.
     async fn announce(&mut self, place: usize) {
         self.under_way[place].announced = true;
         let one = &self.under_way[place];
@@ -240,7 +240,6 @@ impl<D: Drawn> RegionMaster<D> {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Begins RENDER of the next drawing if the rules permit it.
     fn begin_render(&mut self) {
         let drawing = Drawing(self.completed.rendered);
         if self.rendering.is_some() || !self.completed.may_render(drawing) {
@@ -260,7 +259,8 @@ impl<D: Drawn> RegionMaster<D> {
         Some((renderer, region))
     }
 
-    /// Sends the token of a region to a slave. The slaves take turns as the first holder of a token.
+    /// Creates the token of a region and sends it to a slave. The first token goes to slave 0, the second to slave 1,
+    /// and so on, so that the slaves share the work.
     async fn send_token(&mut self, renderer: usize, region: RegionId) {
         // The renderer receives commands from all slaves in turn.
         let Some(rendering) = &mut self.rendering else { return };
@@ -278,7 +278,8 @@ impl<D: Drawn> RegionMaster<D> {
         self.gp.send(slave, words, body).await;
     }
 
-    /// Returns true if COPY of a drawing may begin: after the announcement, or by the rules.
+    /// Returns true if COPY of a drawing may begin. An announced drawing may be copied after its announcement, and
+    /// other drawings follow the rules of TR94.
     fn may_copy(&self, drawing: Drawing) -> bool {
         if D::ANNOUNCES {
             self.progress(drawing).is_none_or(|one| one.announced)
@@ -287,7 +288,8 @@ impl<D: Drawn> RegionMaster<D> {
         }
     }
 
-    /// Returns the destination of a region's pixels after the region's last commands.
+    /// Returns the action of `renderer` after the last commands of a region. The region is copied if COPY may begin, is
+    /// stored if the backing store has room, and otherwise stays in pixel memory.
     fn end_of(&self, renderer: usize, drawing: Drawing) -> RegionEnd {
         let room = self.config.drawn.regions_stored();
         if self.may_copy(drawing) {
@@ -303,8 +305,8 @@ impl<D: Drawn> RegionMaster<D> {
         }
     }
 
-    /// Returns a copy that the rules permit, for the renderer with the lowest index. A region in the backing store is
-    /// copied before a region in pixel memory.
+    /// Returns a copy that may begin, for the first renderer that has one. A region in the backing store is copied
+    /// before a region in pixel memory.
     fn next_allowed_copy(&self) -> Option<AllowedCopy> {
         (0..self.renderers.len()).find_map(|renderer| {
             let (drawing, region, way) = match (self.stored[renderer].front(), self.renderers[renderer]) {
@@ -316,7 +318,8 @@ impl<D: Drawn> RegionMaster<D> {
         })
     }
 
-    /// Sends the copy command of a region. When the token of this region was sent, the rules did not permit COPY.
+    /// Sends the copy command of a region. The last slave could not send this command, because COPY was not permitted
+    /// when the token was created.
     async fn copy(&mut self, AllowedCopy { renderer, drawing, region, way }: AllowedCopy) {
         match way {
             CopyPath::FromBacking => drop(self.stored[renderer].pop_front()),
@@ -406,7 +409,7 @@ impl<D: Drawn> RegionMaster<D> {
         }
     }
 
-    /// Records that a region has arrived. `low` is the low word of the picture's number.
+    /// Counts a region that has arrived in `frame_buffer`. `low` is the low word of the number of the picture.
     fn note_copied(&mut self, low: Word, frame_buffer: NodeId) {
         let Some(eye) = self.config.drawn.eye_at(frame_buffer) else { return };
         let config = &self.config;
@@ -422,7 +425,7 @@ impl<D: Drawn> RegionMaster<D> {
         self.remove_finished();
     }
 
-    /// Removes drawings that are complete: all their commands have been accepted, and all their regions have arrived.
+    /// Removes the drawings whose commands have all been accepted and whose regions have all arrived.
     fn remove_finished(&mut self) {
         let complete = Drawing(self.completed.rendered.min(self.completed.copied));
         while self.under_way.front().is_some_and(|one| one.drawing < complete) {
@@ -444,7 +447,7 @@ mod tests {
     use pxpl5_gp::{GpBoard, GpTiming, Priority};
     use pxpl5_sim::Span;
 
-    /// The last region can arrive before the message that its commands were accepted.
+    /// Tests both orders of two messages: the arrival of the last region, and the acceptance of its commands.
     #[test]
     fn a_drawing_is_over_when_its_regions_have_arrived_and_its_commands_were_accepted() {
         for accepted_first in [true, false] {

@@ -14,38 +14,37 @@ const TOKEN: Word = 6;
 const ACCEPTED: Word = 7;
 const EDITS_DONE: Word = 8;
 
-/// A token. While a slave holds the token, the slave may send its commands of one region to one renderer.
+/// The token of a region, which passes from slave to slave. Its holder may send its bin of the region to a renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) drawing: Drawing,
-    /// Index of the region, counted through all views of the drawing.
+    /// Number of the region. The numbers continue through all views of the drawing.
     pub(crate) region: RegionId,
     /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
-    /// Number of slaves that have not sent their bins yet, including the slave that holds the token.
+    /// Number of slaves that must still send their bins, including the holder of the token.
     pub(crate) slaves_left: u16,
-    /// Number of tokens of this drawing, one for each region that is drawn.
+    /// Number of tokens of this drawing. There is one token for each region that is drawn.
     pub(crate) of: u16,
-    /// Destination of the region's pixels after the region's last commands. The last slave adds the command for this
-    /// destination.
+    /// Action of the renderer after the last commands of the region. The last slave sends the command for this action.
     pub(crate) end: RegionEnd,
 }
 
-/// Destination of a region's pixels after the region's last commands.
+/// Action of a renderer after the last commands of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RegionEnd {
-    /// The region stays in pixel memory, and the renderer waits for a copy command.
+    /// The renderer keeps the region in pixel memory and waits for a copy command.
     Held,
-    /// The region goes to the renderer's backing store and stays there until the master sends a copy command.
+    /// The renderer moves the region to its backing store, where the region waits for a copy command.
     Stored,
-    /// The region goes through the backing store to its frame buffer. The master sends no copy command.
+    /// The renderer copies the region to the frame buffer, through its backing store.
     Copied,
 }
 
 impl RegionEnd {
     const ALL: [Self; 3] = [Self::Held, Self::Stored, Self::Copied];
 
-    /// Returns the path in the region's copy command, or `None` if the region needs no copy command.
+    /// Returns the path of the copy command that the last slave sends, or `None` if the region stays in pixel memory.
     pub(crate) const fn way(self) -> Option<CopyPath> {
         match self {
             Self::Held => None,
@@ -129,12 +128,12 @@ impl<S: Sent> StageOrder<S> {
     }
 }
 
-/// Encodes a message that consists of a tag and the number of a picture or drawing.
+/// Encodes a message that consists of its kind (`tag`) and the number of a picture or of a drawing.
 fn numbered(tag: Word, number: u64) -> Vec<Word> {
     vec![tag, number as Word, (number >> 32) as Word]
 }
 
-/// Decodes the picture or drawing number of a message that [`numbered`] has encoded.
+/// Decodes the number in a message that `numbered` has encoded.
 fn number_of(words: &[Word]) -> Option<u64> {
     let [_, low, high] = *words.first_chunk()?;
     Some(u64::from(low) | u64::from(high) << 32)

@@ -1,70 +1,68 @@
-//! The rules of TR94 for the beginning of each stage. Each rule is a function of the progress of all stages, and
-//! returns true if the stage may begin.
+//! The rules of TR94 for the beginning of each stage. A rule is a function that returns true if the stage may begin.
 
 use pxpl5_wire::PictureNumber;
 
-/// Number of a *drawing*: the picture of one eye in a stereo frame, the whole picture of a mono frame, or an update of a
-/// display memory.
+/// Number of a drawing.
 ///
-/// Drawings are numbered in order through all frames. Number 0 is the left eye of frame 0.
+/// A drawing is the picture of one eye, or an update of a display memory. Drawings are counted through all frames. In a
+/// stereo picture, drawing 0 is the left eye of frame 0, and drawing 1 is the right eye of frame 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Drawing(pub u64);
 
 impl Drawing {
-    /// Returns the number of the first drawing of a frame. `eyes` is the number of eyes of each frame.
+    /// Returns the first drawing of a frame, if each frame has `eyes` drawings.
     #[must_use]
     pub const fn first_of(frame: PictureNumber, eyes: u64) -> Self {
         Self(frame.0 * eyes)
     }
 
-    /// Returns the frame to which this drawing belongs. `eyes` is the number of eyes of each frame.
+    /// Returns the frame that contains the drawing, if each frame has `eyes` drawings.
     #[must_use]
     pub const fn picture(self, eyes: u64) -> PictureNumber {
         PictureNumber(self.0 / eyes)
     }
 
-    /// Returns the index of the eye, 0 or 1, for which this drawing is made. `eyes` is the number of eyes of each
-    /// frame.
+    /// Returns the index of the eye for which this drawing is made, from 0 to `eyes` - 1.
     #[must_use]
     pub const fn eye(self, eyes: u64) -> u64 {
         self.0 % eyes
     }
 
-    /// Returns the index, 0 or 1, of the set of bins that every slave uses for this drawing.
+    /// Returns 0 or 1, the index of the set of bins that each slave uses for the drawing.
     pub(crate) const fn context(self) -> usize {
         (self.0 % 2) as usize
     }
 
-    /// Returns the number of the drawing that comes `count` drawings after this drawing.
+    /// Returns the drawing with the number of this drawing plus `count`.
     #[must_use]
     pub const fn after(self, count: u64) -> Self {
         Self(self.0 + count)
     }
 }
 
-/// Progress of the pipeline: for each stage, the number of drawings or frames that have passed the stage.
+/// Progress of all stages: for each stage, the number of frames or drawings that have passed it.
 ///
-/// A drawing is the picture of one eye, or the whole picture of a mono frame. Every stage processes drawings in order.
+/// A drawing is the picture of one eye. Every stage processes frames and drawings in the order of their numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Completed {
-    /// Number of eyes of a frame: 1 or 2.
+    /// Number of drawings of a frame: 1 for a mono picture, 2 for a stereo picture.
     pub eyes: u64,
-    /// Number of frames sent by the host.
+    /// Number of frames that the host has sent (SEND).
     pub sent: u64,
-    /// Number of frames whose edits all slaves have applied.
+    /// Number of frames for which all slaves have finished EDIT.
     pub edited: u64,
-    /// Number of drawings that all slaves have transformed.
+    /// Number of drawings for which all slaves have finished TRANSFORM.
     pub transformed: u64,
-    /// Number of drawings whose last commands were accepted.
+    /// Number of drawings for which the renderers have accepted the last commands (RENDER).
     pub rendered: u64,
-    /// Number of drawings that are complete in a frame buffer.
+    /// Number of drawings of which all regions have arrived in a frame buffer (COPY).
     pub copied: u64,
-    /// Number of frames that a swap of the frame buffers has made visible.
+    /// Number of frames that frame buffers have shown after a swap.
     pub swapped: u64,
 }
 
 impl Completed {
-    /// Returns the progress at power-on. No frame or drawing has passed any stage.
+    /// Returns the progress at power-on, when nothing has passed any stage.
     #[must_use]
     pub const fn none(eyes: u64) -> Self {
         Self { eyes, sent: 0, edited: 0, transformed: 0, rendered: 0, copied: 0, swapped: 0 }
@@ -72,41 +70,39 @@ impl Completed {
 
     /// Returns true if EDIT of a frame may begin.
     ///
-    /// Let n be the number of the frame's first drawing. A drawing is the picture of one eye, or of a mono frame. Four
-    /// stages must be complete: SEND of the frame, TRANSFORM of drawing n - 1, RENDER of drawing n - 2, and COPY of
-    /// drawing n - 3.
-    ///
-    /// If RENDER or COPY were not complete, the earlier drawings would still use the buffers.
+    /// Let n be the number of the frame's first drawing, where a drawing is the picture of one eye. SEND of the frame
+    /// must have finished. TRANSFORM of drawing n - 1, RENDER of drawing n - 2, and COPY of drawing n - 3 must also
+    /// have finished. Before that, older drawings still use the bins and the pixel memory.
     #[must_use]
     pub const fn may_edit(&self, frame: PictureNumber) -> bool {
         let first = Drawing::first_of(frame, self.eyes);
         self.sent > frame.0 && self.transformed >= first.0 && self.buffers_free(first)
     }
 
-    /// Returns true if TRANSFORM of drawing number n (the picture of one eye) may begin.
+    /// Returns true if TRANSFORM of a drawing may begin. A drawing is the picture of one eye.
     ///
-    /// All slaves must have finished EDIT of the drawing's frame. (TR94 requires only that this EDIT has begun.) RENDER
-    /// of drawing n - 2 and COPY of drawing n - 3 must be complete. These conditions are only for the later eyes of a
-    /// frame. Each slave begins TRANSFORM of the first eye when its own edits are done.
+    /// Let n be the number of the drawing. All slaves must have finished EDIT of its frame, although TR94 only demands
+    /// that this EDIT has begun. RENDER of drawing n - 2 and COPY of drawing n - 3 must have finished. This rule is for
+    /// the right eye: each slave begins TRANSFORM of the left eye directly after EDIT.
     #[must_use]
     pub const fn may_transform(&self, drawing: Drawing) -> bool {
         self.edited > drawing.picture(self.eyes).0 && self.buffers_free(drawing)
     }
 
-    /// Returns true if the slaves have a free set of bins for a drawing, and the renderers have a free part of pixel
-    /// memory. Each slave has two sets of bins, and each renderer has two parts.
+    /// Returns true if a drawing has buffers in all boards. Each slave has two sets of bins, and the pixel memory of
+    /// each renderer has two parts.
     const fn buffers_free(&self, drawing: Drawing) -> bool {
         self.rendered + 1 >= drawing.0 && self.copied + 2 >= drawing.0
     }
 
     /// Returns true if RENDER of a drawing (the picture of one eye) may begin. All slaves must have finished TRANSFORM
-    /// of this drawing, and RENDER of the previous drawing must be complete.
+    /// of this drawing, and RENDER of the previous drawing must have finished.
     #[must_use]
     pub const fn may_render(&self, drawing: Drawing) -> bool {
         self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
-    /// Returns true if the hidden buffer for a drawing is free. The buffer is free when the previous frame has become
+    /// Returns true if the hidden buffer for a drawing is free. This is so when a swap has made the previous frame
     /// visible.
     #[must_use]
     pub const fn frame_buffer_available(&self, drawing: Drawing) -> bool {
@@ -114,16 +110,16 @@ impl Completed {
     }
 
     /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden buffer must be free, and COPY
-    /// of the previous drawing must be complete.
+    /// of the previous drawing must have finished.
     ///
-    /// Each frame buffer has its own ring port. Nevertheless, the rule of TR94 permits copies to only one frame buffer
-    /// at a time, one eye after the other.
+    /// Each frame buffer has its own ring port, so two copies could go on at once. The rule of TR94 nevertheless
+    /// permits only one at a time.
     #[must_use]
     pub const fn may_copy(&self, drawing: Drawing) -> bool {
         self.frame_buffer_available(drawing) && self.copied >= drawing.0
     }
 
-    /// Returns true if a swap may make a frame visible. COPY of all eyes of the frame must be complete.
+    /// Returns true if frame buffers may show a frame. COPY of all drawings of the frame must have finished.
     #[must_use]
     pub const fn may_swap(&self, frame: PictureNumber) -> bool {
         self.copied >= Drawing::first_of(frame.next(), self.eyes).0

@@ -1,4 +1,5 @@
-//! Programs of a slave: EDIT and TRANSFORM in the foreground, and an interrupt program that handles tokens.
+//! The two programs of a slave. The foreground program performs EDIT and TRANSFORM. The interrupt program handles
+//! messages and tokens.
 
 use crate::drawn::{Drawn, RenderingControlConfig, Sent};
 use crate::protocol::{StageOrder, Token};
@@ -13,20 +14,20 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// The data that the two programs of a slave share.
+/// Data that both programs of a slave use.
 #[derive(Debug)]
 struct SlaveState<S> {
     sent: VecDeque<S>,
-    /// The first picture for which the master has not permitted EDIT.
+    /// First picture for which the master has not permitted EDIT.
     next_edit: PictureNumber,
     next_transform: Drawing,
-    /// The two sets of bins. `None` stands for an empty set.
+    /// The two sets of bins, each `None` while the set is empty.
     bins: [Option<Bins<S>>; 2],
     /// Number of tokens that this slave has received for each of the two sets of bins.
     tokens: [u16; 2],
 }
 
-/// The bins of a drawing: one pass for each view.
+/// The bins of a drawing. There is one pass for each view.
 #[derive(Debug)]
 struct Bins<S> {
     sent: Arc<S>,
@@ -39,8 +40,8 @@ impl<S> SlaveState<S> {
         Self { sent: VecDeque::new(), next_edit, next_transform, bins: [None, None], tokens: [0; 2] }
     }
 
-    /// Counts a received token for the set of bins `context` (0 or 1). After the last of the drawing's `of` tokens, the
-    /// function empties the set and returns true.
+    /// Counts a token that this slave has handled, for the set of bins `context` (0 or 1). A drawing has `of` tokens. After
+    /// the last token of a drawing, the function empties the set of bins and returns true.
     fn count_token(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;
@@ -53,14 +54,14 @@ impl<S> SlaveState<S> {
 }
 
 impl<S: Sent> SlaveState<S> {
-    /// Returns the next picture if it was sent and the master has permitted EDIT.
+    /// Takes the next picture, if the host has sent it and the master has permitted its EDIT.
     fn next_picture(&mut self) -> Option<S> {
         let may_begin = self.sent.front()?.number() < self.next_edit;
         if may_begin { self.sent.pop_front() } else { None }
     }
 }
 
-/// One of the two programs of a slave.
+/// A program of a slave, in the foreground or with the higher priority.
 struct Slave<D: Drawn> {
     gp: Gp,
     config: RenderingControlConfig<D>,
@@ -69,10 +70,10 @@ struct Slave<D: Drawn> {
     state: Rc<RefCell<SlaveState<D::Sent>>>,
 }
 
-/// Returns the programs of a slave, for both priorities of its board. `index` is the index of the slave.
+/// Returns the foreground program and the interrupt program of the slave `index`, with their priorities.
 ///
-/// Each program fails with [`Fault::Memory`] if the display list, commands or bins do not fit into memory. A program
-/// fails with [`Fault::Protocol`] for an unknown message.
+/// A program fails with [`Fault::Memory`] if the display list, commands or bins do not fit into memory. A program fails
+/// with [`Fault::Protocol`] after an unknown message.
 pub fn slave<D: Drawn>(
     gp: &Gp,
     config: &RenderingControlConfig<D>,
@@ -115,7 +116,7 @@ impl<D: Drawn> Slave<D> {
         }
     }
 
-    /// Performs EDIT: applies the edits of the next picture and reports this to the master.
+    /// Performs EDIT of the next picture: applies the edits, and reports the end to the master.
     async fn edit(&self) -> Result<D::Sent, Fault> {
         let next = || self.state.borrow_mut().next_picture();
         let sent = self.gp.until("SEND and leave to EDIT", next).await;
@@ -127,11 +128,11 @@ impl<D: Drawn> Slave<D> {
         Ok(sent)
     }
 
-    /// Performs TRANSFORM. The slave makes the commands of all its primitives, and puts the commands into bins.
+    /// Performs TRANSFORM of a drawing: makes the commands of all triangles and spheres, and puts them into bins.
     ///
-    /// If the bins of two drawings do not fit into memory together, TRANSFORM waits until RENDER of the previous drawing
-    /// has freed its bins. The simulated program has the number of entries in advance. A real program would estimate
-    /// this number from the previous drawing.
+    /// If the bins do not fit into memory beside those of the previous drawing, TRANSFORM waits until RENDER has freed
+    /// them. The simulated program has the number of entries in advance. A real program would estimate this number from
+    /// the previous drawing.
     async fn transform(&self, share: &Share, sent: &Arc<D::Sent>, drawing: Drawing) -> Result<(), Fault> {
         let drawn = &self.config.drawn;
         let (picture, eye) = (self.config.picture_of(drawing), self.config.eye_of(drawing));
@@ -154,8 +155,8 @@ impl<D: Drawn> Slave<D> {
         Ok(())
     }
 
-    /// Reserves memory for commands and bins. If the bins do not fit, the error contains the region whose bin was too
-    /// large.
+    /// Reserves memory for commands and bins. If memory is too small, the error names the first region whose bin does
+    /// not fit.
     fn reserve_bins(&self, passes: &[Arc<Pass>], entries: &[u32], context: usize) -> Result<(), Fault> {
         let commands = passes.iter().map(|pass| pass.command_bytes()).sum();
         self.gp.reserve(Account::Commands(context as u8), commands, None)?;
@@ -167,7 +168,7 @@ impl<D: Drawn> Slave<D> {
         Ok(())
     }
 
-    /// Runs the interrupt program. The program stores views and permissions, and handles tokens.
+    /// Runs the interrupt program. It stores the host's pictures and the master's permissions, and it handles tokens.
     async fn answer_messages(self) -> Result<(), Fault> {
         loop {
             let received = self.gp.next_message().await;
@@ -191,7 +192,7 @@ impl<D: Drawn> Slave<D> {
         }
     }
 
-    /// Sends this slave's bin for the token's region, then sends the token to the next slave.
+    /// Sends this slave's bin of the token's region to the renderer, and then sends the token to the next slave.
     async fn walk(&self, received: &Received, token: Token) -> Result<(), Fault> {
         let renderer = self.config.renderers[usize::from(token.renderer)];
         let bin = self.bin_of(token);
@@ -203,7 +204,7 @@ impl<D: Drawn> Slave<D> {
         self.free_bins(token)
     }
 
-    /// Returns the bin of a token's region, or `None` if this slave has no bins for the view that contains the region.
+    /// Returns this slave's bin of the token's region. Returns `None` if there are no bins for this region's view.
     fn bin_of(&self, token: Token) -> Option<TokenBin> {
         let drawn = &self.config.drawn;
         let context = token.drawing.context();
@@ -223,8 +224,8 @@ impl<D: Drawn> Slave<D> {
         Some(TokenBin { pass: Arc::clone(bins.passes.get(view)?), context, view, region, envelope, frame_buffer })
     }
 
-    /// Returns the message that passes a token to the next slave. The last slave's message reports to the master that
-    /// the region is finished.
+    /// Returns the receiver and the message of a token that this slave has handled. The receiver is the next slave, or
+    /// the master if all slaves have sent their bins.
     fn passed_on(&self, token: Token) -> (NodeId, u32, Body) {
         let next = Token { slaves_left: token.slaves_left - 1, ..token };
         let (receiver, order) = if next.slaves_left == 0 {
@@ -236,7 +237,7 @@ impl<D: Drawn> Slave<D> {
         (receiver, words, body)
     }
 
-    /// Frees a drawing's commands and bins after the last token of the drawing.
+    /// After the last token of a drawing, frees the memory of the drawing's commands and bins.
     fn free_bins(&self, token: Token) -> Result<(), Fault> {
         let context = token.drawing.context();
         if self.state.borrow_mut().count_token(context, token.of) {
@@ -252,8 +253,7 @@ impl<D: Drawn> Slave<D> {
     }
 }
 
-/// Stores the vertices of a picture in the board's memory if they were displaced. The displacement takes no simulated
-/// time.
+/// Writes the vertices of a picture into the board's memory if they were displaced. This takes no simulated time.
 fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> Result<(), Fault> {
     if !Arc::ptr_eq(installed, share.list()) {
         gp.install(|processor| share.install(processor))?;
@@ -262,14 +262,14 @@ fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> R
     Ok(())
 }
 
-/// A slave's bin for a token's region, with the commands that begin and end the region.
+/// This slave's bin of a region, with the commands before and after the bin.
 struct TokenBin {
     pass: Arc<Pass>,
     context: usize,
     view: usize,
     region: RegionId,
     envelope: RegionEnvelope,
-    /// Frame buffer of the region, which shows observers for which eye the renderer draws.
+    /// Frame buffer of the region. Observers read from it for which eye the renderer draws.
     frame_buffer: Option<NodeId>,
 }
 

@@ -1,6 +1,6 @@
 //! Processor time of a volume of 198 distinct slices of the head by one thread, with and without bins and tiles: `cargo
-//! run --release -p pxpl5-spatialgl --example host_time`. The benches measure wall-clock time. Processor time is reliable on
-//! a busy computer too.
+//! run --release -p pxpl5-spatialgl --example host_time`. The benches measure wall-clock time. Processor time is
+//! reliable on a busy computer too.
 
 use pxpl5_scene::builtin;
 use spatialgl::{

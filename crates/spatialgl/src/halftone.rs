@@ -92,7 +92,6 @@ mod tests {
         assert_eq!(row(1), [48, 16, 56, 24, 50, 18, 58, 26]);
     }
 
-    /// Compares the number of lit pixels among 64, for ten values of a channel, with known numbers.
     #[test]
     fn so_many_of_64_pixels_are_lit() {
         let counts = [0u8, 1, 2, 64, 127, 128, 200, 253, 254, 255]

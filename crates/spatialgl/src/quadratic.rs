@@ -80,7 +80,6 @@ mod tests {
 
     const WEDGE: fn() -> HalfWedge = || HalfWedge::new(396, 384.0);
 
-    /// Compares the coefficients and the values of a quadratic with known numbers, to their last digit.
     #[test]
     fn case_27_the_quadratic_of_a_plane() {
         let q = ClipQuadratic::of_plane([0.5, -0.25], -20.0, WEDGE(), 0.25);
@@ -93,9 +92,9 @@ mod tests {
         }
     }
 
-    /// Checks the number of fraction bits. S is the sine of half the angle between slices. With the 16 fraction bits of
-    /// the renderers' format, S^2 would be only 4 units. With 26 bits it has 12 significant bits, and Q fits into 48
-    /// bits.
+    /// Tests the number of fraction bits of the coefficients. S is the sine of half the angle between slices. With the
+    /// 16 fraction bits of the renderers' format, S^2 would be 4 units, which is too coarse. With 26 bits, S^2 is 4,224
+    /// units, and the quadratic fits into 48 bits.
     #[test]
     fn its_scale_fits_the_renderers_words() {
         let square = WEDGE().sin * WEDGE().sin;

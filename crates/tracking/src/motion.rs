@@ -155,7 +155,7 @@ macro_rules! forward {
 
 forward!(&M, Box<M>, Arc<M>);
 
-/// Compares the motion's velocity and angular velocity with differences of the motion's poses, for tests of a motion.
+/// Tests the velocity and the angular velocity of a motion at `t_ps` against differences between poses.
 #[cfg(test)]
 fn assert_rates_agree_with_poses(motion: &impl Motion, t_ps: u64, tolerance: f64) {
     #[derive(Debug)]

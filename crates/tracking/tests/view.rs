@@ -121,8 +121,8 @@ fn unknown_keys_of_a_configuration_are_errors() {
     assert!(serde_json::from_str::<HmdConfig>(&wrong).is_err());
 }
 
-/// The middle of the picture is pixel 320. Half the eye distance is 32 mm, and cot 30 degrees is 1.732: at 2 m the point
-/// is 8.87 pixels off the middle with parallel axes.
+/// The middle of the picture is pixel 320. Half the eye distance is 32 mm, and cot 30 degrees is 1.732: at 2 m the
+/// point is 8.87 pixels off the middle with parallel axes.
 #[test]
 fn eyes_that_converge_see_the_point_where_their_axes_meet_in_the_middle() {
     let head = turned_left();

@@ -1,9 +1,8 @@
-//! Compares strips, the times for which they are drawn, and lead times with formulas. The beam takes the same time for
-//! every line.
+//! Tests of strips, of their numbers and of their times, against formulas for a beam of constant speed.
 
 use super::*;
 
-/// Duration from the start of one field to the start of the next, in picoseconds.
+/// Duration of a field, in picoseconds.
 const FIELD: u64 = 16_000_000;
 const ROW: u64 = 60_000;
 const PIXEL: u64 = 80;

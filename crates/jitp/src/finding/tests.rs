@@ -1,5 +1,5 @@
-//! Tests of the search by i860 code. For any scene and windows, the code must give the primitives and messages of the
-//! native firmware.
+//! Tests of the i860 code that searches the triangles and spheres of a window. For random scenes and windows, the code
+//! must give the same messages to renderers as the native firmware.
 
 use crate::config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends, Window, interpolated};
@@ -21,13 +21,13 @@ use pxpl5_wire::{NodeId, PeriodNumber, PictureNumber, RegionId, ViewNumber, Word
 use std::sync::Arc;
 
 const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
-/// Half of the picture's height at a distance of 1 from the eye.
+/// Half of the picture's height, for a picture plane at distance 1 from the eye.
 const TANGENT: f32 = 0.5;
 
 struct Numbers(SplitMix64);
 
 impl Numbers {
-    /// Returns a number from -1 to 1.
+    /// Returns a random number from -1 to 1.
     fn next(&mut self) -> f32 {
         2.0 * self.0.unit() - 1.0
     }
@@ -40,7 +40,7 @@ impl Numbers {
         Vec3::new(self.next(), self.next(), self.next()) * size
     }
 
-    /// Returns the point that appears at pixel (x, y) of a frame of 640 x 480 pixels.
+    /// Returns the point at the depth `distance` that appears at pixel (x, y) of a frame of 640 x 480 pixels.
     fn seen_at([x, y]: [f32; 2], distance: f32) -> Vec3 {
         let across = (x / 320.0 - 1.0) * TANGENT * 4.0 / 3.0;
         Vec3::new(across, (1.0 - y / 240.0) * TANGENT, -1.0) * distance
@@ -128,8 +128,7 @@ fn strips(strip_rows: u32) -> JitpConfig {
     config(DrawingSchedule::Beam { viewpoint: Viewpoint::Field, racing: false, strip_rows })
 }
 
-/// Returns two views. In the second view, the eye is rotated by about `turn` radians, and a structure is rotated as
-/// well.
+/// Returns two random views. In the second view, both the eye and structure 0 are rotated by about `turn` radians.
 fn two_views(numbers: &mut Numbers, turn: f32) -> [FrameView; 2] {
     [0.0, turn].map(|turn| {
         let mut view = view(numbers);
@@ -144,7 +143,7 @@ fn blocks(block: u32) -> JitpConfig {
     config(DrawingSchedule::Roam { block, batch: 16, order: BlockOrder::new(|step| RegionId(step as u16)) })
 }
 
-/// A board and a scene whose picture is stored in the board's memory.
+/// A board with i860 code, and a random scene that the code has transformed into the board's memory.
 struct Scene {
     processor: Processor,
     share: Share,
@@ -174,7 +173,7 @@ impl Scene {
         scene
     }
 
-    /// Stores the positions of the scene's triangles in two views that differ by a rotation of `turn` radians.
+    /// Transforms the scene for two views that differ by a rotation of `turn` radians, and returns the result.
     fn between(&mut self, seed: u64, turn: f32, interpolation: Interpolation) -> Ends {
         let views = two_views(&mut Numbers(SplitMix64::new(seed)), turn).to_vec();
         self.keep(&views);
@@ -182,8 +181,8 @@ impl Scene {
         Ends::new(self.share.list(), views, self.viewport)
     }
 
-    /// Interpolates a strip at position `s` between two views, and searches its primitives. Compares the result with
-    /// the native messages.
+    /// Interpolates a strip between two views: `s` is 0 for the first view and 1 for the second view. Searches the
+    /// strip's triangles and spheres, and compares the messages with the messages of the native firmware.
     fn search_between(&mut self, ends: &Ends, s: f64, strip: u32) -> SearchOutput {
         let interpolation = self.interpolation.expect("between two views");
         self.drawn = Arc::new(DrawnList::between(self.share.list(), ends, s, interpolation, self.viewport));
@@ -211,7 +210,8 @@ impl Scene {
         whole.by_code(&GpTiming::PAPERS, &mut self.processor).expect("it returns");
     }
 
-    /// Searches the primitives of some regions, and compares the listed messages with the native messages.
+    /// Searches the triangles and spheres of `regions` by i860 code, and compares the messages with the messages of the
+    /// native firmware.
     fn search(&mut self, regions: &[RegionId]) -> SearchOutput {
         let windows = self.windows(regions);
         let (counts, _) = self.drawn.count(&windows);
@@ -244,7 +244,8 @@ impl Scene {
         output
     }
 
-    /// Compares all words of a message. The commands of the region's envelope are not in memory and are left out.
+    /// Compares the words of a message with the words of the native message. Pieces below address 0x100000 are skipped:
+    /// these are the commands that begin and end a region.
     fn assert_words(&self, pieces: &[[Word; 2]], native: &[Word], region: RegionId) {
         let mut native = native;
         for [address, length] in pieces {
@@ -282,7 +283,6 @@ fn what_code_finds_on_a_strip_is_what_the_native_firmware_draws() {
     }
 }
 
-/// Blocks of 24 x 24 pixels cross the borders of the picture's regions.
 #[test]
 fn what_code_finds_in_blocks_is_what_the_native_firmware_draws() {
     for (seed, block) in [16, 24, 128].into_iter().enumerate() {
@@ -298,7 +298,7 @@ fn what_code_finds_in_blocks_is_what_the_native_firmware_draws() {
     }
 }
 
-/// Tests a number of windows that exceeds the size of the tables, and a region with many messages.
+/// Tests more windows than a table holds, and a region with more commands than a message holds.
 #[test]
 fn many_windows_are_searched_for_in_several_passes_and_many_entries_make_several_messages() {
     let mut scene = Scene::new(&blocks(128), CodeVersion::Compiled, 5, [3_000, 100]);
@@ -321,8 +321,8 @@ fn a_list_of_nothing_or_of_one_kind_is_searched_too() {
     }
 }
 
-/// Tests small and large rotations, in which corners move on curved paths on the screen. Some of the times are before
-/// the first view.
+/// Tests strips at five times: before the first view, at each of the two views, and between them. The large rotations
+/// move the corners of triangles on curved paths across the screen.
 #[test]
 fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draws() {
     for (seed, (rows, turn)) in (40..).zip([(1, 0.05), (8, 0.05), (7, 0.8), (1, 1.5)]) {
@@ -340,8 +340,8 @@ fn what_code_makes_of_a_strip_between_two_views_is_what_the_native_firmware_draw
     }
 }
 
-/// A structure and the view rotate together. The corners' paths on the screen have such strong curvature that they
-/// leave the range of lines near a strip.
+/// Tests that the search counts as many triangles as are drawn, for large rotations. The corners of a triangle then
+/// move on strongly curved paths across the screen.
 #[test]
 fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
     let config = strips(1);
@@ -361,7 +361,7 @@ fn what_is_counted_on_a_strip_between_two_views_is_what_is_drawn() {
     }
 }
 
-/// A strip between two views takes the time of two steps: the interpolation and the search.
+/// Tests that the time of a strip between two views is the time of the interpolation plus the time of the search.
 #[test]
 fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
     let spans = [false, true].map(|is_one_work| {
@@ -388,9 +388,9 @@ fn by_code_a_strip_between_two_views_takes_as_long_as_both_of_its_parts() {
     assert_eq!(spans[0], spans[1]);
 }
 
-/// A view and a structure rotate together about the line of sight, by 20 degrees each. Paths on the screen then curve
-/// by 7 pixels at the top and the bottom. A triangle that is far from a strip in both views must not touch the strip in
-/// between.
+/// Tests a rotation by 20 degrees about the line of sight, for the view and a structure together. Corners then deviate
+/// from a straight path by up to 7 pixels. A triangle can therefore touch a strip between the views and lie far from
+/// the strip in both views. The search must find such triangles.
 #[test]
 fn nothing_that_meets_a_strip_between_two_views_is_left_out_for_being_far_at_both() {
     let config = strips(1);

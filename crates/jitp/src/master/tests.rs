@@ -1,4 +1,4 @@
-//! Tests of the master's orders and their times.
+//! Tests of the master's orders to a slave, and of the times at which the orders are sent.
 
 use super::*;
 use crate::config::Beam;
@@ -23,7 +23,7 @@ fn nothing_is_before_time_begins() {
     assert_eq!(before(Time(3), Span(5)), Time::ZERO);
 }
 
-/// Returns a board with a master that orders strips of 120 rows. The strips race the beam.
+/// Returns a board that runs the master program, with strips of 120 lines and racing.
 fn master_of(viewpoint: Viewpoint, margin_ns: u64, code: Option<CodeVersion>, beam: Option<Beam>) -> Rig {
     let mut config = config(DrawingSchedule::Beam { viewpoint, racing: true, strip_rows: 120 });
     config.timing.margin_ns = margin_ns;
@@ -36,14 +36,14 @@ fn master_of(viewpoint: Viewpoint, margin_ns: u64, code: Option<CodeVersion>, be
     )
 }
 
-/// Returns the orders to the slave, with the times at which they were sent.
+/// Returns the orders that the master has sent to the slave, each with its time.
 fn ordered(rig: &Rig) -> Vec<(Time, DrawingOrder)> {
     let sent = rig.sent_to(SLAVE).into_iter();
     sent.map(|(time, received)| (time, DrawingOrder::read(&received, SLAVE).expect("an order"))).collect()
 }
 
-/// A field has two strips of 120 rows. The only slave has the time of one strip plus a margin for each strip. If the
-/// boards run i860 code, the order for a field is sent one field earlier.
+/// Tests that the master sends the order for a field one field earlier if the boards run i860 code. Without code, the
+/// order would come one strip and one margin before the field.
 #[test]
 fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {
     const MARGIN_US: u64 = 400;
@@ -59,8 +59,8 @@ fn by_code_a_field_is_ordered_a_field_before_its_first_strip_is() {
     assert!(fields > 3, "{fields}");
 }
 
-/// The beam reaches all strips at the same time, and there is no margin. Each order would therefore be due exactly at
-/// its deadline.
+/// Tests a display that shows all lines at the retrace. With a margin of 0 ns, an order could only be sent at the
+/// deadline of its strip, so there is no order.
 #[test]
 fn no_strip_is_ordered_when_its_beam_is_there() {
     let retrace = |field: PeriodNumber| us(field.0 * FIELD_US);

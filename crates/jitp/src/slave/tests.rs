@@ -1,4 +1,4 @@
-//! Tests of a slave on its board: the fields that it stores, and the strips that it draws.
+//! Tests of a slave: the fields that it stores, and the strips that it draws.
 
 use super::*;
 use crate::config::Interpolation;
@@ -9,7 +9,7 @@ use pxpl5_sim::Span;
 const TRIANGLES: usize = 10;
 const DUAL: Viewpoint = Viewpoint::Dual(Interpolation::Screen);
 
-/// Returns a bench with a slave, and the state shared by its two programs.
+/// Returns a test bench with a slave, and the fields that both programs of the slave use.
 fn slave_of(viewpoint: Viewpoint) -> (Rig, SharedFields) {
     let config = config(DrawingSchedule::Beam { viewpoint, racing: false, strip_rows: 120 });
     let list = list(TRIANGLES);
@@ -46,14 +46,14 @@ fn order_of_strip(field: u64, deadline: Time, view: Option<FrameView>) -> Drawin
 
 const LATE: Time = us(1_000_000);
 
-/// Runs for `us` microseconds, and returns the number of messages that were sent to the renderer in this time.
+/// Simulates `us` microseconds, and returns the number of messages to the renderer in this time.
 fn drawn_after(rig: &mut Rig, us: u64) -> usize {
     let before = rig.sent_to(RENDERER).len();
     rig.run_to(rig.us + us);
     rig.sent_to(RENDERER).len() - before
 }
 
-/// If the field of a strip is still being transformed, the strip must be drawn as soon as the field is ready.
+/// Tests that a strip is drawn as soon as TRANSFORM of its field has ended.
 #[test]
 fn a_strip_waits_for_the_transforms_of_its_field() {
     let (mut rig, _) = slave_of(Viewpoint::Field);
@@ -78,8 +78,8 @@ fn the_last_three_fields_stay_transformed() {
     }
 }
 
-/// Each stored field and the next field have their own parts of memory. These parts do not overlap. If strips are
-/// interpolated between two views, the last part is for these strips.
+/// Tests that a new field never overwrites one of the stored fields. The board's memory has one part for each stored
+/// field and one for the new field. Dual lists need a fifth part for interpolated strips.
 #[test]
 fn fields_that_stay_transformed_lie_apart() {
     assert_eq!(OF_STRIP, MemoryPart::of(4, 5));
@@ -97,7 +97,7 @@ fn fields_that_stay_transformed_lie_apart() {
     }
 }
 
-/// Strips are normally interpolated between two views. If an order has only one view, the slave must use this view.
+/// Tests an order with one view under dual lists, which normally have two views for each field.
 #[test]
 fn a_field_of_one_view_is_drawn_from_it() {
     let messages = [Viewpoint::Field, DUAL].map(|viewpoint| {
@@ -109,8 +109,8 @@ fn a_field_of_one_view_is_drawn_from_it() {
     assert!(messages[0] > 0 && messages[0] == messages[1], "{messages:?}");
 }
 
-/// TRANSFORM of a strip ends after the times of a message, a pass and its triangles. The strip must be drawn only if
-/// TRANSFORM ends before the strip's deadline.
+/// Tests that a strip is drawn only if its TRANSFORM ends before its deadline. The end of TRANSFORM follows from the
+/// timing table.
 #[test]
 fn a_strip_that_is_transformed_when_its_beam_is_there_is_not_drawn() {
     let timing = GpTiming::PAPERS;

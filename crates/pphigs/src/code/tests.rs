@@ -1,4 +1,4 @@
-//! Tests of the addresses in programs.
+//! Tests of the addresses of the i860 programs.
 
 use super::*;
 use crate::layout::{BEGIN_CODE, MESSAGE, ORDER_CODE, ORDER_HEAD, SORT_CODE, TOKEN_CODE, WINDOWS, WINDOWS_CODE};
@@ -7,7 +7,8 @@ use pxpl5_geometry::kernel::{KernelList, KernelPicture};
 
 const SURFACES: [KernelSurface; 3] = [KernelSurface::Gouraud, KernelSurface::Precomputed, KernelSurface::Phong];
 const BOTH: [bool; 2] = [false, true];
-/// Combinations of two properties: the kernel fills bins, and the kernel stores bounding boxes.
+/// Kernels with and without bins and stored bounding boxes, as pairs (bins, boxes). Bins and boxes do not occur
+/// together.
 const BINS: [(bool, bool); 3] = [(true, false), (false, false), (false, true)];
 const PICTURES: [KernelPicture; 3] = [KernelPicture::Frame, KernelPicture::Field, KernelPicture::Grid];
 
@@ -37,8 +38,8 @@ fn end(program: &Program) -> u32 {
     program.base + program.bytes.len() as u32
 }
 
-/// Tests that the programs of a board do not overlap in memory, so that a breakpoint lies in only one of them. Also
-/// tests that the assembler gives no warnings.
+/// Tests that the i860 programs of a board do not overlap in memory, so each address belongs to one program. The
+/// assembler must give no warning for any of them.
 #[test]
 fn no_two_programs_of_a_board_lie_in_the_same_place() {
     for kernel in kernels().filter(Kernel::can_serve_both_eyes) {

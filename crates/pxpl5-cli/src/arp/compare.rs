@@ -13,7 +13,8 @@ use pxpl5::views::results::csv_table;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Compare all policies and warps on one walk through a scene: update rates, draws, triangles, tears, stretch.
+/// Compare all policies and warps on one walk through a scene. Print update rates, drawn objects and triangles, the
+/// widths of gaps at cuts, and the angles by which warps move vertices.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp compare

@@ -10,7 +10,7 @@ use pxpl5::arp::{figures, pictures};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Compare the papers' figures with an ideal renderer, and draw their pictures.
+/// Compare the figures of the papers with an ideal renderer, and draw the pictures of the papers.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp figures
@@ -22,16 +22,16 @@ pub(super) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Write the document of all figures to this file.
+    /// Write the document with all figures to this file.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     write: Option<PathBuf>,
-    /// Fail if this file differs from the document of all figures.
+    /// Fail if this file differs from the document that --write would write.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
     /// Write all pictures into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Print nothing but errors (and the object of --json).
+    /// Print nothing but errors and, with --json, the JSON object.
     #[arg(long, short)]
     quiet: bool,
 }

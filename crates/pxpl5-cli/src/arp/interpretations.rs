@@ -6,8 +6,9 @@ use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::arp::figures::{Interpretations, interpretations_text};
 
-/// Rank the interpretations of the questions that the paper leaves open about table 1 (rings, distances, cascade, hall,
-/// path). Each rate is left out in turn.
+/// Rank the possible answers to the questions that the paper on priority rendering leaves open about its table 1. The
+/// questions concern rings, distances, cascade, hall and path. As a check, each update rate of the table is left out in
+/// turn.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp interpretations
@@ -16,7 +17,7 @@ pub(super) struct InterpretationsArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Print nothing but errors (and the object of --json).
+    /// Print nothing but errors and, with --json, the JSON object.
     #[arg(long, short)]
     quiet: bool,
 }

@@ -12,8 +12,8 @@ use pxpl5::arp::{ArpReport, TearWidths, WalkMemoryReport, WalkOutcome};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Simulate one walk through a scene; print the numbers of draws, the update rates, and the widths of the gaps where
-/// objects are cut.
+/// Simulate one walk of a viewer through a scene. Print how often parts of objects are drawn, the update rates, and the
+/// widths of the gaps where objects are cut.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 arp run --scene gallery --out out/walk --json
@@ -25,10 +25,10 @@ use std::path::{Path, PathBuf};
 pub(super) struct RunArgs {
     #[command(flatten)]
     walk: WalkArgs,
-    /// Write into this folder: report.json, frames.csv, and pictures. The pictures show the cube faces of all display
-    /// memories, and the view of the eye with its lens and (up to 170 degrees) without a lens. Other pictures show the
-    /// memory chosen at each pixel, errors, cells from above, cuts as wires, and updates. The last ones show the scene
-    /// torn at cuts, warped, and without cuts.
+    /// Write report.json, frames.csv and pictures into this folder. Some pictures show the cube faces of all display
+    /// memories, and the view of the eye with its lens and (up to 170 degrees) without a lens. Others show the memory
+    /// chosen at each pixel, errors, the cells from above, the cuts as wires, and updates. The rest show the scene with
+    /// gaps at the cuts, with warping, and without cuts.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.

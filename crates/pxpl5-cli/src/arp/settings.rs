@@ -30,18 +30,18 @@ pub(super) struct WalkArgs {
     /// A built-in scene with a path (gallery, gallery:full); default gallery.
     #[arg(long, value_name = "NAME|FILE")]
     scene: Option<String>,
-    /// Policy that decides which objects are redrawn and when: full, objects or cells; default cells.
+    /// Policy, which decides when an object is drawn again: full, objects or cells; default cells.
     #[arg(long, value_name = "POLICY")]
     policy: Option<String>,
     /// Cut objects at the borders of cells (square areas of the scene): on or off; default on with cells, off with
     /// objects.
     #[arg(long, value_name = "ON|OFF")]
     segment: Option<String>,
-    /// Function by which the movement of vertices falls off with distance from a cut: none, linear, smoothstep or step;
-    /// default linear.
+    /// Region warping, which moves vertices near a cut to close gaps. The movement decreases with the distance from the
+    /// cut: none (no warping), linear, smoothstep or step; default linear.
     #[arg(long, value_name = "FALLOFF")]
     warp: Option<String>,
-    /// How often the display reads the head's orientation: before each field, line or pixel; default field.
+    /// Rate at which the display reads the head's orientation: for each field, line or pixel; default field.
     #[arg(long, value_name = "LATCH")]
     latch: Option<String>,
     /// Lens before the eye: flat, radial:K1, radial:K1:K2, equidistant, or table:FILE with a vector for each pixel;
@@ -58,7 +58,7 @@ pub(super) struct WalkArgs {
     sets: Vec<String>,
     #[command(flatten)]
     pub(super) budget: BudgetArgs,
-    /// Print nothing but errors (and the object of --json).
+    /// Print nothing but errors and, with --json, the JSON object.
     #[arg(long, short)]
     pub(super) quiet: bool,
 }

@@ -20,13 +20,13 @@ pub(super) struct TexelArgs {
     x: u32,
     /// Line of the pixel from the top, counted in the whole frame.
     y: u32,
-    /// Rotation of the head to the left.
+    /// Rotation of the head to the left, in degrees.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
     yaw: f64,
-    /// Rotation of the head upward.
+    /// Rotation of the head upward, in degrees.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
     pitch: f64,
-    /// Tilt of the head to the left.
+    /// Tilt of the head to the left, in degrees.
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
     roll: f64,
     /// Lens before the eye: flat, radial:K1, radial:K1:K2, or equidistant; default flat.

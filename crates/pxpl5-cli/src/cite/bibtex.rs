@@ -52,7 +52,7 @@ fn entry(kind: &str, key: &str, fields: &[(&str, String)]) -> String {
 mod tests {
     use super::*;
 
-    /// Tests that the bibliography `paper/paper.bib` begins with all entries that `pxpl5 cite --format bibtex` prints.
+    /// Tests that paper/paper.bib begins with the output of `pxpl5 cite --format bibtex`.
     #[test]
     fn the_bibliography_of_the_paper_begins_with_these_entries() {
         let paper = include_str!("../../../../paper/paper.bib");

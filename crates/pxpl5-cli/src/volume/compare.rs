@@ -14,8 +14,8 @@ use pxpl5::volume::compare::{ComparePoint, VariantRow, VolumeComparison, compare
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Compare all clips (ways to cut the scene into slices) and projections: brightness over radius, dead zone, connected
-/// share, fragments, passes, volumes per second.
+/// Compare all clips (ways to cut the scene into slices) and projections. The results are brightness over radius, dead
+/// zone, connected share, fragments, passes, and volumes per second.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume compare --scene mig

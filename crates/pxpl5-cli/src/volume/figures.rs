@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Compare the figures of the SpatialGL paper with the model, and redraw its drawings.
+/// Compare the figures of the SpatialGL paper with the model, and redraw the drawings of the paper.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 volume figures
@@ -26,16 +26,16 @@ pub(super) struct FiguresArgs {
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
-    /// Write the document of all figures to this file.
+    /// Write the document with all figures to this file.
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     write: Option<PathBuf>,
-    /// Fail if this file differs from the document of all figures.
+    /// Fail if this file differs from the document that --write would write.
     #[arg(long, value_name = "FILE")]
     check: Option<PathBuf>,
     /// Write the redrawn figures 4 to 12 into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Print nothing but errors (and the object of --json).
+    /// Print nothing but errors and, with --json, the JSON object.
     #[arg(long, short)]
     quiet: bool,
 }

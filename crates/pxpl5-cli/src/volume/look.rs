@@ -29,7 +29,7 @@ struct EyeArgs {
     /// Width and height of the picture, pixels.
     #[arg(long, value_name = "PX", default_value_t = 512, value_parser = whole::<u32>(1, 8192))]
     size: u32,
-    /// Cut away the part of the volume between two angles around the axis from +x to +z, degrees.
+    /// Cut away the part of the volume between two angles, in degrees around the axis from +x to +z.
     #[arg(long, value_name = "FROM:TO", allow_hyphen_values = true, value_parser = cut)]
     cut: Option<[f64; 2]>,
     /// Dim each pixel according to the angle between the screen and the eye.

@@ -23,8 +23,8 @@ use std::path::PathBuf;
 pub(super) struct RunArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Write into this folder: report.json, slices.csv and pictures. The pictures are the sheet of all slices, slice 0
-    /// before and after halftoning, the tiles of all batches, and the volume as an eye sees it.
+    /// Write report.json, slices.csv and pictures into this folder. The pictures show all slices on one sheet, slice 0
+    /// before and after halftoning, the tiles of all batches of slices, and the volume as an eye sees it.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object.

@@ -49,7 +49,8 @@ pub(super) struct SettingOptions {
     /// Number of samples of each pixel: 1, 4 or 16; default 1.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     samples: Option<String>,
-    /// Part of a primitive that is drawn: sampled or connected (beyond the paper); default sampled.
+    /// Pixels of a triangle or sphere that are drawn: sampled (pixels with their centre inside) or connected (beyond
+    /// the paper: also a line along the cut); default sampled.
     #[arg(long, value_name = "COVERAGE")]
     coverage: Option<String>,
     /// Slices that are drawn: each slice, or mirror (half of the slices, beyond the paper); default each.
@@ -68,7 +69,7 @@ pub(super) struct SettingOptions {
     threads: Option<u64>,
     #[command(flatten)]
     pub(super) budget: BudgetArgs,
-    /// Print nothing but errors (and the object of --json).
+    /// Print nothing but errors and, with --json, the JSON object.
     #[arg(long, short)]
     pub(super) quiet: bool,
 }

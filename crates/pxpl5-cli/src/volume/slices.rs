@@ -36,7 +36,7 @@ pub(super) struct SliceArgs {
     slice: u32,
     #[command(flatten)]
     volume: VolumeSettingArgs,
-    /// Form in which the slice is shown.
+    /// Form of the slice to show.
     #[arg(long, value_enum, default_value_t = Part::Both)]
     show: Part,
     /// The file to write (PNG).

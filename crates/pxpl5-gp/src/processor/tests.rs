@@ -1,4 +1,4 @@
-//! Tests of calls, memory and breakpoints.
+//! Tests of the processor: calls of i860 code, memory and breakpoints.
 
 use super::*;
 
@@ -60,8 +60,8 @@ fn a_program_that_changed_itself_is_as_new_when_it_is_loaded_again() {
     }
 }
 
-/// The caches never hold the window of the ring interface, so every read of the window goes to memory. Other addresses
-/// hit the cache after the first read.
+/// Tests that the caches never hold the addresses of the ring interface. A second read of such an address takes longer
+/// than a second read of any other address.
 #[test]
 fn the_window_of_the_ring_is_in_no_cache() {
     let mut processor = Processor::new(NodeId(3), 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
@@ -132,7 +132,7 @@ fn who_writes_over_a_program_changes_it() {
     assert_eq!(processor.register(17), 40);
 }
 
-/// A call with breakpoints records each passed breakpoint. Time and budget are the same as without breakpoints.
+/// Tests that breakpoints are recorded, and that they change neither the time of a call nor its limit of instructions.
 #[test]
 fn a_watched_call_takes_the_same_time_and_the_same_budget() {
     let turns = program("start: nop\nagain: adds -1, r16, r16\n btne r0, r16, again\n bri r1\n nop");

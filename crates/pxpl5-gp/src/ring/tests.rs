@@ -1,4 +1,4 @@
-//! Compares the results of ring.s in memory with a reference model.
+//! Tests of the i860 code in ring.s, which sends and receives messages, against a reference model.
 
 use super::*;
 use crate::processor::CodeVersion;
@@ -32,7 +32,7 @@ fn at(processor: &Processor, address: u32) -> Word {
     processor.word(address).expect("in memory")
 }
 
-/// Addresses of the free queue entries, in the order of their list.
+/// Returns the addresses of the free queue entries, in the order of the linked list.
 fn free_entries(processor: &Processor) -> Vec<u32> {
     let mut entry = at(processor, FREE);
     let mut all = Vec::new();
@@ -43,7 +43,8 @@ fn free_entries(processor: &Processor) -> Vec<u32> {
     all
 }
 
-/// Puts a message into the next buffer, if the interface owns that buffer. Returns true if the message was written.
+/// Writes a message into receive buffer `slot`, as the ring interface does. Returns false if the processor still owns
+/// the buffer.
 fn arrive(processor: &mut Processor, slot: u32, source: u32, header: Word, words: &[Word]) -> bool {
     let descriptor = RX + slot % RX_COUNT * DESCRIPTOR_BYTES;
     if at(processor, descriptor) != 0 {
@@ -62,7 +63,7 @@ fn call(processor: &mut Processor, entry: &str, registers: &[(usize, Word)]) {
     processor.call(&PROGRAM, entry, &registers, BUDGET).expect("it returns");
 }
 
-/// Sends random sequences of messages, interrupts and reads. The program must receive the messages in order of arrival.
+/// Sends messages, interrupts and reads in random order. The program must receive the messages in order of arrival.
 #[test]
 fn a_program_gets_what_arrived_in_order_and_everything_is_given_back() {
     let mut numbers = SplitMix64::new(5);
@@ -164,7 +165,7 @@ fn a_wrong_length_or_kind_is_refused_and_the_next_message_is_received() {
     }
 }
 
-/// Compares chains of every length with a model of the ring of descriptors.
+/// Tests chains of all lengths against a reference model of the descriptors, which lie in a circular buffer.
 #[test]
 fn a_chain_is_the_descriptors_of_its_messages_and_frees_those_of_the_chain_before() {
     let mut numbers = SplitMix64::new(23);
@@ -229,7 +230,7 @@ fn a_chain_without_room_or_with_a_wrong_length_is_not_started() {
     assert_eq!((processor.register(16), at(&processor, ISSUED)), (0, 2));
 }
 
-/// The interface writes a header and at most a full buffer after it, even for a message that claims to be longer.
+/// Tests a message that is longer than a receive buffer. The interface must stop at the end of the buffer.
 #[test]
 fn a_buffer_has_the_header_and_ends_where_the_next_one_begins() {
     let mut processor = board();
@@ -240,7 +241,7 @@ fn a_buffer_has_the_header_and_ends_where_the_next_one_begins() {
     assert_eq!([second - 4, second].map(|address| at(&processor, address)), [9, 0]);
 }
 
-/// Returns a list of one command with this many words.
+/// Returns a list that contains one command of `words_each` words.
 fn commands(words_each: u32) -> CommandList {
     let runs = vec![CommandRun { opcode: 1, words_each, count: 1 }];
     CommandList { runs, context: 0, copies: Vec::new(), content: None }
@@ -284,7 +285,7 @@ fn a_memory_without_room_for_it_is_a_fault_that_says_where() {
     assert_eq!(error.to_string(), "graphics processor at node 2: no memory for 1 words at 0x000f2004");
 }
 
-/// Calls preserve the interrupt enable bit of psr.
+/// Tests that a call leaves the interrupt enable bit of the register psr as it was.
 #[test]
 fn interrupts_are_masked_inside_only() {
     let setting = i860::assemble("psr", 0x1000, "set: st.c r16, psr\n bri r1\n nop").expect("it assembles");

@@ -123,8 +123,8 @@ mod tests {
 
     #[test]
     fn the_interval_of_a_positive_quantity_stays_positive() {
-        // Mean 10, sample sd sqrt(100 + 100 + 0) / sqrt(2) = 10; t with 2 degrees of freedom is 4.303: the symmetric interval is
-        // 10 - 24.8 to 10 + 24.8.
+        // Mean 10, sample sd sqrt(100 + 100 + 0) / sqrt(2) = 10; t with 2 degrees of freedom is 4.303: the symmetric
+        // interval is 10 - 24.8 to 10 + 24.8.
         let values = [0.1, 10.0, 19.9];
         let factor = (4.302_653 * 9.9 / 3f64.sqrt() / 10.0f64).exp();
         let interval = MeanInterval::of(&values, CONFIDENCE);

@@ -109,7 +109,8 @@ mod tests {
         );
     }
 
-    /// An interval that is 1.2 times too wide needs 1.44 times the seeds: 7.2, so 8.
+    /// Tests the number of further seeds. If an interval from 5 seeds is 1.2 times too wide, 1.44 times as many seeds
+    /// are needed: 7.2, rounded up to 8.
     #[test]
     fn seeds_grow_with_the_square_of_the_width_and_at_most_double() {
         assert_eq!(TENTH.seeds_to_add(&error(0.6), 5), 3);

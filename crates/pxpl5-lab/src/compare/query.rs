@@ -114,7 +114,8 @@ impl Common<'_> {
 }
 
 impl CompareQuery {
-    /// Creates a comparison of the usual rows with [`LEAST_SEEDS`] seeds. `shared` has the settings that all rows share.
+    /// Creates a comparison of the usual rows with [`LEAST_SEEDS`] seeds. `shared` has the settings that all rows
+    /// share.
     #[must_use]
     pub fn new(shared: ExperimentFile) -> Self {
         Self {

@@ -29,8 +29,10 @@ impl CompareQuery {
 
     fn header(&self) -> Result<Header, StudyError> {
         let (plan, rows) = self.identity()?;
+        // The seeds of the query replace the seed of the settings.
+        let shared = self.shared.settings.iter().filter(|(key, _)| *key != "seed");
         let mut settings: BTreeMap<String, String> =
-            self.shared.settings.iter().map(|(key, setting)| (key.clone(), plain(&setting.value))).collect();
+            shared.map(|(key, setting)| (key.clone(), plain(&setting.value))).collect();
         let mut put = |key: &str, value: String| drop(settings.insert(key.to_owned(), value));
         // The query's own settings have the names of its fields.
         put("seeds", format!("{:?}", self.seeds));

@@ -139,8 +139,8 @@ impl HeadChoice {
 /// Prefix of the keys that assign the columns of a recording's file.
 pub(super) const COLUMNS: &str = "head.columns.";
 
-/// Builds the head motion that is called `name`. The motion `scene` is the motion in front of the scene, with `seed` for
-/// its sway. The motion `walk` follows the path of the scene.
+/// Builds the head motion that is called `name`. The motion `scene` is the motion in front of the scene, with `seed`
+/// for its sway. The motion `walk` follows the path of the scene.
 fn moving(
     file: &ExperimentFile,
     name: &str,

@@ -77,9 +77,9 @@ pub(super) const KEYS: [Number; 6] = [
         Key {
             default: "0 (assumed: the papers' pictures are not distorted)",
             ..Key::new(
-                "hmd.lens",
-                "radial distortion of the lens before an eye's picture; the model shows flat pictures without a lens",
-                KeyValues::Real(0.0, 0.0),
+                LENS,
+                "radial distortion of the lens before an eye's picture; only 0 is possible, because the model shows flat pictures without a lens",
+                KeyValues::NUMBER,
             )
         },
         |config, value| config.lens_distortion = value,
@@ -88,6 +88,7 @@ pub(super) const KEYS: [Number; 6] = [
 ];
 
 const FAR: &str = "hmd.far";
+const LENS: &str = "hmd.lens";
 
 /// Reads the parameters of the head-mounted display.
 ///
@@ -105,10 +106,15 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
         }
         set(&mut config, value);
     }
-    // Each number is within its range, so only the order of the planes can be wrong.
-    Hmd::new(config).map_err(|error| match file.get(FAR).or_else(|| file.get("hmd.near")) {
-        Some(setting) => wrong(FAR, setting, "a number above hmd.near, at most 1e9"),
-        None => error,
+    // Each number is within its range, so only the lens and the order of the planes can be wrong.
+    Hmd::new(config).map_err(|error| {
+        let is_lens = &*error.name == "lens_distortion";
+        let setting = if is_lens { file.get(LENS) } else { file.get(FAR).or_else(|| file.get("hmd.near")) };
+        match setting {
+            Some(setting) if is_lens => wrong(LENS, setting, &error.expected),
+            Some(setting) => wrong(FAR, setting, "a number above hmd.near, at most 1e9"),
+            None => error,
+        }
     })
 }
 

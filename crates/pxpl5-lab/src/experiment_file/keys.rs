@@ -1,12 +1,13 @@
 //! The keys of an experiment file, with their explanations.
 
+use super::ExperimentFile;
 use super::head::COLUMNS;
 use super::hmd;
 use super::motion::PathChoice;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Aim, Every, FIELDS_RANGE, HeadPlace, Level, Pixels, Registry, Reprojection};
-use pxpl5_sim::parameters::{Key, KeyValues, SettingError, names};
+use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
 use tracking::motion::{Axes, Columns, End};
 
 /// A key of an experiment file, with an explanation for the user.
@@ -211,6 +212,25 @@ const COMMON: &[Key] = &[
 /// Returns the key with a name, among the keys that exist for every registry.
 pub(super) fn common(name: &str) -> Option<&'static Key> {
     COMMON.iter().chain(hmd::KEYS.iter().map(|(key, ..)| key)).find(|key| key.name == name)
+}
+
+impl ExperimentFile {
+    /// Returns the value of a key that exists for every registry.
+    fn common(&self, name: &str) -> Result<Option<KeyValue>, SettingError> {
+        common(name).map_or(Ok(None), |key| self.value(key))
+    }
+
+    pub(super) fn flag(&self, name: &str) -> Result<Option<bool>, SettingError> {
+        Ok(self.common(name)?.and_then(|value| if let KeyValue::Flag(flag) = value { Some(flag) } else { None }))
+    }
+
+    pub(super) fn whole(&self, name: &str) -> Result<Option<u64>, SettingError> {
+        Ok(self.common(name)?.and_then(|value| if let KeyValue::Whole(number) = value { Some(number) } else { None }))
+    }
+
+    pub(super) fn number(&self, name: &str) -> Result<Option<f64>, SettingError> {
+        Ok(self.common(name)?.and_then(|value| if let KeyValue::Real(number) = value { Some(number) } else { None }))
+    }
 }
 
 /// Former names of keys, each with the current name. The next version accepts the current names only.

@@ -45,7 +45,8 @@ pub struct MotionChoice {
     /// Distance from the scene's centre in metres, for the paths still, look and orbit. `None` fits the scene into the
     /// view.
     pub distance: Option<f64>,
-    /// Rate of the turn in degrees per second, for the paths orbit and pan. `None` for the mean of recorded head motion.
+    /// Rate of the turn in degrees per second, for the paths orbit and pan. `None` for the mean of recorded head
+    /// motion.
     pub deg_per_s: Option<f64>,
     /// Scale factor of the head's random sway, 0 to 10. `None` for the default of the path.
     pub sway: Option<f64>,

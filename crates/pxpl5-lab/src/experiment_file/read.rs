@@ -1,6 +1,6 @@
 //! Typed access to the settings of an experiment file.
 
-use super::{ExperimentFile, Setting, keys};
+use super::{ExperimentFile, Setting};
 use crate::head_names;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, Value as Number};
 use std::path::Path;
@@ -40,23 +40,6 @@ impl ExperimentFile {
             }
         };
         value.map(Some).ok_or_else(|| wrong(key.name, setting, &key.expected()))
-    }
-
-    /// Returns the value of a key that exists for every registry.
-    fn common(&self, name: &str) -> Result<Option<KeyValue>, SettingError> {
-        keys::common(name).map_or(Ok(None), |key| self.value(key))
-    }
-
-    pub(super) fn flag(&self, name: &str) -> Result<Option<bool>, SettingError> {
-        Ok(self.common(name)?.and_then(|value| if let KeyValue::Flag(flag) = value { Some(flag) } else { None }))
-    }
-
-    pub(super) fn whole(&self, name: &str) -> Result<Option<u64>, SettingError> {
-        Ok(self.common(name)?.and_then(|value| if let KeyValue::Whole(number) = value { Some(number) } else { None }))
-    }
-
-    pub(super) fn number(&self, name: &str) -> Result<Option<f64>, SettingError> {
-        Ok(self.common(name)?.and_then(|value| if let KeyValue::Real(number) = value { Some(number) } else { None }))
     }
 
     /// Converts the value of a setting to a parameter. A TOML value with a fraction becomes a real number. Any other

@@ -274,7 +274,8 @@ fn what_is_said_of_a_head_is_checked() {
     assert!(evaluated.contains("head.motion is missing"), "{evaluated}");
 }
 
-/// Returns the plan of `e.toml`, with a recorded motion in which the head moves `x` metres in one second.
+/// Resolves the experiment file `e.toml`, whose motion is a recording. In this recording, the head moves `x` metres in
+/// one second.
 fn moved_to(x: f64, folder: &Path) -> Plan {
     let rows = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
     std::fs::write(folder.join("head.csv"), rows).expect("writable");

@@ -167,7 +167,8 @@ mod tests {
     use pxpl5_machine::MachineConfig;
     use pxpl5_run::{Outcome, Pixels};
 
-    /// Runs a scene with a number of kept regions and a rule for finished regions.
+    /// Runs a scene with backing stores for `kept` finished regions. `finished` is the rule for the use of the backing
+    /// store.
     fn run(scene: &str, kept: u64, finished: FinishedRegions) -> Outcome {
         let reading = Reading { kept, finished, ..Reading::USUAL };
         let machine = reading.on(MachineConfig::small_hmd()).expect("in range");
@@ -175,8 +176,8 @@ mod tests {
         Experiment::new(machine, reading.pipeline(), scene).fields(40).pixels(Pixels::Off).run().expect("it runs")
     }
 
-    /// Compares whole traces. A run that has met no full store must be the run with any larger store. A run that has
-    /// met one must be able to differ, or the flag would tell nothing.
+    /// Tests that a run whose backing stores were never full has the same trace as each run with larger stores. Runs
+    /// with a full store must differ in more than five cases, or the test would prove nothing.
     #[test]
     fn a_run_that_met_no_full_store_is_the_run_with_every_larger_store() {
         let (mut shared, mut differing) = (0, 0);

@@ -479,15 +479,15 @@ mod tests {
     use pxpl5_run::TestScene;
     use pxpl5_scene::config::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
 
-    /// Returns the expected number of regions that a right-angled triangle touches. Both legs are parallel to the
-    /// region borders, and the corners are spread evenly over `TYPICAL_SPREAD_PX`.
+    /// Returns the mean number of regions that a right-angled triangle touches. Its two short sides are parallel to the
+    /// region borders and `leg` pixels long. Its position is random within `TYPICAL_SPREAD_PX`.
     ///
-    /// A region counts if the triangle covers the centre of one of its pixels. A leg therefore crosses a border if
-    /// pixel centres lie on both sides, which holds for leg - 1 of all positions. Four borders separate the five
-    /// columns of regions, and three borders separate the four rows. The triangle's bounding box touches on average
-    /// `(1 + 4 (leg - 1) / width)(1 + 3 (leg - 1) / height)` regions. The triangle does not reach one corner of the
-    /// box. Some boxes contain a point where four regions meet. In half of these cases the triangle therefore touches
-    /// one region less.
+    /// The triangle touches the regions of those pixels whose centres it covers. A short side crosses a border at
+    /// `leg - 1` of its possible positions. Four borders separate the columns of regions, which gives the factor
+    /// `1 + 4 (leg - 1) / width`. Three borders separate the rows, which gives `1 + 3 (leg - 1) / height`.
+    ///
+    /// The product of both factors is the mean for the triangle's bounding box. In some positions, the box contains a
+    /// point where four regions meet. In half of these positions, the triangle misses one of the four regions.
     fn expected(leg: f64) -> f64 {
         let [width, height] = TYPICAL_SPREAD_PX;
         let columns = 4.0 * (leg - 1.0) / width;
@@ -495,8 +495,7 @@ mod tests {
         (1.0 + columns) * (1.0 + rows) - columns * rows / 2.0
     }
 
-    /// The end of a range can be the preset's value. A value of one preset alone, or another line of the photodiode,
-    /// makes a difference.
+    /// Tests which changes of parameters require new machines. A change to the preset's own value requires none.
     #[test]
     fn only_changes_that_reach_a_machine_or_the_photodiode_make_other_machines() {
         let bench = Bench::new(Level::Transaction);

@@ -45,7 +45,7 @@ mod tests {
     use super::*;
     use crate::figures::FIGURES;
 
-    /// Returns row 17 of ACCURACY.md, published as 54 to 57 ms.
+    /// Returns row 17 of ACCURACY.md for a simulated value. The published value of this row is 54 to 57 ms.
     fn row_of_figure_17(value: f64, unprinted: Option<[f64; 2]>) -> FigureRow {
         let figure = FIGURES.iter().find(|figure| figure.id == "17").expect("listed");
         figure.row(FigureValue { unprinted, ..FigureValue::from(value) })

@@ -328,8 +328,8 @@ fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
 /// leave up to 5 % of a short run idle.
 const FULL: f64 = 0.95;
 
-/// Returns the limiting resource of a run in words: a board that is always busy, or else the longest wait in the latency
-/// with the busiest board of this resource.
+/// Returns the limiting resource of a run in words: a board that is always busy, or else the longest wait in the
+/// latency with the busiest board of this resource.
 fn because(outcome: &Outcome) -> Option<String> {
     let Utilisation { renderers, gps, ports, ring, .. } = Utilisation::of(outcome.record())?;
     let (renderer, gp) = (("renderer", renderers.executing), ("GP", gps.busy));

@@ -284,8 +284,8 @@ mod tests {
     }
 
     proptest! {
-        /// Tests that a search finds the limit for any hints. In this test, all sizes up to the limit reach the goal,
-        /// and all larger sizes miss the goal.
+        /// Tests that a search with any hints finds the limit, if all sizes up to the limit reach the goal and no
+        /// larger size does.
         #[test]
         fn hints_change_the_number_of_trials_alone(
             limit in 0u32..5_000,
@@ -297,7 +297,8 @@ mod tests {
             prop_assert_eq!((found.triangles, found.first_miss), (limit, Some(limit + 1)));
         }
 
-        /// Tests that the search without islands finds the same limit for any hints, right or wrong, and any misses.
+        /// Tests that the fast search finds the same largest size as the full search, for any hints and any missed
+        /// sizes.
         #[test]
         fn islands_and_wrong_hints_do_not_change_the_largest_size(
             misses in proptest::collection::btree_set(1u32..400, 0..20),
@@ -311,7 +312,7 @@ mod tests {
             prop_assert_eq!(most_triangles(ceiling, &hints, reached), Ok(whole.triangles));
         }
 
-        /// Tests that all sizes reach the goal from `unbroken_from` up to the result.
+        /// Tests that every size from `unbroken_from` to the result reaches the goal.
         #[test]
         fn all_sizes_of_the_unbroken_row_reach_the_goal(misses in proptest::collection::btree_set(1u32..400, 1..20)) {
             let found = of(400, |size| !misses.contains(&size));

@@ -116,7 +116,7 @@ fn rounding_percent(fits: &[Fit]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Tests that fits do not depend on the cache of experiments that all interpretations share.
+    /// Tests that the fit of an interpretation is the same with a shared cache of runs and with an empty cache.
     #[test]
     fn runs_that_readings_share_change_no_fit() {
         let shared = Bench::new(Level::Analytic).with_mig(1, 12);

@@ -79,8 +79,8 @@ mod tests {
         assert_eq!(found, at_once);
     }
 
-    /// Tests that rows do not depend on the point that loads the scene first. The same scene with and without its back
-    /// faces counts as two scenes.
+    /// Tests that the rows are the same if the points are run in the opposite order. The two points share a scene, once
+    /// with and once without its back faces.
     #[test]
     fn a_row_does_not_depend_on_the_points_before_it() {
         // Half of a sphere's triangles face away from the eye.

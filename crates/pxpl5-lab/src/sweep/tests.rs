@@ -208,8 +208,8 @@ fn files_named_by_a_sweep_are_beside_it_in_axes_too() {
     let _ = std::fs::remove_dir_all(&place);
 }
 
-/// Tests that a parameter space of any size takes little memory. The number of points is computed before any value, and
-/// no value is stored. Stored values of 13 axes of ten million took 9 GB, and those of ten million seeds 560 MB.
+/// Tests that a sweep stores ranges and not their values. An earlier version stored the values, and needed 9 GB for 13
+/// axes of ten million values.
 #[test]
 fn a_space_of_any_size_takes_no_memory_for_its_values() {
     let keys = [
@@ -297,8 +297,8 @@ fn a_sweep_whose_model_was_edited_is_another_one() {
     let _ = std::fs::remove_dir_all(&place);
 }
 
-/// A glTF file names the file of its vertices. The text of the glTF file stays the same. In a build that does not read
-/// glTF, no point has a result.
+/// Tests that a change of a glTF scene's binary file changes the hash of a sweep, although the glTF file stays the
+/// same. A build without the glTF reader cannot read the scene and keeps the hash.
 #[test]
 fn a_sweep_whose_models_buffer_was_edited_is_another_one() {
     let place = folder("buffer");

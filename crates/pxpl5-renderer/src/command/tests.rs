@@ -233,8 +233,8 @@ fn a_phong_triangle_pays_for_its_normals_and_the_objects_colour() {
     assert_eq!(expected, 292);
 }
 
-/// Returns the clocks of a sphere's instructions from *enable all* to the store of the depth: enable, sign, radicand,
-/// root, depth, compare, store.
+/// Returns the clocks in which a sphere finds its pixels and stores their depths. `root` is the number of clocks of the
+/// square root, and `z` is the number of bits of a depth.
 const fn sphere_coverage_clocks(root: u32, z: u32) -> u32 {
     2 + 48 + 48 + root + 32 + 2 * z + 7 * SET_UP_CLOCKS
 }
@@ -315,8 +315,8 @@ fn a_label_of_no_command_is_named() {
     assert_eq!((error.position, error.kind), (0, DecodeErrorKind::NotTheCommand(0xEE)));
 }
 
-/// Tests the scratch that spheres need: a root of 12 bits, or of 10 bits in a scratch of 30 bits, and a second field.
-/// The width of the second field is the larger width of the depth and the square of the root.
+/// Tests the scratch memory that a sphere needs: for the root, and for the wider of the depth and the root's square.
+/// The root has 12 bits, or 10 bits if the scratch memory has fewer than 36 bits.
 #[test]
 fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
     for z in 8..=24 {
@@ -332,8 +332,8 @@ fn spheres_need_room_for_a_root_and_the_wider_of_depth_and_square() {
     }
 }
 
-/// Tests roots of 10 bits. Operands are defined for a root of 12 bits. A root of 10 bits is a quarter of this root,
-/// computed from a sixteenth of the square.
+/// Tests the shifts of operands for a root of 10 bits instead of 12 bits. Operands are made for 12 bits. The square of
+/// a 10-bit root is a sixteenth (a shift by 4), and the root is a quarter (a shift by 2).
 #[test]
 fn shifts_of_a_sphere_make_up_for_a_shorter_root() {
     let body = SphereBody { root_shift: 3, depth_shift: 5, ..SphereBody::default() };
@@ -357,7 +357,8 @@ fn shifts_of_a_sphere_make_up_for_a_shorter_root() {
     }
 }
 
-/// A block has 16,384 pixels of 32 bits. If each of 64 chips moves 4 bits a clock, a block takes 2,048 clocks.
+/// Tests the time to move the 16,384 pixels of a region, with 32 bits each, to the backing store. Each of 64 chips
+/// moves 4 bits per clock, so the region takes about 2,048 clocks.
 #[test]
 fn the_time_of_a_backing_block_is_that_of_four_bits_a_clock_and_chip() {
     let clocks = crate::RendererTiming::PAPERS.backing_block_clocks;

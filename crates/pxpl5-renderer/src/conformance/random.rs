@@ -237,7 +237,7 @@ mod tests {
     use super::*;
     use std::collections::{BTreeMap, BTreeSet};
 
-    /// Tests that every kind of command occurs often enough in random lists.
+    /// Tests the frequencies of the commands in random lists.
     #[test]
     fn commands_come_in_the_shares_that_are_meant() {
         let layout = Layout::rendering_control_phong();
@@ -325,7 +325,8 @@ mod tests {
         }
     }
 
-    /// The test recognizes a triangle by the sum of its three edge expressions, which is a constant.
+    /// Tests the share of random edges that form a triangle. The sum of a triangle's three edge expressions has no
+    /// slope.
     #[test]
     fn most_edges_are_those_of_a_triangle_of_any_size() {
         let mut random = Random::new(5);
@@ -344,8 +345,8 @@ mod tests {
         assert!((1..=5).all(|digits| sizes.get(&Some(digits)).copied().unwrap_or(0) > 30), "{sizes:?}");
     }
 
-    /// The test computes the middle of each ellipse, where both slopes are 0. The value at the middle is the scale
-    /// times the radius squared.
+    /// Tests the share of random silhouettes that are ellipses. At the middle of an ellipse both slopes are 0, and the
+    /// value is the scale times the squared radius.
     #[test]
     fn most_silhouettes_are_ellipses_around_a_pixel() {
         let mut random = Random::new(6);

@@ -265,7 +265,7 @@ mod tests {
     use super::*;
     use crate::conformance::Random;
 
-    /// Returns the bounds of one triangle of a batch.
+    /// Returns the bounds of a triangle, computed as one of the triangles of a batch.
     fn bounds(edges: &[Linear; 3]) -> Option<Bounds> {
         let mut all = Edges::default();
         all.set(5, *edges);
@@ -281,8 +281,8 @@ mod tests {
         Linear { a: random.signed(12), b: random.signed(12), c: random.signed(20) }
     }
 
-    /// Returns an edge expression with random coefficients of any size or zero. Constants can be extreme, so many of
-    /// these expressions overflow in the array.
+    /// Returns an edge expression with random coefficients of 1 to 32 bits. Many of these expressions overflow in the
+    /// array of one-bit processors.
     fn any_edge(random: &mut Random) -> Linear {
         let [a, b, c] = [(); 3].map(|()| {
             let bits = 1 + random.below(32) as u32;
@@ -291,7 +291,8 @@ mod tests {
         Linear { a, b, c: [c, c ^ i32::MAX][random.below(2) as usize] }
     }
 
-    /// Checks that the pixels inside random triangles are within the bounds, and returns the number of these pixels.
+    /// Checks that the bounds of random triangles contain all pixels inside the triangles. Returns the number of these
+    /// pixels.
     fn pixels_lie_within(triangles: u32, edge: fn(&mut Random) -> Linear) -> usize {
         let mut random = Random::new(5);
         let mut inside = 0;
@@ -327,7 +328,7 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// Returns a random triangle with edges that are positive inside, or `None` if its corners lie on a line.
+    /// Returns the corners and the edges of a random triangle, or `None` if the corners lie on one line.
     fn triangle(random: &mut Random) -> Option<([[i32; 2]; 3], [Linear; 3])> {
         let mut corners = [(); 3].map(|()| [random.between(-70, 200) as i32, random.between(-70, 200) as i32]);
         let [[ax, ay], [bx, by], [cx, cy]] = corners;
@@ -344,7 +345,8 @@ mod tests {
         (area != 0).then(|| (corners, [edge(p, q), edge(q, r), edge(r, p)]))
     }
 
-    /// The test uses integer corners and slopes, so that no row ends within the margin around a pixel.
+    /// Tests that the bounds of a triangle contain no pixel outside the triangle. The bounds normally include a small
+    /// margin. The corners are integers, so the margin contains no pixel.
     #[test]
     fn bounds_end_where_the_triangle_does() {
         let mut random = Random::new(6);

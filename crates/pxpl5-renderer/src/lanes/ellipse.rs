@@ -119,7 +119,7 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// The test uses coefficients of any size, so that many values in the array exceed 48 bits and wrap.
+    /// Tests ellipses with such large coefficients that values exceed the 48 bits of the array and wrap around.
     #[test]
     fn quadratics_that_wrap_leave_no_pixel_out() {
         let mut random = Random::new(12);
@@ -143,8 +143,8 @@ mod tests {
         assert!(inside > 100_000, "{inside}");
     }
 
-    /// The test uses coefficients whose squares are rounded. At a circle of a single pixel, or at the last row of a
-    /// circle, the difference of the squares is small. Rounding can cancel this difference.
+    /// Tests circles with radii of 0 to 4 pixels and coefficients so large that their squares are rounded. At the first
+    /// and last row, the test subtracts nearly equal squares, where rounding has the greatest effect.
     #[test]
     fn small_circles_reach_their_last_row_however_numbers_round() {
         let mut random = Random::new(13);
@@ -162,7 +162,8 @@ mod tests {
         }
     }
 
-    /// The test uses small integers, so that no row ends within the margin around a pixel.
+    /// Tests that the columns of an ellipse contain no pixel outside the ellipse. The coefficients are small integers,
+    /// so the margin around the ellipse contains no pixel.
     #[test]
     fn columns_end_where_the_ellipse_does() {
         let mut random = Random::new(10);

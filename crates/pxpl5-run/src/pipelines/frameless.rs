@@ -252,7 +252,7 @@ mod tests {
     use pxpl5_sim::Time;
     use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-    /// Returns a block of update 3 that arrives at `ns` nanoseconds at one of two ports.
+    /// Returns a block of update 3 that arrives at `port` after `ns` nanoseconds.
     fn block(port: u16, region: u16, ns: u64) -> Arrival {
         let target = CopyTarget {
             frame_buffer: NodeId(port),

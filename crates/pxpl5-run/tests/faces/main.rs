@@ -81,8 +81,8 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
     let turns = outcomes.each_ref().map(|outcome| outcome.rotation_latencies()[..55].to_vec());
     assert!(turns[1..].iter().all(|other| *other == turns[0]));
     for latency in &turns[0] {
-        // Nine words at 5 MB/s; 8 + 16 stages of 25 ns where one memory needs no comparator; 132 whole lines of 780 pixels of
-        // 11/135 us from the field's first pixel to its middle.
+        // Nine words at 5 MB/s; 8 + 16 stages of 25 ns where one memory needs no comparator; 132 whole lines of 780
+        // pixels of 11/135 us from the field's first pixel to its middle.
         assert_eq!((latency.host, latency.pipeline), (Span(7_200_000), Span(600_000)));
         let parts: u64 = latency.parts().iter().map(|(_, span)| span.0).sum();
         assert_eq!(latency.total(), Span(parts));

@@ -209,7 +209,7 @@ fn bench(solid: &mut Solid, number: usize) {
 mod tests {
     use super::*;
 
-    /// Returns the distance of a point from a line segment on the floor, metres.
+    /// Returns the distance of a point from a line segment on the floor, in metres.
     fn distance(point: DVec3, from: DVec3, to: DVec3) -> f64 {
         let along = to - from;
         let share = ((point - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);

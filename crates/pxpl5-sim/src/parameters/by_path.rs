@@ -148,8 +148,8 @@ pub trait PathSettings: Sized + 'static {
         self.numbers().iter().filter(|number| !number.is_in_range()).map(Parameter::warning).collect()
     }
 
-    /// Sets the setting at a path to the value that a text denotes. Errors name `place`, the source of the text, such as
-    /// `--set`.
+    /// Sets the setting at a path to the value that a text denotes. Errors name `place`, the source of the text, such
+    /// as `--set`.
     ///
     /// # Errors
     ///

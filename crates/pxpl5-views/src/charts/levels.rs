@@ -81,7 +81,8 @@ mod tests {
         assert_eq!(super::front(&[at(10.0, 1.0)]), None);
     }
 
-    /// Tests the position of the first disc in the chart. The markers of the first series are discs.
+    /// Tests the position of a point in a chart with a logarithmic axis. A factor of 10 is a third of the distance from
+    /// 100 to 100,000.
     #[test]
     fn a_tenth_of_the_speed_stands_a_power_further_left() {
         let place = |speed: f64| {

@@ -73,8 +73,8 @@ mod tests {
         found.filter_map(|node| node.attribute(name)).map(str::to_owned).collect()
     }
 
-    /// Returns the corners of the curves in whole drawing units. The first curve and the axes are black, so the
-    /// function recognizes curves by the width of their strokes.
+    /// Returns the corners of the curves in an SVG chart. Curves are recognized by the width of their strokes, because
+    /// the axes can have the colour of a curve.
     fn courses(svg: &str) -> Vec<Vec<(f64, f64)>> {
         let document = roxmltree::Document::parse(svg).expect("XML");
         let lines = document.descendants().filter(|node| node.has_tag_name("polyline"));
@@ -103,8 +103,8 @@ mod tests {
         assert!(svg.contains("a &lt; b") && svg.contains("error, px"));
     }
 
-    /// The axis from 0.1 to 100 has three decades. The value 1 therefore lies at a third of the height, and the value 0
-    /// has no position.
+    /// Tests a logarithmic axis from 0.1 to 100, which has three decades. The value 1 lies at a third of the height.
+    /// The value 0 has no place on the axis.
     #[test]
     fn decades_are_equally_high() {
         let points = vec![(0.0, 0.1), (1.0, 1.0), (2.0, 0.0), (3.0, 100.0), (4.0, 10.0)];

@@ -113,7 +113,8 @@ mod tests {
         assert_eq!(axis.marks(), [14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0]);
     }
 
-    /// The numbers 0.1 to 60 lie within the decades from 0.1 to 100. Numbers that are not positive have no position.
+    /// Tests a logarithmic axis for the values 0.1 to 60, which must reach from 0.1 to 100. Values of 0 or less have no
+    /// place on the axis.
     #[test]
     fn decades_end_at_powers_of_ten() {
         let axis = Axis::reaching(&AxisScale::Decades, [0.1, 60.0, 0.0, -3.0, f64::NAN].into_iter());

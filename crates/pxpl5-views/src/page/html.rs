@@ -73,8 +73,7 @@ mod tests {
         assert!(page.contains("data:image/svg+xml;base64,PHN2Zy8+"));
     }
 
-    /// Tests that a page fits on a screen of 390 px. Tables and the timeline are in elements that scroll, and long
-    /// words are broken. The minimum width of a flexible box is less than 390 - 2 x 16 px.
+    /// Tests that a page fits on a screen of 390 px. Tables and the timeline must scroll, and long words must break.
     #[test]
     fn nothing_makes_a_page_wider_than_a_telephone() {
         let report = json!({"scene": "x".repeat(200), "config_hash": "f".repeat(32), "latency_parts_ms": [{"name": "copy"}],

@@ -194,7 +194,7 @@ mod tests {
         assert_eq!(buffers.faults(), (1, Some("expected buffer 0 or 1, found 2")));
     }
 
-    /// A region's picture whose pixels all have one colour.
+    /// A region whose pixels all have the same colour.
     #[derive(Debug)]
     struct Plain(Word);
 
@@ -204,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Returns one of the two messages of a 64 x 32 region. The surface has 100 x 60 pixels.
+    /// Returns one of the two messages with the pixels of a region of 64 x 32 pixels.
     fn part(region: u16, part: u32, picture: u64, colour: Word) -> RegionPixels {
         let grid = RegionGrid { width: 100, height: 60, region_width: 64, region_height: 32 };
         let target = CopyTarget {

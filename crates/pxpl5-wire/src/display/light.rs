@@ -72,8 +72,8 @@ mod tests {
         assert!(light(0, 0).is_instant() && !light(0, 1).is_instant());
     }
 
-    /// Computes the mean and the variance of a pixel's light by a sum over the pixel's brightness. The brightness rises
-    /// as 1 - e^(-t/r) while the pixel is driven, and falls as e^(-t/r) afterwards.
+    /// Tests the mean time and the width of a pixel's light against a sum over small steps of time. The brightness
+    /// rises as 1 - e^(-t/r) while the pixel is driven, and then falls as e^(-t/r). Here r is the response time.
     #[test]
     fn centre_and_width_are_those_of_the_sum_over_the_brightness() {
         let (persistence, response) = (2_000.0_f64, 400.0_f64);

@@ -10,16 +10,17 @@ use pxpl5_gp::{Gp, Work};
 use pxpl5_wire::{Body, CopyContent, CopyTarget, Lines, NodeId, RegionGrid, RegionId};
 use std::sync::Arc;
 
-/// Format of the faces in the memories of a display.
+/// Pictures of six faces of a cube, which the firmware draws into the display memories of the address recalculation
+/// display.
 #[derive(Clone, Debug)]
 pub struct Faces {
     /// Ring port of each display memory.
     pub memories: Vec<NodeId>,
-    /// Viewport and shading of each face.
+    /// Viewport, shading and layout of the pixels of each face.
     pub picture: Picture,
-    /// Values of a texel that are copied to a display memory, such as colour and depth.
+    /// Parts of a texel that are copied to a display memory, such as colour and depth.
     pub content: CopyContent,
-    /// Cache of warped display lists, which all slaves share. The cache is empty at first.
+    /// Cache of display lists with displaced vertices. All slaves of the machine use the same cache.
     pub warped: WarpedLists,
 }
 
@@ -30,7 +31,7 @@ impl Faces {
         self.picture.viewport.grid().width
     }
 
-    /// Returns the regions of all six faces, one face below the other.
+    /// Returns the grid of regions of an update, in which the six faces lie one below the other.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         region_grid(self.face_texels())
@@ -75,12 +76,12 @@ impl Drawn for Faces {
         messages.map(|words| (words.len() as u32, Body::Words(words))).into()
     }
 
-    /// Returns the share with displaced vertices if the update has a warp. Otherwise returns the share unchanged.
+    /// Returns the share with displaced vertices if the update has a warp, and the unchanged share otherwise.
     fn placed(&self, share: &Share, update: &FaceUpdate) -> Share {
         if update.warp.is_none() { share.clone() } else { share.with_list(self.warped.placed(share.list(), update)) }
     }
 
-    /// Transforms the primitives of a share that the update's display memory holds, for all six faces.
+    /// Transforms those triangles and spheres of a share that the update draws, for each of the six faces.
     fn passes(&self, share: &Share, update: &FaceUpdate, _: u64) -> Vec<Arc<Pass>> {
         let ahead = update.view.eyes.first();
         let faces = CubeFace::ALL.iter().flat_map(|face| ahead.map(|ahead| face_view(ahead, *face)));

@@ -9,10 +9,10 @@ use pxpl5_sim::Span;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Returns the view from an eye through one face of the cube around the head. `ahead` is the view of the eye while the
-/// head has its initial orientation.
+/// Returns the view from an eye through one face of the cube around the head.
 ///
-/// Structures that are fixed to the head are drawn as for this orientation.
+/// The argument `ahead` is the view of the eye while the head has its initial orientation. Structures that are fixed to
+/// the head are drawn as for this orientation.
 #[must_use]
 pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
     let turn = to_face(face);
@@ -23,7 +23,7 @@ pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
     }
 }
 
-/// Returns the rotation from world axes to the axes of a face: right, up, and backwards.
+/// Returns the rotation from the axes of the world to the axes of a face, which point to the right, up and backwards.
 fn to_face(face: CubeFace) -> Mat4 {
     let [right, up, forward] = [face.right(), face.up(), face.forward()].map(|axis| axis.map(|i| i as f32));
     let column = |i: usize| Vec4::new(right[i], up[i], -forward[i], 0.0);
@@ -33,18 +33,18 @@ fn to_face(face: CubeFace) -> Mat4 {
 /// CPU work of TRANSFORM for the six faces of an update, for one slave.
 pub(crate) struct CubeWork<'a> {
     faces: &'a [Arc<Pass>],
-    /// Bin context of the update, 0 or 1.
+    /// Index of the set of bins, 0 or 1. A slave has two sets and uses them in turn.
     context: u8,
-    /// Work before the first primitive, in which each structure is placed once for each face.
+    /// Work before the first triangle: each structure is placed once for each face.
     begin: TransformCost,
-    /// Numbers of transformations of triangles and of spheres. A primitive is counted once for each face that it
-    /// touches. A primitive that touches no face is counted once.
+    /// Numbers of triangles and spheres, each counted once for each face that it touches. A triangle or sphere that
+    /// touches no face still counts once.
     transformed: PrimitiveCounts,
 }
 
 impl<'a> CubeWork<'a> {
-    /// Counts the transformations and the structures, which determine the time of the work. `faces` has the passes of
-    /// the six faces.
+    /// Counts the triangles, spheres and structures, from which the time of the work follows. `faces` has one pass for
+    /// each of the six faces.
     pub(crate) fn new(share: &Share, update: &FaceUpdate, faces: &'a [Arc<Pass>], context: u8) -> Self {
         let held = share.chosen_counts(&update.structures);
         let transformed = PrimitiveCounts {
@@ -57,8 +57,8 @@ impl<'a> CubeWork<'a> {
     }
 }
 
-/// Returns how many triangles (`kind` 0) or spheres (`kind` 1) were transformed, summed over the faces. `held` is the
-/// number of triangles or spheres of the update.
+/// Returns the number of transformations of triangles (`kind` 0) or of spheres (`kind` 1), summed over the faces.
+/// `held` is the number of triangles or spheres that the update draws.
 fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
     let touching = || faces.iter().filter_map(|pass| Some(&pass.touching()?[kind]));
     let anywhere: BTreeSet<u32> = touching().flatten().copied().collect();
@@ -67,7 +67,8 @@ fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
 }
 
 impl Work for CubeWork<'_> {
-    /// Returns the time of TRANSFORM from the timing table: structures and primitives for each face, and bin entries.
+    /// Returns the time of TRANSFORM from the timing table. The time includes structures, triangles and spheres for
+    /// each face, and the entries of bins.
     fn by_table(&self, timing: &GpTiming) -> Span {
         let PrimitiveCounts { triangles, spheres } = self.transformed;
         let primitives = TransformCost { triangles: triangles.into(), spheres: spheres.into(), ..self.begin };

@@ -1,4 +1,4 @@
-//! An update, which is a new drawing of one display memory.
+//! Updates: the host's requests for a new drawing of one display memory.
 
 use crate::cube::warp::{FaceWarp, WARP_WORDS};
 use crate::drawn::Sent;
@@ -7,36 +7,36 @@ use pphigs::FrameView;
 use pxpl5_wire::{PictureNumber, RegionId, Word, swap_request};
 use std::sync::Arc;
 
-/// An update of one display memory, as requested by the host.
+/// A request of the host for a new drawing of one display memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceUpdate {
-    /// Number of the update. The updates of all memories share one sequence of numbers, from 0.
+    /// Number of the update. All display memories together have one sequence of numbers, from 0.
     pub number: PictureNumber,
     /// Index of the display memory.
     pub memory: u8,
-    /// Buffer of the memory that receives the update, 0 or 1.
+    /// Buffer of the display memory that gets the update, 0 or 1.
     pub buffer: u8,
-    /// Bit mask of the memories that must swap together with this memory. The mask is 0 if this memory swaps alone.
+    /// Display memories that must swap in the same retrace as this memory, one bit for each memory. A value of 0 means
+    /// that this memory swaps alone.
     pub together: u8,
-    /// The view of an eye while the head has its initial orientation, with the projection of a face. The view also
-    /// contains the edits of structures.
+    /// The eye's view in the initial orientation of the head, with the projection of a face. The view also contains the
+    /// edits of structures.
     pub view: FrameView,
-    /// True for each structure that the memory holds, by index in the display list.
+    /// For each structure of the display list, true if the display memory holds the structure.
     pub structures: Vec<bool>,
-    /// Displacement of vertices near the border to a display memory that is updated less often. `None` if no vertex is
-    /// displaced.
+    /// Displacement of vertices at the border to a display memory that is updated less often, or `None`.
     pub warp: Option<FaceWarp>,
 }
 
-/// Bit in the third word of an encoded update. If this bit is set, a warp follows the bits of the structures.
+/// Bit of the third word of an encoded update, set if the words of a warp follow the bits of the structures.
 const WARPED: Word = 1 << 24;
 
-/// Number of words before the bits of the structures.
+/// Number of words of an encoded update before the bits of the structures.
 const HEADER: usize = 4;
 
 impl FaceUpdate {
-    /// Returns the two messages that announce the update to its memory: the list of regions that will arrive, and the
-    /// swap request.
+    /// Returns the two messages that announce the update to its display memory. They contain the list of regions that
+    /// will arrive, and the swap request.
     #[must_use]
     pub fn announcement(&self, face_texels: u32, regions: &[RegionId]) -> [Arc<[Word]>; 2] {
         let map = begin_update(face_texels, self.buffer, regions);
@@ -57,8 +57,9 @@ impl Sent for FaceUpdate {
 
     /// Encodes the update as words.
     ///
-    /// The order is: number (two words), memory with buffer and group, number of structures, one bit for each
-    /// structure, the warp if the update has a warp, and the view.
+    /// The first four words are the number of the update (two words), one word for memory, buffer and group, and the
+    /// number of structures. One bit for each structure follows, then the warp if the update has one, and finally the
+    /// view.
     fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
         let place = u32::from(self.memory) | u32::from(self.buffer) << 8 | u32::from(self.together) << 16;

@@ -1,37 +1,37 @@
-//! Region warping: the displacement of vertices before a slave transforms them.
+//! Region warping: the displacement of vertices at the borders between display memories, before TRANSFORM.
 
 use address_recalculation::priority::{Cell, CellAssignment, Falloff, RegionWarp};
 use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::Word;
 
-/// Displacement of vertices near the border between two display memories.
+/// Displacement of vertices at the border to another display memory.
 ///
-/// The memory beyond the border is updated less often and was drawn from another eye position. Without the
-/// displacement, the pictures in the two memories would not meet at the border.
+/// The other memory is updated less often, so it was drawn from an older eye position. Without the displacement, the
+/// pictures of the two memories would not meet at the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceWarp {
-    /// Assignment of cells (squares of the floor) to display memories.
+    /// The display memory of each cell, where a cell is a square of the floor.
     pub dealing: CellAssignment,
-    /// Shape of the falloff: the function by which the displacement decreases with the distance from the border.
+    /// The function by which the displacement decreases with the distance from the border.
     pub falloff: Falloff,
-    /// Length of the falloff: the distance from the border within which vertices are displaced, in metres.
+    /// Distance from the border at which the displacement ends, in metres.
     pub length_m: f64,
-    /// Eye position from which this update is drawn.
+    /// Eye position from which this update is drawn, in metres.
     pub drawn_from: DVec3,
-    /// Eye position from which the memory beyond the border was drawn.
+    /// Eye position from which the other memory was drawn, in metres.
     pub slower_from: DVec3,
 }
 
 /// Number of words of an encoded warp.
 ///
-/// Four words hold the cell at the centre of the assignment. One word has `inner_rings` in its lower half and
-/// `ring_growth` in its upper half. The number of memories and the falloff have a word each. Two lengths and two
-/// positions follow, with two words for each real number.
+/// The cell at the centre of the assignment takes four words. One word has `inner_rings` in its lower half and
+/// `ring_growth` in its upper half. The number of memories and the kind of falloff take a word each. Two lengths and
+/// two positions follow, with two words for each real number.
 pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
 
 impl FaceWarp {
-    /// Returns the position at which a vertex of the display memory `memory` is drawn.
+    /// Returns the displaced position of a vertex that display memory number `memory` holds.
     ///
     /// # Errors
     ///

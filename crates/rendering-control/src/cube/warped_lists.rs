@@ -6,19 +6,21 @@ use pxpl5_wire::PictureNumber;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A cache of display lists with displaced vertices, which all slaves share. The cache changes no result.
+/// A cache of display lists with displaced vertices, which all slaves use. The simulator displaces the vertices once
+/// for all slaves, so the cache saves time and changes no result.
 #[derive(Clone, Debug, Default)]
 pub struct WarpedLists(Arc<Mutex<Kept>>);
 
-/// Display lists with the numbers of their updates, newest first.
+/// Display lists and the numbers of their updates, newest first.
 type Kept = VecDeque<(PictureNumber, Arc<DisplayList>)>;
 
-/// Number of lists in the cache. A fast slave can be one update ahead of a slow slave, so two lists can be in use.
+/// Number of display lists in the cache. A fast slave can be one update ahead of a slow slave, so two lists can be in
+/// use.
 const KEPT: usize = 2;
 
 impl WarpedLists {
-    /// Returns the display list with the displaced vertices of an update. Structures that are fixed to the head, and
-    /// structures that the update edits, keep their vertices.
+    /// Returns the display list with the displaced vertices of an update. Only vertices of structures that the display
+    /// memory holds are displaced. Structures that are fixed to the head or moved by an edit stay in place.
     #[must_use]
     pub fn placed(&self, list: &Arc<DisplayList>, update: &FaceUpdate) -> Arc<DisplayList> {
         let Some(warp) = &update.warp else { return Arc::clone(list) };
@@ -57,8 +59,8 @@ mod tests {
     use pxpl5_geometry::Culling;
     use pxpl5_wire::ViewNumber;
 
-    /// Returns structures with one triangle each. The triangles are half a metre inside the border to the slower memory
-    /// at x = 10 m.
+    /// Returns structures of one triangle each, which lie half a metre from the border between two display memories at
+    /// x = 10 m.
     fn list() -> Arc<DisplayList> {
         let mut list = DisplayList::default();
         let frames = [ModelFrame::World, ModelFrame::Head, ModelFrame::World, ModelFrame::World, ModelFrame::World];
@@ -79,7 +81,8 @@ mod tests {
         Arc::new(list)
     }
 
-    /// Returns an update whose memory holds all structures except the third. An edit moves the fourth structure.
+    /// Returns an update of a display memory that holds all structures except the third. The fourth structure is moved
+    /// by an edit.
     fn update(number: u64) -> FaceUpdate {
         let dealing =
             CellAssignment { home: Cell { x: 0, z: 0 }, side_m: 10.0, inner_rings: 0, ring_growth: 1, memories: 2 };

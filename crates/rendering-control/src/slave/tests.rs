@@ -1,4 +1,4 @@
-//! Tests of a slave on its board: use of memory, waiting, and positions of vertices.
+//! Tests of a slave: the use of memory, waiting, and the positions of vertices.
 
 use super::*;
 use crate::cube::{FaceUpdate, Faces, WarpedLists};
@@ -13,15 +13,15 @@ use pxpl5_wire::{CopyContent, Lines, Message, RegionGrid, ViewNumber};
 
 const MASTER: NodeId = NodeId(1);
 const BOARD: NodeId = NodeId(2);
-/// Number of triangles in the display list. All triangles lie within one region of one face.
+/// Number of triangles in the display list. All of them lie within one region of one face.
 const TRIANGLES: u64 = 3;
 const BIN_BYTES: u64 = TRIANGLES * BIN_ENTRY_BYTES;
 
-/// The only token of an update, as the last slave receives it.
+/// The token of an update with a single region, in the state in which the last slave gets the token.
 pub(crate) const TOKEN: Token =
     Token { drawing: Drawing(0), region: RegionId(0), renderer: 0, slaves_left: 1, of: 1, end: RegionEnd::Copied };
 
-/// Returns a configuration in which each face has a single region.
+/// Returns a configuration with faces so small that each face is one region.
 pub(crate) fn config() -> RenderingControlConfig<Faces> {
     let size = 128;
     let grid = RegionGrid { width: size, height: size, region_width: size, region_height: size };
@@ -42,7 +42,7 @@ pub(crate) fn config() -> RenderingControlConfig<Faces> {
     }
 }
 
-/// Returns a display list of triangles in front of the eye, one behind the other.
+/// Returns a display list of `triangles` triangles, one behind the other, in front of the eye.
 pub(crate) fn ahead(triangles: usize) -> Arc<DisplayList> {
     let mut list = DisplayList { towards_light: Vec3::Z, ambient: 0.2, diffuse: 0.8, ..DisplayList::default() };
     for number in 0..triangles {
@@ -72,7 +72,7 @@ pub(crate) fn update(number: u64) -> FaceUpdate {
     }
 }
 
-/// A slave's board on a test bench that accepts messages as soon as they are sent.
+/// A slave on a test bench, which accepts each message at once.
 struct Rig {
     bench: BoardBench,
     us: u64,
@@ -88,19 +88,20 @@ impl Rig {
         Self { bench: BoardBench::new(board), us: 0 }
     }
 
-    /// Delivers the messages of the host and the master that start an update.
+    /// Delivers two messages to the slave: the host's message with update `number`, and the master's message that
+    /// permits EDIT.
     fn send(&mut self, number: u64) {
         self.deliver(&StageOrder::Send(update(number)));
         self.deliver(&StageOrder::Edit(PictureNumber(number)));
     }
 
-    /// Delivers the only token of an update.
+    /// Delivers the token of update `number`, which is its only token.
     fn send_token(&mut self, number: u64) {
         let token = Token { drawing: Drawing(number), ..TOKEN };
         self.deliver(&StageOrder::Token(token));
     }
 
-    /// Delivers a message after a pause in which the slave finishes its work.
+    /// Waits until the slave has finished its work, and then delivers a message.
     fn deliver(&mut self, order: &StageOrder<FaceUpdate>) {
         self.run_for(1_000);
         let (words, body) = order.message();
@@ -118,8 +119,8 @@ impl Rig {
         }
     }
 
-    /// Returns the updates that the slave has reported as transformed. Each entry has the number of the update and its
-    /// number of bin entries, summed over all regions.
+    /// Returns the updates whose TRANSFORM the slave has reported, each with its number of bin entries over all
+    /// regions.
     fn transformed(&self) -> Vec<(u64, u32)> {
         let to_master = self.bench.sent().filter_map(|(time, message)| {
             let received = Received { arrived: time, source: BOARD, body: message.body.clone() };
@@ -143,7 +144,7 @@ fn an_update_takes_its_commands_and_a_pointer_for_each_entry_of_a_bin() {
     assert_eq!(rig.bench.board.memory_peak_bytes(), expected);
 }
 
-/// The board has memory for the bins of only one update, in either of the two contexts.
+/// Tests a board whose memory holds the bins of only one update. The slave has two sets of bins and uses them in turn.
 #[test]
 fn an_update_waits_until_the_bins_of_the_one_before_are_free() {
     let mut rig = Rig::new(BIN_BYTES);
@@ -171,7 +172,6 @@ fn bins_that_are_too_small_for_one_update_are_a_fault() {
     assert_eq!(rig.bench.board.fault(), Some(&Fault::Memory(fault)));
 }
 
-/// Returns all words in the memory of a board that runs i860 code.
 fn memory(processor: &Processor) -> Vec<u32> {
     processor.read(0, processor.memory_bytes() as usize / 4).expect("all of it")
 }
@@ -199,10 +199,11 @@ fn vertices_stand_in_the_memory_of_the_board_where_the_last_update_wants_them() 
     }
 }
 
-/// Measures the time that one additional triangle adds to TRANSFORM for six faces, with the scheduled code.
+/// Tests the time of TRANSFORM for six faces with the scheduled code. The time of one more triangle must lie between
+/// two published times.
 ///
-/// The triangle touches one face. Published times of a triangle range from 870 clocks (optimized code without extras)
-/// to 32 us (the design figure).
+/// The triangle touches one face. The published times are 870 clocks (optimized code without extras) and 32 us (the
+/// design figure).
 #[test]
 fn by_code_a_triangle_takes_what_was_published() {
     let ns = |triangles: usize| {

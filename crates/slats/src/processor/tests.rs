@@ -1,5 +1,5 @@
-//! Tests of a leading processor without other processors. The tests check its messages and their times, for different
-//! acknowledgements of the renderers.
+//! Tests of the graphics processor that leads Slats, as the only processor of the machine. The tests choose the times
+//! at which the renderers acknowledge copies.
 
 use super::*;
 use pphigs::{DisplayList, DisplayStructure, EyeView, ModelFrame, RegionBinning, Shading};
@@ -12,25 +12,25 @@ use pxpl5_wire::{Message, ViewNumber, read_swap_request};
 const BOARD: NodeId = NodeId(1);
 const FRAME_BUFFERS: [NodeId; 2] = [NodeId(2), NodeId(3)];
 const FIRST_RENDERER: u16 = 10;
-/// Number of renderers. Each region has its own renderer, and some renderers have no region.
+/// Number of renderers, which is four more than the number of regions.
 const RENDERERS: u16 = 24;
 const REGIONS: u64 = 20;
 const CYCLE: Span = Span(25_000);
-/// Duration of a field in milliseconds.
+/// Duration of a field, in milliseconds.
 const FIELD_MS: u64 = 20;
 
 const fn us(us: u64) -> Time {
     Time(us * 1_000_000)
 }
 
-/// A board on a bench. From a given time on, its messages are accepted.
+/// The processor on a test bench. `us` is the simulated time in microseconds.
 struct Rig {
     bench: BoardBench,
     us: u64,
 }
 
 impl Rig {
-    /// Creates a bench with a display list of invisible triangles. The first view has already arrived.
+    /// Returns a bench whose processor holds invisible triangles and has received the first view.
     fn new(copy: CopySchedule, triangles: usize) -> Self {
         let config = SlatsConfig {
             host: NodeId(0),
@@ -76,7 +76,7 @@ impl Rig {
         self.bench.feed(us(self.us), GpEvent::Delivered(message));
     }
 
-    /// Runs to the time `until_us`, with a retrace at the start of each field. Messages are accepted from
+    /// Simulates up to the time `until_us`, with a retrace every 20 ms. The messages of the processor are accepted from
     /// `accepting_us` on.
     fn run_to(&mut self, until_us: u64, accepting_us: u64) {
         while self.us < until_us {
@@ -95,7 +95,8 @@ impl Rig {
     }
 }
 
-/// A request for one of the two buffers. The receiver is a frame buffer or a renderer.
+/// A request of the processor: to show a buffer (sent to a frame buffer) or to copy regions into a buffer (sent to a
+/// renderer).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Asked {
     Show(u8),
@@ -110,10 +111,11 @@ fn asked(message: &Message) -> Option<Asked> {
     }
 }
 
-/// At each retrace, the processor requests a field for the next period: the last complete field with the lines of this
-/// period. A new field is written into the other buffer. Its display is requested if its top regions have been copied
-/// before its retrace. This request precedes the copies of the bottom regions, which occupy the ports of the frame
-/// buffers. After a late field, the next field has the lines of the other parity.
+/// Tests the buffers that the processor requests if one field is late.
+///
+/// At a retrace, the processor asks for the last complete field that has the lines of the next period. It asks before
+/// it orders the copies of the bottom regions, because these copies occupy the ports of the frame buffers. A new field
+/// is written into the other buffer. After a late field, the next field has the lines of the other parity.
 #[test]
 fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     use Asked::{Show, Write};
@@ -151,8 +153,8 @@ fn of_a_late_field_the_last_complete_one_of_its_lines_is_shown() {
     assert_eq!(found, expected.concat());
 }
 
-/// There is one clump buffer. The next clump is made when all receivers have begun to take the previous clump. A clump
-/// takes 30 us for each triangle and eye.
+/// Tests the time of the second clump. The processor has one clump buffer, so it makes the clump when all receivers
+/// have begun to take the first clump. A clump takes 30 us for each triangle and eye.
 #[test]
 fn the_next_clump_is_made_while_the_one_before_is_drained() {
     const SECOND: usize = 7;
@@ -168,7 +170,7 @@ fn the_next_clump_is_made_while_the_one_before_is_drained() {
     assert_eq!(time, Some(us(accepting) + work + Span::from_ns(GpTiming::SLATS_1994.message_ns) + CYCLE));
 }
 
-/// Returns the times at which copies of the bottom regions are ordered.
+/// Returns the times at which the processor ordered copies of bottom regions.
 fn bottom_orders(rig: &Rig) -> Vec<Time> {
     let is_bottom = |message: &Message| match &message.body {
         Body::Commands(list) => list.copies.first().is_some_and(|order| u32::from(order.target.region.0) >= 5),
@@ -177,8 +179,8 @@ fn bottom_orders(rig: &Rig) -> Vec<Time> {
     rig.bench.sent().filter(|(_, message)| is_bottom(message)).map(|(time, _)| time).collect()
 }
 
-/// All ten top regions are on different renderers. Each renderer acknowledges its copy by a message, which the
-/// processor must handle.
+/// Tests both orders of two events: the retrace, and the acknowledgement of the last of the ten top regions. The copies
+/// of the bottom regions must wait for both.
 #[test]
 fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_retrace_has_been() {
     let acknowledge = |rig: &mut Rig, count| {
@@ -205,8 +207,8 @@ fn bottom_regions_are_copied_when_the_last_top_region_is_acknowledged_and_the_re
     assert_eq!(bottom_orders(&rig), [us(40_000) + CYCLE; 10]);
 }
 
-/// The first messages of the next field clear the bottom regions. They must wait until the copies of these regions have
-/// started.
+/// Tests that the first commands of a field, which clear its bottom regions, wait for the copies of the previous
+/// field's bottom regions.
 #[test]
 fn the_next_field_is_not_drawn_over_regions_that_are_not_copied() {
     let mut rig = Rig::new(CopySchedule::Split, 3);

@@ -218,8 +218,8 @@ fn mean(clip: SliceClip, wedge: HalfWedge, planes: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Checks the definitions against the printed numbers of the SpatialGL paper, and against D numbers computed by
-    /// hand for 396 x 768 x 768 pixels.
+    /// Tests the definitions of the figures against the printed numbers of the SpatialGL paper. The
+    /// expected values of D5, D7 and D12 were computed by hand for 396 slices of 768 x 768 pixels.
     #[test]
     fn definitions_are_the_papers_numbers() {
         let all = definitions();

@@ -145,8 +145,8 @@ mod tests {
     use crate::time::PS_PER_S;
     use glam::DVec2;
 
-    /// Returns the pendulum's angle from integrating angle'' = -(g / arm) sin(angle) by a Runge-Kutta method of order
-    /// 4. The result is independent of the elliptic functions.
+    /// Returns the angle of a pendulum after `until_s` seconds, from a Runge-Kutta integration of angle'' = -(g / arm)
+    /// sin(angle). The tested model uses elliptic functions instead.
     fn integrate(arm: f64, amplitude_deg: f64, until_s: f64) -> f64 {
         let steps = 20_000;
         let h = until_s / steps as f64;
@@ -161,7 +161,6 @@ mod tests {
         state.x
     }
 
-    /// Returns the derivative of the state (angle, rate) of a pendulum with an arm of `arm` metres.
     fn slope(arm: f64, state: DVec2) -> DVec2 {
         DVec2::new(state.y, -table::RigNumbers::PAPERS.gravity / arm * state.x.sin())
     }

@@ -84,7 +84,7 @@ mod tests {
     use crate::time::PS_PER_MS;
     use glam::DQuat;
 
-    /// Times of reports at irregular intervals, ms.
+    /// Times of tracker reports in ms, at irregular intervals.
     const TIMES: [u64; 7] = [0, 3, 11, 12, 20, 31, 33];
 
     fn fed<T: VectorDifference>(order: Order, baseline: usize, value: impl Fn(f64) -> T) -> Extrapolation<T> {

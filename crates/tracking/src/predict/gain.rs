@@ -62,8 +62,8 @@ mod tests {
     use super::*;
     use core::f64::consts::TAU;
 
-    /// Frequency (Hz), prediction time (s), and the published relative errors of no, first-order and second-order
-    /// prediction.
+    /// Published relative errors without prediction, and with prediction of first and second order. Each row begins
+    /// with the frequency of the motion in Hz and the prediction interval in seconds.
     const PUBLISHED: [(f64, f64, [f64; 3]); 4] = [
         (1.0, 0.05, [0.313, 0.049, 0.005]),
         (1.0, 0.10, [0.618, 0.195, 0.041]),

@@ -7,7 +7,7 @@ type Matrix9 = SMatrix<f64, 9, 9>;
 
 const BELIEF: NoiseModel = NoiseModel { measurement: 6.9e-6, jerk: 1e4, start: (4.0, 400.0) };
 
-/// Returns the covariance as one 9 x 9 matrix of another library.
+/// Returns the covariance of the filter as one matrix of 9 x 9 numbers.
 fn dense(c: &Covariance) -> Matrix9 {
     let blocks = [
         [c.angle, c.angle_rate, c.angle_acceleration],
@@ -34,8 +34,8 @@ fn turning() -> OrientationKalman {
     filter
 }
 
-/// Returns the orientation after `dt` seconds, computed by many small steps of the differential equation. The result is
-/// independent of the filter's formula.
+/// Returns the orientation after `dt` seconds, from 20,000 small steps of the differential equation. The filter uses a
+/// closed form instead.
 fn integrate(filter: &OrientationKalman, dt: f64) -> DQuat {
     let n = 20_000;
     let h = dt / f64::from(n);
@@ -58,7 +58,7 @@ fn extrapolation_solves_the_differential_equation_of_a_turning_axis() {
     assert!(rotation::angle_deg(without, integrate(&filter, 0.1)) > 0.1, "the second term is needed");
 }
 
-/// Returns the matrix F, computed by finite differences of the filter's prediction.
+/// Returns the derivative of the predicted state by the current state (the matrix F), from finite differences.
 fn jacobian(filter: &OrientationKalman, dt: f64) -> Matrix9 {
     let step = 1e-6;
     let end = filter.extrapolate(dt);

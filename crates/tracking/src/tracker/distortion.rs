@@ -83,8 +83,8 @@ mod tests {
         METAL.distort(&Pose::at(DVec3::new(x, 0.0, 0.0))).position.y
     }
 
-    /// Returns the second difference of the measured height over 10 mm. The value is negative if a plane appears curved
-    /// downwards.
+    /// Returns the curvature of the measured height at `x`, as a second difference with steps of 10 mm. A negative
+    /// value means that a flat plane appears curved downwards.
     fn second_difference(x: f64) -> f64 {
         height(x + 0.01) - 2.0 * height(x) + height(x - 0.01)
     }

@@ -28,8 +28,8 @@ mod tests {
 
     type Interpolate = fn(&Hmd, DVec3, DVec3, f64) -> Option<DVec2>;
 
-    /// Returns the greatest interpolation error (px) during `span_ps` of a head turn at 200 deg/s. Only points within
-    /// `half_width` px of the middle are evaluated, in a view of 600 px and 60 degrees.
+    /// Returns the greatest error of interpolation in pixels, for a head that turns at 200 deg/s for `span_ps`. Only
+    /// points within `half_width` pixels of the picture's middle count. The picture is 600 pixels and 60 degrees wide.
     fn worst(interpolate: Interpolate, span_ps: u64, half_width: f64) -> f64 {
         let steps = (0..=40).flat_map(|step| (-340..=340).map(move |tenth_deg| (step, tenth_deg)));
         steps
@@ -45,7 +45,7 @@ mod tests {
         ((truth.x - 300.0).abs() <= half_width).then(|| guess.distance(truth))
     }
 
-    /// Returns a point in the axes of a head that turns at 200 deg/s, m.
+    /// Returns a point in the axes of a head that turns at 200 deg/s, in metres.
     fn seen_in_pan(point: DVec3, t_ps: u64) -> DVec3 {
         Pan::at(200.0).pose(t_ps).view_of(point)
     }

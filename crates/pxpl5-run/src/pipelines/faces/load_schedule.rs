@@ -155,7 +155,7 @@ mod tests {
         LoadSchedule::new(scan, config.timing.depth(), latch, link, Aim::Middle).expect("no field")
     }
 
-    /// Returns all register loads of two fields, in order.
+    /// Returns all loads of the orientation register in two fields, in order.
     fn all(schedule: &LoadSchedule) -> Vec<Load> {
         let mut at = Time::ZERO;
         let mut found = Vec::new();
@@ -169,8 +169,8 @@ mod tests {
         }
     }
 
-    /// A message of nine words takes 7.2 us. A line of 63.56 us has room for 8 messages, and the last one begins before
-    /// the 640 pixels (52.1 us) end.
+    /// Tests the number of register loads. A message of nine words takes 7.2 us, so the 63.56 us of a line have room
+    /// for 8 loads.
     #[test]
     fn a_line_has_one_load_and_with_pixels_as_many_as_the_line_carries() {
         for (latch, link_ns, expected) in [

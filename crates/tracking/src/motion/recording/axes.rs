@@ -74,8 +74,8 @@ fn from_images(x: DVec3, y: DVec3, z: DVec3) -> DQuat {
 mod tests {
     use super::*;
 
-    /// Meaning of the recorded axes for each convention. The three vectors are right, up and ahead of a head in the
-    /// recorded head axes. The last vector is up in the recorded world axes.
+    /// Conventions for the axes of recordings. The three vectors point to the right, up and ahead of the head, in the
+    /// axes of the head. The last vector points up, in the axes of the world.
     const MEANING: [(Axes, [DVec3; 3], DVec3); 4] = [
         (Axes::OpenGl, [DVec3::X, DVec3::Y, DVec3::NEG_Z], DVec3::Y),
         (Axes::Optical, [DVec3::X, DVec3::NEG_Y, DVec3::Z], DVec3::Z),

@@ -130,7 +130,7 @@ mod tests {
         Recording::read(text.as_bytes())
     }
 
-    /// A pose log in which the head turns a quarter to the left and moves 2 m to the right within a second.
+    /// A recording in which the head turns left by 90 degrees and moves 2 m to the right, within one second.
     const CSV: &str = "frame,predictedDisplayTime,position.x,position.y,position.z,orientation.x,orientation.y,orientation.z,orientation.w\n\
         7,5000000000,0,1.5,0,0,0,0,1\n8,6000000000,2,1.5,0,0,0.70710678,0,0.70710678\n";
 

@@ -233,7 +233,7 @@ fn of_samples_of_one_time_the_first_is_kept_and_the_others_are_told() {
     assert_eq!(said, "line 3, timestamp: expected 2 s or more, the time of the line before, found 1 s");
 }
 
-/// Returns a recording with 100 samples per second over three seconds. The samples between two instants are missing.
+/// Returns a recording of three seconds with 100 samples per second, without the samples from `from_ms` to `to_ms`.
 fn with_gap(from_ms: u64, to_ms: u64) -> String {
     let times = (0..300).map(|n| 10 * n).filter(|ms| !(from_ms + 1..to_ms).contains(ms));
     times.map(|ms| format!("{}.{:03},{}e-3,0,0,1,0,0,0\n", ms / 1000, ms % 1000, ms)).collect()
