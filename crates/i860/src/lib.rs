@@ -9,7 +9,7 @@
 //!            |        memoized blocks                         |
 //!            +------------------------------------------------+
 //!  text -> assemble -> Program       word -> disassemble -> text
-//!  linear code -> linear::schedule -> text in dual-instruction mode
+//!  linear stretch -> linear::schedule -> text in dual-instruction mode
 //! ```
 //!
 //! ```
