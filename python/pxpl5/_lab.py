@@ -423,7 +423,7 @@ def rig(
 
     The result also has the pipeline's own time stamps of the same frames.
 
-    - ``passes``: number of measured low points of the pendulum, 2 to 10,000.
+    - ``passes``: number of measured passes of the pendulum through its lowest point, 2 to 10,000.
     - ``line``: line of a field at which the photodiode is.
 
     The rig has its own scene, motion and length. Raises :class:`SettingError` for a wrong setting, and for a pipeline whose light does

@@ -34,7 +34,7 @@ pub struct Composition {
 
 /// Inputs for the computation of a pixel: four texels in each memory, their weights and the background.
 pub(crate) struct Gathered<'a> {
-    /// For each display memory, the words of the upper left, upper right, lower left and lower right texel.
+    /// Words of the upper left, upper right, lower left and lower right texel in each display memory.
     pub(crate) memories: &'a [[u64; 4]],
     /// Background colours of the four texels.
     pub(crate) behind: [u32; 4],

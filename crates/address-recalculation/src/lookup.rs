@@ -259,13 +259,14 @@ impl<'a> Lookup<'a> {
 /// Number of consecutive texels for which the nearest memory is selected in one step. The number is a divisor of 128.
 const PIECE: usize = 32;
 
-/// For each texel, the colour of the nearest memory, computed when a pixel first needs it.
+/// Colour of each texel, taken from the display memory with the smallest depth there. The colour is computed when a
+/// pixel first needs it.
 ///
 /// Neighbouring pixels share texels, so the depths of a texel are compared once instead of once per reading pixel.
 #[derive(Clone, Debug)]
 struct Composed {
     colours: Vec<u32>,
-    /// For each group of [`PIECE`] texels, true if all texels of the group and the following texel are computed.
+    /// Flag of each group of [`PIECE`] texels: true if all texels of the group and the following texel are computed.
     is_done: Vec<bool>,
 }
 

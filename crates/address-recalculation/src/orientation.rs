@@ -81,7 +81,7 @@ impl Orientation {
 /// The nine signed words of the matrix register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MatrixWords(
-    /// Rows of signed words.
+    /// The three rows of the matrix, three words each.
     pub [[i32; 3]; 3],
 );
 

@@ -20,8 +20,8 @@
 //!   together.
 //! - **Cells** ([`Cells`]): the floor of the world is divided into square cells. The home cell is the cell that
 //!   contained the eye when cells were last assigned to memories. All cells at one distance from the home cell form a
-//!   ring, which lies in one memory. Memory 0 holds the inner rings, and memory 1 holds one ring. Each further memory
-//!   holds `ring_growth` times as many rings as the previous memory.
+//!   ring, which lies in one memory. Memory 0 holds the inner rings of cells, and memory 1 holds one ring of cells.
+//!   Each further memory holds `ring_growth` times as many rings of cells as the previous memory.
 //! - **Due memories**: a memory must be drawn again when the eye has moved too far since the memory's last update. The
 //!   permitted distance grows with the distance to the memory's nearest cell. The nearest cell is searched among all
 //!   cells that the memory could hold, or only among cells with content (`to_held_cells`). With warping, an update of a
@@ -36,7 +36,7 @@
 //!   and depth in both memories.
 //!
 //! Units are metres, seconds and radians, except in names that contain `deg`. Axes are right-handed with y up. Results
-//! are bit-identical on every host.
+//! are bit-identical on every computer.
 //!
 //! # Not here
 //!

@@ -22,7 +22,7 @@ impl TexelFormat {
         Self { colour_bits: timing.colour_bits as u32, depth_bits: timing.depth_bits as u32 }
     }
 
-    /// Returns the number of ring words per texel: 1 if colour and depth fit into 32 bits, otherwise 2.
+    /// Returns the number of words per texel in ring messages: 1 if colour and depth fit into 32 bits, otherwise 2.
     ///
     /// If colour and depth share a word, the colour is in its lower half.
     #[must_use]

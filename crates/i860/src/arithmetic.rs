@@ -113,8 +113,8 @@ pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     }
 }
 
-/// Rounds a number to an integer. `mode` is the field RM of the register fsr, which selects the rounding: to nearest
-/// even, down, up, or towards zero.
+/// Rounds a number to an integer. `mode` is the bit field RM of the register fsr, which selects the rounding: to
+/// nearest even, down, up, or towards zero.
 pub(crate) fn round(value: f64, mode: u32) -> f64 {
     match mode {
         0 => value.round_ties_even(),

@@ -133,7 +133,7 @@ pub(crate) struct Block {
     pub(crate) remembered: BlockMemory,
     /// All instructions and pairs of the block, in the order of execution. The delay slot is the last element.
     units: Box<[Unit]>,
-    /// For each cache line of the block, the index of the first instruction or pair on the line.
+    /// Index of the first instruction or pair on each cache line of the block.
     lines: Box<[u8]>,
     /// Cause of the trap that is taken if the final branch is executed, because its delay slot cannot be executed.
     pub(crate) wrong_slot: Option<TrapCause>,
@@ -250,7 +250,7 @@ impl Block {
     }
 
     /// Returns an address on the cache line that holds instruction or pair `number`, and the index of the first
-    /// instruction or pair after this line.
+    /// instruction or pair after this cache line.
     #[inline]
     pub(crate) fn line(&self, number: usize) -> (u32, usize) {
         // Find the last line that begins at or before this instruction.

@@ -6,7 +6,8 @@ use crate::timing::ChipSizes;
 /// A set-associative tag array with pseudo-random replacement. All sizes of the array are powers of two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> {
-    /// Tags of all sets. A tag is a line address with [`VALID`] and [`DIRTY`] in its low bits, or 0 for an empty way.
+    /// Tags of all sets. A tag is the address of a cache line with [`VALID`] and [`DIRTY`] in its low bits, or 0 for an
+    /// empty way.
     sets: Box<[[u32; WAYS]; SETS]>,
     /// Number of times that the array was filled or cleared. While this number stays the same, the array holds the same
     /// cache lines.
@@ -17,7 +18,7 @@ pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u
 const VALID: u32 = 1;
 const DIRTY: u32 = 2;
 
-/// A tag array with the line size and associativity of the on-chip caches.
+/// A tag array with the cache-line size and associativity of the on-chip caches.
 type CacheTags<const SETS: usize> = Tags<SETS, CACHE_WAYS, { ChipSizes::PAPERS.line_bytes as u32 }>;
 const CACHE_WAYS: usize = ChipSizes::PAPERS.cache_ways as usize;
 
@@ -63,7 +64,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
     }
 
     /// Returns true if the array holds the cache line of an address. If `stores` is true, the function also marks the
-    /// line dirty.
+    /// cache line dirty.
     #[inline]
     pub(crate) fn access(&mut self, address: u32, stores: bool) -> bool {
         let ways = &mut self.sets[Self::set(address)];
@@ -80,7 +81,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
     }
 
     /// Adds the cache line of an address to its set. If no way (place) of the set is empty, `random` selects the way
-    /// whose line is replaced. Returns the address of a dirty line that was replaced.
+    /// whose cache line is replaced. Returns the address of a dirty cache line that was replaced.
     pub(crate) fn fill(&mut self, address: u32, random: u32) -> Option<u32> {
         self.changes += 1;
         let ways = &mut self.sets[Self::set(address)];

@@ -322,8 +322,8 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a store. If the data cache holds the line, the line becomes dirty. If not, the data go
-    /// through the store pipe to the bus, and no cache line is filled.
+    /// Counts the clocks of a store. If the data cache holds the cache line, the cache line becomes dirty. If not, the
+    /// data go through the store pipe to the bus, and no cache line is filled.
     #[inline]
     fn store(&mut self, address: u32, size: u32) {
         self.translation.translate(address, &mut self.common);

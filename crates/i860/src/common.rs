@@ -17,13 +17,13 @@ pub(crate) struct Common {
     pub(crate) profile: Profile,
     pub(crate) costs: Costs,
     pub(crate) bus: Dram,
-    /// Pseudo-random numbers that choose the line to replace in a full cache set.
+    /// Pseudo-random numbers that choose the cache line to replace in a full cache set.
     pub(crate) chance: Chance,
-    /// Clock at which the latest line fill of the data cache ends. An instruction-cache miss that begins before this
-    /// clock takes more clocks (row 1b of the freeze table).
+    /// Clock at which the latest cache-line fill of the data cache ends. An instruction-cache miss that begins before
+    /// this clock takes more clocks (row 1b of the freeze table).
     pub(crate) data_fill_end: u64,
-    /// Clock at which the latest line fill of the instruction cache ends. A freeze that begins earlier lasts at least
-    /// until this clock.
+    /// Clock at which the latest cache-line fill of the instruction cache ends. A freeze that begins earlier lasts at
+    /// least until this clock.
     pub(crate) instruction_fill_end: u64,
 }
 
@@ -78,8 +78,8 @@ impl Common {
         self.stand_still(until, Freeze::InstructionMiss);
     }
 
-    /// Freezes the processor for the additional clocks of an instruction-cache miss during a line fill of the data
-    /// cache (row 1b of the freeze table).
+    /// Freezes the processor for the additional clocks of an instruction-cache miss during a cache-line fill of the
+    /// data cache (row 1b of the freeze table).
     pub(crate) fn await_instruction_behind_data(&mut self) {
         let until = self.now + self.costs.clocks(Freeze::InstructionMissBehindData);
         self.stand_still(until, Freeze::InstructionMissBehindData);

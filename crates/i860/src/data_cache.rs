@@ -1,4 +1,4 @@
-//! The data cache: its lines, fills, and write-backs of replaced dirty lines.
+//! The data cache: its cache lines, their fills, and the write-backs of replaced dirty cache lines.
 
 use crate::block::AccessingUnit;
 use crate::bus::Bus;
@@ -30,7 +30,7 @@ impl DataCache {
     }
 
     /// Finds the first access that misses the cache, from access index `from` on, before instruction or pair `limit`.
-    /// An access that always goes to the bus counts as a miss. Stores that hit mark their lines dirty.
+    /// An access that always goes to the bus counts as a miss. Stores that hit mark their cache lines dirty.
     ///
     /// Returns the indices of the missing access and of its instruction or pair. Without a miss, returns the index of
     /// the first access that was not checked, and `None`.
@@ -93,8 +93,8 @@ impl DataCache {
         Some(transfer)
     }
 
-    /// Fills a cache line. The requested bytes arrive first. If the fill replaces a dirty line, this line is written
-    /// back after the fill.
+    /// Fills a cache line. The requested bytes arrive first. If the fill replaces a dirty cache line, this line is
+    /// written back after the fill.
     fn fill_line(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) -> Transfer {
         common.profile.data_misses += 1;
         let transfer = common.read_data(address, BEATS);

@@ -28,7 +28,7 @@ fn split16(word: u32) -> i32 {
     signed16((word >> 5 & 0xF800) | (word & 0x07FF))
 }
 
-/// Decodes one instruction word. Reserved fields are ignored, as on the real chip. Reserved operations are errors.
+/// Decodes one instruction word. Reserved bit fields are ignored, as on the real chip. Reserved operations are errors.
 ///
 /// # Errors
 /// Returns [`IllegalWord`] for a reserved operation, an XP-only operation, or a precision that the operation does not
@@ -55,7 +55,7 @@ pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
     .ok_or(IllegalWord(word))
 }
 
-/// Sets the register fields that the operation does not use to zero.
+/// Sets the register bit fields that the operation does not use to zero.
 fn without_reserved_fields(mut i: Instruction) -> Instruction {
     let mask = register_mask(&i, i.has(Flags::IMMEDIATE));
     i.dest &= field(mask, 16);

@@ -16,7 +16,8 @@ pub(crate) enum Source {
     A,
 }
 
-/// One row of the table of data paths. The row is selected by the field DPC (data-path control) of a dual operation.
+/// One row of the table of data paths. The row is selected by the bit field DPC (data-path control) of a dual
+/// operation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Route {
     pub(crate) multiplier: [Source; 2],
@@ -29,7 +30,7 @@ const fn route(multiplier: [Source; 2], adder: [Source; 2], loads_t: bool, loads
     Route { multiplier, adder, loads_t, loads_k }
 }
 
-/// The sixteen data paths of pfam and pfsm, by the field DPC (data-path control). For pfmam and pfmsm,
+/// The sixteen data paths of pfam and pfsm, by the bit field DPC (data-path control). For pfmam and pfmsm,
 /// [`MULTIPLIER_ROUTES`] has `M` in place of every `A`.
 pub(crate) const ROUTES: [Route; 16] = {
     use Source::{A, Ki, Kr, M, S1, S2, T};

@@ -68,7 +68,7 @@ impl Fetch {
         self.cache.number_changes_from(latest);
     }
 
-    /// Returns the number of the instruction cache's current state. The number changes with every line fill.
+    /// Returns the number of the instruction cache's current state. The number changes with every fill of a cache line.
     pub(crate) fn states(&self) -> u64 {
         self.cache.changes()
     }

@@ -1,4 +1,4 @@
-//! The instruction set: operations, instruction fields, and the units and registers that an operation uses.
+//! The instruction set: operations, bit fields of instructions, and the units and registers that an operation uses.
 
 /// Every operation of the i860 XR. The precision, the addressing form and pipelining are in [`Flags`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -114,7 +114,7 @@ pub enum Op {
     Fadd,
     /// `fsub`, `pfsub`: floating-point subtract.
     Fsub,
-    /// `fix`: converts to an integer. The field fsr.RM selects the rounding.
+    /// `fix`: converts to an integer. The bits RM of the register fsr select the rounding.
     Fix,
     /// `famov`, `pfamov`: moves through the adder and converts the precision.
     Famov,
@@ -143,7 +143,7 @@ pub enum Op {
     /// `fzchks`: compares pairs of 16-bit depths and keeps the smaller depth of each pair.
     Fzchks,
     /// `pfam`, `pfsm`, `pfmam`, `pfmsm`: dual operations. In the immediate, bit 4 selects subtraction and bits 3:0 are
-    /// the DPC field.
+    /// the bit field DPC (data-path control).
     DualOp,
 }
 
@@ -205,7 +205,7 @@ pub struct Instruction {
 }
 
 impl Instruction {
-    /// Makes an instruction with the given operation. All other fields are zero.
+    /// Makes an instruction with the given operation. All operands and flags are zero.
     #[must_use]
     pub fn new(op: Op) -> Instruction {
         Instruction { op, dest: 0, src1: 0, src2: 0, size: 0, flags: Flags(0), imm: 0 }

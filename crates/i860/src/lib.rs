@@ -9,7 +9,7 @@
 //!            |        memoized blocks                         |
 //!            +------------------------------------------------+
 //!  text -> assemble -> Program       word -> disassemble -> text
-//!  linear code -> linear::schedule -> text in dual-instruction mode
+//!  linear stretch -> linear::schedule -> text in dual-instruction mode
 //! ```
 //!
 //! ```
@@ -52,8 +52,8 @@
 //! occur together, only the longest freeze counts, but the times of cache misses are added. Every row can be disabled
 //! or given another cost. Every DRAM time is a parameter with an allowed range. A [`Profile`] accounts for every clock.
 //!
-//! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte lines
-//! and pseudo-random replacement. A write miss allocates no line. The TLB has 64 entries.
+//! The instruction cache has 4 KB and the write-back data cache 8 KB. Both are 2-way set-associative with 32-byte cache
+//! lines and pseudo-random replacement. A write miss allocates no cache line. The TLB has 64 entries.
 //!
 //! All rows are *assumed*. They repeat Intel's list of instruction timings as the authors remember it. Tests compare
 //! the model with published figures: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, and about 48
@@ -68,7 +68,7 @@
 //!
 //! A *run* is a part of a block whose instructions and data are all in the caches. A run uses neither the bus nor the
 //! queues nor the replacement sequence. The clocks of a run depend only on three things: the remaining waits of earlier
-//! instructions, the rest of an arriving instruction line, and taken branches and traps. The model memoizes these
+//! instructions, the rest of an arriving instruction-cache line, and taken branches and traps. The model memoizes these
 //! clocks and reuses them, like FastSim (Schnarr and Larus, ASPLOS 1998). [`Config::memoise`] turns this optimization
 //! on.
 //!

@@ -64,8 +64,8 @@ use crate::assembler::select;
 use std::cell::RefCell;
 use std::fmt::Write as _;
 
-/// The numbers of floating-point and core operations in a stretch of linear code, and the number of pairs in its
-/// schedule. Without freezes, each pair takes one clock.
+/// The numbers of floating-point and core operations in a linear stretch, and the number of pairs in its schedule.
+/// Without freezes, each pair takes one clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slots {
     /// Number of floating-point operations. A multiply with double-precision sources counts twice, because the
@@ -77,7 +77,8 @@ pub struct Slots {
     pub pairs: usize,
 }
 
-/// Returns the numbers of operations in each stretch of linear code of a source, in the order of the source.
+/// Returns the numbers of operations in each linear stretch (from `.linear` to `.endlinear`) of an assembly text, in
+/// the order of the text.
 ///
 /// # Errors
 /// Returns the errors of [`schedule`].
@@ -100,8 +101,8 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, AssemblyError> {
     Ok(found)
 }
 
-/// Replaces every stretch of linear code in a source by instruction pairs. Lines that a condition (`.if`) excludes
-/// become empty. Other lines stay unchanged.
+/// Replaces every linear stretch (from `.linear` to `.endlinear`) of an assembly text by instruction pairs. Lines that
+/// a condition (`.if`) excludes become empty. Other lines stay unchanged.
 ///
 /// # Errors
 /// Returns an [`AssemblyError`] for the first line with an error, or for a stretch whose values need too many
@@ -122,7 +123,7 @@ pub fn schedule(source: &str) -> Result<String, AssemblyError> {
     Ok(out.into_inner())
 }
 
-/// Reads a source in order. For each stretch of linear code, calls `linear` with the operations and their schedule of
+/// Reads an assembly text in order. For each linear stretch, calls `linear` with the operations and their schedule of
 /// pairs. For every line outside a stretch, calls `other`.
 fn stretches(
     source: &str,

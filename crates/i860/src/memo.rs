@@ -3,7 +3,7 @@
 //! The idea comes from FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
 //! 1998). A run is a part of a basic block whose instructions and data are all in the caches. A run leaves the bus, the
 //! queues and the replacement sequence unchanged. The clocks of a run depend on three things: the scoreboard before the
-//! run, the rest of an arriving instruction line, and branches and traps.
+//! run, the rest of an arriving instruction-cache line, and branches and traps.
 //!
 //! Each distinct scoreboard has a number, so a comparison of integers finds a run. Between two runs, accesses that need
 //! the bus are counted with the full scoreboard.
@@ -105,7 +105,7 @@ const _: () = assert!(size_of::<RememberedClocks>() == 32);
 /// The part of an instruction-cache line that has not arrived yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ArrivingLine {
-    /// Number of clocks until the last transfer of the line arrives, or 0 if no line is arriving.
+    /// Number of clocks until the last transfer of the cache line arrives, or 0 if no cache line is arriving.
     pub(crate) clocks: u64,
     /// Position, within the cache line, of the 8-byte transfer that arrives first.
     pub(crate) first: u8,

@@ -5,8 +5,8 @@ use crate::instruction::{FNOP, Flags, Instruction, Op};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-/// Names of the data paths of the dual operations, in the order of the DPC field. The character `_` stands for p (plus)
-/// or s (minus). The first row is for pfam and pfsm, and the second row is for pfmam and pfmsm.
+/// Names of the data paths of the dual operations, in the order of the DPC bit field. The character `_` stands for p
+/// (plus) or s (minus). The first row is for pfam and pfsm, and the second row is for pfmam and pfmsm.
 const PATHS: [[&str; 16]; 2] = [
     [
         "r2_1", "r2_t", "r2a_1", "r2a_t", "i2_1", "i2_t", "i2a_1", "i2a_t", "rat1_2", "m12a_m", "ra1_2", "m12tt_a",

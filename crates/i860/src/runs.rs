@@ -2,7 +2,7 @@
 //! the caches. The memoized clocks of a run are reused. Between runs, accesses that need the bus are counted.
 //!
 //! A *place* is a position in a block. The place is three times the index of an instruction or pair, plus 1 after its
-//! fetch or plus 2 after its issue. A run ends before an access that needs the bus, or before a line that the
+//! fetch or plus 2 after its issue. A run ends before an access that needs the bus, or before a cache line that the
 //! instruction cache does not hold. Otherwise, the run ends at the end of the executed code. After an access that needs
 //! the bus, the next run begins with the scoreboard after this access.
 

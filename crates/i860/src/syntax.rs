@@ -1,4 +1,4 @@
-//! The operands of each kind of instruction in assembler text, and the register fields of its word.
+//! The operands of each kind of instruction in assembler text, and the register bit fields of its word.
 
 use crate::instruction::{Instruction, Op};
 
@@ -39,9 +39,9 @@ pub(crate) enum Syntax {
     LoopBranch,
     /// `fsrc1, fsrc2, fdest`: two floating-point sources and a destination.
     Three,
-    /// `fsrc1, fdest`: a single source in the first field, and a destination.
+    /// `fsrc1, fdest`: a single source in the first bit field, and a destination.
     First,
-    /// `fsrc2, fdest`: a single source in the second field, and a destination.
+    /// `fsrc2, fdest`: a single source in the second bit field, and a destination.
     Second,
 }
 
@@ -75,7 +75,7 @@ impl Syntax {
 /// Names of the control registers, by register number.
 pub(crate) const CONTROL_REGISTERS: [&str; 6] = ["fir", "psr", "dirbase", "db", "fsr", "epsr"];
 
-/// Returns the mask of those register fields of an instruction word that the instruction `i` uses.
+/// Returns the mask of those register bit fields of an instruction word that the instruction `i` uses.
 pub(crate) fn register_mask(i: &Instruction, immediate: bool) -> u32 {
     const SRC2: u32 = 31 << 21;
     const DEST: u32 = 31 << 16;

@@ -13,17 +13,19 @@ pxpl5_sim::parameters::parameter_table! {
     pub struct FreezeClocks {
         /// Delay by row 1a of the freeze table: a miss of the instruction cache.
         instruction_miss: 0, "clocks", Assumed, 0..=0, "Intel's list, recollected: the wait is all";
-        /// Delay by row 1b of the freeze table: instruction-cache miss while a line fill of the data cache is running.
+        /// Delay by row 1b of the freeze table: instruction-cache miss while a cache-line fill of the data cache is
+        /// running.
         instruction_miss_behind_data: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
         /// Delay by row 2 of the freeze table: an instruction uses the destination of an integer load that missed the
         /// data cache.
         load_miss_use: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Delay by row 3 of the freeze table: an fld misses the data cache.
         floating_load_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Delay by row 4 of the freeze table: call, calli, ixfr, fxfr, ld.c or st.c while a line fill of the data
-        /// cache is running.
+        /// Delay by row 4 of the freeze table: call, calli, ixfr, fxfr, ld.c or st.c while a cache-line fill of the
+        /// data cache is running.
         transfer_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Delay by row 5 of the freeze table: load, store or pfld while a line fill of the data cache is running.
+        /// Delay by row 5 of the freeze table: load, store or pfld while a cache-line fill of the data cache is
+        /// running.
         access_during_miss: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
         /// Delay by row 6 of the freeze table: an instruction uses the destination of the previous instruction, which
         /// is ld, ld.c, call, calli or fxfr.
@@ -125,9 +127,9 @@ pxpl5_sim::parameters::parameter_table! {
         instruction_cache_bytes: 4096, "bytes", Published, 4096..=4096, "Intel's manual";
         /// Size of the data cache.
         data_cache_bytes: 8192, "bytes", Published, 8192..=8192, "Intel's manual";
-        /// Line size of both caches.
+        /// Size of a cache line in both caches.
         line_bytes: 32, "bytes", Published, 32..=32, "Intel's manual";
-        /// Associativity of both caches: number of lines in each set.
+        /// Associativity of both caches: number of cache lines in each set.
         cache_ways: 2, "lines", Published, 2..=2, "Intel's manual";
         /// Number of entries in the TLB. Each entry translates the addresses of one page.
         tlb_entries: 64, "entries", Published, 64..=64, "Intel's manual";

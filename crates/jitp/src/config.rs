@@ -46,7 +46,7 @@ pub enum DrawingSchedule {
         /// Number of lines of a strip: 1 to 128.
         strip_rows: u32,
     },
-    /// Square blocks of the whole frame, in an endless random order.
+    /// Square blocks of the whole video frame, in an endless random order.
     Roam {
         /// Width and height of a block, 4 to 128 pixels.
         block: u32,
@@ -188,7 +188,7 @@ impl JitpConfig {
         ViewNumber(field.0 * VIEWS_PER_FIELD + strip)
     }
 
-    /// Returns the regions into which a field (strips) or a frame (blocks) is divided.
+    /// Returns the regions into which a field (strips) or a video frame (blocks) is divided.
     #[must_use]
     pub fn grid(&self) -> RegionGrid {
         match self.schedule {
@@ -204,7 +204,7 @@ impl JitpConfig {
         (strip * columns..(strip + 1) * columns).map(|region| RegionId(region as u16)).collect()
     }
 
-    /// Returns the screen area and the lines of a picture: a field for strips, the whole frame for blocks.
+    /// Returns the screen area and the lines of a picture: a field for strips, the whole video frame for blocks.
     pub(crate) fn extent(&self, picture: PictureNumber) -> (Viewport, Lines) {
         match self.schedule {
             DrawingSchedule::Beam { .. } => {

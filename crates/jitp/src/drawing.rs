@@ -20,7 +20,7 @@ const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 /// do not turn so fast.
 const CURVED: i32 = 8 * SUBPIXELS;
 
-/// A rectangle of pixels: first and last column, first and last line of the frame.
+/// A rectangle of pixels: first and last column, first and last line of the video frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {
     pub(crate) across: [i32; 2],
@@ -225,14 +225,15 @@ impl DrawnList {
     }
 }
 
-/// Returns a range of lines, in subpixels from the top of the frame. Triangles outside this range cannot touch the
-/// windows at any time of the field.
+/// Returns a range of lines, in subpixels from the top of the video frame. Triangles outside this range cannot touch
+/// the windows at any time of the field.
 fn near(windows: &[Window]) -> [i32; 2] {
     let [top, bottom] = span(windows);
     [top - CURVED, bottom + CURVED]
 }
 
-/// Returns the top of the highest window and the bottom of the lowest window, in subpixels from the top of the frame.
+/// Returns the top of the highest window and the bottom of the lowest window, in subpixels from the top of the video
+/// frame.
 fn span(windows: &[Window]) -> [i32; 2] {
     let top = windows.iter().map(|w| w.lines[0] * SUBPIXELS).min().unwrap_or_default();
     let bottom = windows.iter().map(|w| w.lines[1] * SUBPIXELS).max().unwrap_or_default() + SUBPIXELS;
@@ -257,11 +258,10 @@ fn sink_if_met(
     }
 }
 
-/// For each window, the number of primitives in this window. For all windows together, the number of primitives in at
-/// least one window.
+/// Number of primitives in each window, and number of primitives in at least one window.
 struct WindowCounts<'a> {
     windows: &'a [Window],
-    /// Top of the highest window and bottom of the lowest window, in subpixels from the top of the frame.
+    /// Top of the highest window and bottom of the lowest window, in subpixels from the top of the video frame.
     span: [i32; 2],
     each: Vec<PrimitiveCounts>,
     any: PrimitiveCounts,

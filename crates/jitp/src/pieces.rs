@@ -20,7 +20,7 @@ pub(crate) fn window(config: &JitpConfig, viewport: &Viewport, region: RegionId)
     }
 }
 
-/// Returns the line of the frame for a row of the picture. The rows of a field are every second line.
+/// Returns the line of the video frame for a row of the picture. The rows of a field are every second line.
 fn line_of_row(viewport: &Viewport, row: i32) -> i32 {
     viewport.first_line() as i32 + row * viewport.line_step() as i32
 }
@@ -149,7 +149,7 @@ impl RegionWords {
     }
 
     /// Appends the words of a command. Encoding cannot fail, because the machine's configuration refuses a layout of
-    /// pixel memory that lacks a field of the commands.
+    /// pixel memory that lacks a bit field of the commands.
     fn append(&self, command: Command, out: &mut Vec<Word>) {
         let encoded = command.encode(&self.layout, out);
         debug_assert!(encoded.is_ok(), "{encoded:?}");

@@ -412,7 +412,7 @@ impl RegionWords {
 }
 
 /// Appends the words of a command. Encoding cannot fail, because the machine's configuration refuses a layout of pixel
-/// memory that lacks a field of the commands.
+/// memory that lacks a bit field of the commands.
 fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
     let encoded = command.encode(layout, out);
     debug_assert!(encoded.is_ok(), "{encoded:?}");

@@ -58,7 +58,7 @@ impl TransformCost {
         Self { triangles: counts.triangles.into(), spheres: counts.spheres.into(), ..begin }
     }
 
-    /// Returns the processor time in nanoseconds.
+    /// Returns the processor time of this work, in nanoseconds.
     #[must_use]
     pub const fn ns(self, timing: &GpTiming) -> u64 {
         timing.pass_ns * self.passes
@@ -78,7 +78,7 @@ impl TransformCost {
 }
 
 impl TransformCost<f64> {
-    /// Returns the mean processor time in nanoseconds.
+    /// Returns the mean processor time of TRANSFORM, in nanoseconds, for mean counts.
     #[must_use]
     pub fn ns(self, timing: &GpTiming) -> f64 {
         let structures =

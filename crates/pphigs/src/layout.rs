@@ -80,8 +80,8 @@ pub(crate) const LISTS: u32 = 0x8_0000;
 pub(crate) const PIECES: u32 = 0x9_0000;
 pub(crate) const LISTS_END: u32 = pxpl5_gp::RING_MEMORY.start;
 
-/// Returns the address of the bounds of the bins in the set of bins `context`. `view` is 0 for the first view in this
-/// set.
+/// Returns the address of the table of the start and end addresses of bins. The bins belong to one view, with the index
+/// `view`. `context` selects one of two sets of bins, which alternate.
 pub(crate) fn bins(context: u8, view: u8) -> u32 {
     let context = u32::from(context % 2);
     match u32::from(view).checked_sub(1) {

@@ -225,14 +225,14 @@ impl Share {
         (self.first..self.list.spheres.len()).step_by(self.step)
     }
 
-    /// Returns the range of a structure's triangles among those of the graphics processor. `of` is the structure's
-    /// range in the display list.
+    /// Returns the range of a structure's triangles among the triangles of the graphics processor. `of` is the
+    /// structure's range in the display list.
     pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.triangles, of)
     }
 
-    /// Returns the range of a structure's spheres among those of the graphics processor. `of` is the structure's range
-    /// in the display list.
+    /// Returns the range of a structure's spheres among the spheres of the graphics processor. `of` is the structure's
+    /// range in the display list.
     pub(crate) fn held_places_of_spheres(&self, of: &Range<usize>) -> Range<usize> {
         self.places(&self.spheres, of)
     }

@@ -77,9 +77,9 @@ struct Found {
 
 /// Counts primitives without storing them.
 struct PrimitiveCounter {
-    /// For each region, the number of triangles that touch only this region.
+    /// Number of triangles for each region that touch only this region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// For each region, the number of triangles that also touch another region, and the number of spheres.
+    /// Number of triangles for each region that also touch another region, and number of spheres that touch the region.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,
@@ -398,7 +398,7 @@ impl Pass {
         self.walk.taken().filter_map(|place| Some((place, place.transform.as_ref()?)))
     }
 
-    /// Returns true for each structure that is drawn, or `None` if all structures are drawn.
+    /// Returns a flag for each structure, true if the structure is drawn. Returns `None` if all structures are drawn.
     pub(crate) fn chosen(&self) -> Option<&[bool]> {
         self.walk.chosen.as_deref()
     }

@@ -43,7 +43,7 @@ pub struct MemoryPart {
 }
 
 impl MemoryPart {
-    /// The whole memory after the display list.
+    /// The only part: the memory after the display list is not divided.
     pub const WHOLE: Self = Self { number: 0, of: 1 };
 
     /// Returns part `number` (modulo `of`) of `of` equal parts. `of` is limited to 1 to 16.
@@ -375,8 +375,8 @@ pub(crate) fn program() -> Arc<Program> {
     Arc::clone(&PROGRAM)
 }
 
-/// The code that searches windows and lists messages. Every message has room for the copy command, like the messages
-/// that the simulator makes without code.
+/// The code that searches windows and lists messages. Every message has room for the copy command, like the messages of
+/// the same search in Rust.
 static PROGRAM: LazyLock<Arc<Program>> = LazyLock::new(|| {
     let token = token_source([MAX_MESSAGE_WORDS - CLOSING, MAX_MESSAGE_WORDS]);
     let sources = [("windows", include_str!("../kernels/windows.s")), ("token", token.as_str())];

@@ -124,7 +124,7 @@ impl<const N: usize> Ports<N> {
         Self { free: [Times::all(f64::MIN); 2], begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
     }
 
-    /// Makes a copy that starts at `ready` or when the port is free. Returns the end of the copy.
+    /// Makes a copy that starts at `ready`, or later when the port becomes free. Returns the end of the copy.
     #[inline(always)]
     fn copy(&mut self, ready: Times<N>, to_right: bool, region: Times<N>) -> Times<N> {
         let begin = self.free[usize::from(to_right)].later(ready);

@@ -52,7 +52,7 @@ pub struct StereoModel {
 pub struct StereoTimes {
     /// Start of each eye's TRANSFORM.
     pub transform_ns: [f64; 2],
-    /// For each eye, the time of the first word of the first copy and of the last word of the last copy.
+    /// Times of the first word of the first copy and of the last word of the last copy of each eye's picture.
     pub copy_ns: [(f64, f64); 2],
     /// Time of the retrace at which the frame is first shown.
     pub shown_ns: f64,
@@ -91,11 +91,11 @@ struct Renderers {
     free_ns: Vec<f64>,
     /// Times at which the regions of each renderer were copied to the frame buffer.
     sent_ns: Vec<Vec<f64>>,
-    /// For each renderer, the times until which its backing store holds finished regions.
+    /// Times until which the backing store of each renderer holds finished regions.
     stored_until_ns: Vec<Vec<f64>>,
     words: Vec<f64>,
-    /// For the latest regions of each renderer: number of words before the region, start of the first command, and cost
-    /// of all commands.
+    /// Number of words before the region, start of the first command, and cost of all commands, for each of the latest
+    /// regions of each renderer.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }

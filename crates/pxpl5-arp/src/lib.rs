@@ -23,7 +23,7 @@
 //! - [`figures`] compares the papers' figures with the simulated figures. [`pictures`] draws pictures.
 //!
 //! Units are metres, seconds and radians unless a name contains another unit. A frame is 1/60 s. Results are
-//! bit-identical on every host.
+//! bit-identical on every computer.
 //!
 //! # Not here
 //!

@@ -39,7 +39,7 @@ pub enum ArpPicture {
 /// Number of frames of the viewer's walk that the pictures show.
 const FRAMES: u64 = 1_800;
 
-/// For each experiment: its name, the figures of the papers that the experiment redraws, and the names of the project's
+/// Name of each experiment, the figures of the papers that the experiment redraws, and the names of the project's
 /// pictures.
 pub const OF_FIGURES: [(&str, &str, &[&str]); 3] = [
     ("E2", "2, 12 and 14", &["faces-0", "faces-1", "faces-2", "faces-3", "faces-whole", "memories"]),
@@ -171,9 +171,10 @@ fn tinted(
 /// Background colour that is visible through tears (gaps between memories).
 const WHITE: u32 = 0x00FF_FFFF;
 
-/// Greatest number of frames that are searched for the best view of a tear (gap between two memories).
+/// Approximate limit of the number of frames that are examined for the best view of a tear (gap between two memories).
 const TRIED: u64 = 63;
-/// Least number of frames from one searched frame to the next.
+/// Smallest distance, in frames, between two frames that are examined for the best view of a tear. A longer walk has
+/// larger distances.
 const EVERY: u64 = 29;
 
 /// Returns the frame and orientation at which a tear (gap between two memories) shows the largest number of background

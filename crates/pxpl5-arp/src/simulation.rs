@@ -43,12 +43,12 @@ enum Policy {
 pub struct FrameOutcome {
     /// Position of the eye.
     pub eye: DVec3,
-    /// For each memory, true if it became due for an update.
+    /// Flag of each memory: true if it became due for an update.
     pub due: Vec<bool>,
-    /// For each memory, true if it has a new update. With an ideal renderer, the update is shown from this frame on.
-    /// With a renderer of limited speed, it is shown from the next frame on.
+    /// Flag of each memory: true if it has a new update. With an ideal renderer, the update is shown from this frame
+    /// on. With a renderer of limited speed, the update is shown from the next frame on.
     pub swapped: Vec<bool>,
-    /// For each memory, true if its update was incomplete at the retrace.
+    /// Flag of each memory: true if its update was incomplete at the retrace.
     pub missed: Vec<bool>,
     /// True if cells (squares of the floor) were newly assigned to memories in this frame.
     pub deals_anew: bool,

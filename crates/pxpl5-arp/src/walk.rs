@@ -46,8 +46,8 @@ pub struct WalkTally {
     pub moved_objects: Option<u64>,
     /// Angles of the tears (gaps between memories) at shared vertices, over all frames.
     pub tears: Tears,
-    /// For each frame, the width in radians of the widest displayed tear (gap between two memories), and the index of
-    /// its vertex. `None` if no memories meet.
+    /// Width in radians of the widest tear (gap between two memories) that each frame shows, and the index of the
+    /// tear's vertex. `None` if no memories meet.
     pub widest: Vec<Option<(f64, u32)>>,
     /// Memories that were due, showed an update, or missed the retrace, for each frame.
     pub outcomes: Vec<FrameOutcome>,

@@ -181,7 +181,8 @@ mod tests {
         (VolumeWork { slices: 600, samples: 4, ..MIG }, 48.6, 0.56),
     ];
 
-    /// Measured costs of walks through a scene, with the units of `VOLUMES`.
+    /// Measured costs of walks: the work, the peak memory in MB, and the processor time in seconds, measured like
+    /// [`VOLUMES`].
     const WALKS: [(WalkWork, f64, f64); 4] = [
         (WalkWork { frames: 120, primitives: 740, face_texels: 512 }, 36.8, 0.05),
         (WalkWork { frames: 1_800, primitives: 740, face_texels: 512 }, 41.6, 0.13),

@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 /// The pipelines and displays of this process. [`crate::main`] sets them before clap builds the options.
 static REGISTRY: OnceLock<Arc<Registry>> = OnceLock::new();
 
-/// Sets the pipelines and displays of this process.
+/// Sets the pipelines and displays that the options of this process accept.
 pub(crate) fn know(registry: Arc<Registry>) {
     // Only a second call of `main` would set the registry again. The options of the first call are kept.
     let _ = REGISTRY.set(registry);

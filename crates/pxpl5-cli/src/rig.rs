@@ -47,7 +47,7 @@ pub(crate) struct RigArgs {
     json: bool,
 }
 
-/// Maximum number of display fields between two low points of the pendulum: one second.
+/// Maximum number of display fields between two passes of the pendulum through its lowest point: one second.
 const FIELDS_OF_PASS: u64 = 60;
 
 /// Settings that the rig determines itself. The user must not set them.

@@ -27,8 +27,8 @@ pub(crate) struct Buffer {
     /// Indices in `held` of the regions that are still arriving. The list is short, because a port receives one region
     /// at a time.
     arriving: Vec<usize>,
-    /// For each set of pixels, the index of the newest complete region that fills exactly these pixels. The key comes
-    /// from the function [`cut`]. The newest region hides all older regions with the same key.
+    /// Index of the newest complete region that fills exactly a set of pixels, for each set. The key comes from the
+    /// function [`cut`]. The newest region hides all older regions with the same key.
     newest: BTreeMap<[u32; 6], usize>,
     scans: Scans,
 }

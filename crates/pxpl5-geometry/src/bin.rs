@@ -87,8 +87,8 @@ impl Binner {
         self.columns
     }
 
-    /// Returns the pixel rows of the picture on the frame lines `lines`. A field has only every second line of its
-    /// frame.
+    /// Returns the pixel rows of the picture that lie on the lines `lines` of the video frame. A field has only every
+    /// second line of its video frame.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
@@ -98,7 +98,7 @@ impl Binner {
         }
     }
 
-    /// Returns the regions with pixels in the columns `x` and on the frame lines `lines`.
+    /// Returns the regions with pixels in the columns `x` and on the lines `lines` of the video frame.
     pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
         let x = x.within(self.width);
         let y = self.rows_of_lines(lines).within(self.height);
@@ -165,7 +165,7 @@ impl Binner {
         (left, (left + self.region_width).min(self.width) - 1)
     }
 
-    /// Returns the first and the last frame line of the regions in a row.
+    /// Returns the first and the last line, in the video frame, of the regions in a row.
     #[inline(always)]
     pub(crate) fn row_box(&self, row: i32) -> (i32, i32) {
         let top = row * self.region_height;
@@ -183,7 +183,8 @@ impl Outline {
     /// Returns true if the triangle meets the box around the pixel centres of a rectangle, by the same rule as for
     /// regions.
     ///
-    /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last frame line.
+    /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last line in the
+    /// video frame.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         let x = pixels_between(&self.x);

@@ -20,7 +20,7 @@ const MAX_DEPTH_SHIFT: i32 = 20;
 /// in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Conic {
-    /// The point with dx = dy = 0, in pixels of the frame. The centre of the top left pixel is (0, 0).
+    /// The point with dx = dy = 0, in pixels of the video frame. The centre of the top left pixel is (0, 0).
     pub(crate) origin: [f64; 2],
     pub(crate) constant: f64,
     pub(crate) x: f64,
@@ -66,8 +66,8 @@ impl Ellipse {
         self.half_squares.map(reciprocal_root)
     }
 
-    /// Returns the smallest and the largest x and y of the ellipse, in pixels of the frame. Returns `None` if the conic
-    /// is not an ellipse, for example because of an overflow.
+    /// Returns the smallest and the largest x and y of the ellipse, in pixels of the video frame. Returns `None` if the
+    /// conic is not an ellipse, for example because of an overflow.
     pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let [x, y] = self.peak;
         let [half_x, half_y] = self.half_squares.map(root);
@@ -171,8 +171,8 @@ impl Conic {
     }
 }
 
-/// Converts a quadratic over the lines of a frame to a quadratic over the rows of a picture. Row r is line `first + r *
-/// step`. The value at each pixel stays the same.
+/// Converts a quadratic over the lines of a video frame to a quadratic over the rows of a picture. The picture's row r
+/// is the line with the number `first + r * step`. The value at each pixel stays the same.
 pub(crate) fn for_rows(frame: Quadratic, step: i64, first: i64) -> Quadratic {
     Quadratic {
         xx: frame.xx,

@@ -2,8 +2,8 @@
 //!
 //! A [`Kernel`] reads triangles from the display list and writes renderer commands into bins, one bin for each region.
 //! The steps are: transform, test against the guard band, light or normals, rounding to subpixels, planes, conversion
-//! of a frame's lines to a field's rows, and regions. The clipper, a separate program, handles triangles that are not
-//! wholly inside the guard band. The kernel makes steep planes constant only in pieces of clipped triangles.
+//! of a video frame's lines to a field's rows, and regions. The clipper, a separate program, handles triangles that are
+//! not wholly inside the guard band. The kernel makes steep planes constant only in pieces of clipped triangles.
 //!
 //! ```text
 //!   display list (96 bytes a triangle, --+
@@ -71,12 +71,12 @@ pub enum KernelList {
 /// Size of the picture, and its division into regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelPicture {
-    /// An NTSC frame: 640 x 480 pixels in regions of 128 x 128.
+    /// An NTSC video frame: 640 x 480 pixels in regions of 128 x 128.
     Frame,
     /// An NTSC field: 640 x 240 pixels in regions of 128 x 120.
     Field,
-    /// A frame of another size in regions of 128 x 128, for example a face of a cube. The size is a parameter of the
-    /// code.
+    /// A video frame of another size in regions of 128 x 128, for example a face of a cube. The size is a parameter of
+    /// the code.
     Grid,
 }
 
@@ -98,8 +98,8 @@ pub struct Kernel {
     pub culls: bool,
     /// True if a kernel without bins also stores the bounding box of each command, for later searches.
     ///
-    /// The boxes replace the table of bins. A box has four numbers in 1/16 px of the frame: low x, high x, low y, high
-    /// y.
+    /// The boxes replace the table of bins. A box has four numbers in 1/16 px of the video frame: low x, high x, low y,
+    /// high y.
     pub keeps_boxes: bool,
     /// True if one pass over the triangles makes the commands of both eyes (kernels/slats_rules.md).
     ///
@@ -166,8 +166,8 @@ pub(crate) fn choices(each: &[(&str, bool)]) -> String {
 impl Kernel {
     /// Returns the kernel for separate triangles and the picture of `viewport`.
     ///
-    /// Returns `None` if no kernel has regions of this size. A kernel without bins exists only for NTSC frames and
-    /// fields.
+    /// Returns `None` if no kernel has regions of this size. A kernel without bins exists only for NTSC video frames
+    /// and fields.
     #[must_use]
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let picture = KernelPicture::of(viewport).filter(|picture| binned || *picture != KernelPicture::Grid)?;
@@ -340,7 +340,8 @@ impl KernelPicture {
     }
 }
 
-/// Returns the last subpixel along x, the last subpixel along y in the frame, and the number of region columns.
+/// Returns the greatest x and the greatest y of the video frame (the whole screen), both in subpixels, and the number
+/// of columns of regions.
 pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
     let grid = viewport.grid();
     [16 * grid.width - 1, 16 * viewport.frame_lines() - 1, grid.columns()]

@@ -222,12 +222,12 @@ const fn last_subpixel(pixels: u32) -> i32 {
     pixels as i32 * SUBPIXELS - 1
 }
 
-/// The rows of a picture: row r is line `first_line + r * line_step` of the frame.
+/// The rows of a picture: row r is line `first_line + r * line_step` of the video frame.
 #[derive(Clone, Copy)]
 struct PictureRows {
     line_step: i32,
     first_line: i32,
-    /// The last subpixel of the frame along x and along y.
+    /// The last subpixel of the video frame along x and along y.
     last: [i32; 2],
 }
 
@@ -240,7 +240,7 @@ impl PictureRows {
         }
     }
 
-    /// Converts expressions over the lines of a frame to expressions over the rows of a picture, like
+    /// Converts expressions over the lines of a video frame to expressions over the rows of a picture, like
     /// [`screen::for_rows`].
     #[inline(always)]
     fn restate(&self, frame: LinearLanes) -> LinearLanes {

@@ -19,8 +19,8 @@
 //! 3. **Clip** by the near and far planes and a guard band of [`GUARD_PIXELS`], before the division. Triangles are not
 //!    clipped at the sides of the picture. A shared edge is cut at the same point for both of its triangles.
 //! 4. **Divide** by w without a division instruction: a first approximation of 8 bits (seed) and two Newton steps in
-//!    single precision. **Snap** to 1/16 px of the *frame*. A field is exactly the even or odd lines of its frame. The
-//!    vertices are the same, and the expressions are converted to every second line.
+//!    single precision. **Snap** to 1/16 px of the *video frame*. A field is exactly the even or odd lines of its video
+//!    frame. The vertices are the same, and the expressions are converted to every second line.
 //! 5. **Drop** triangles without area and, on request, back faces ([`Culling`]).
 //! 6. **Bin**: the edges give the exact set of touched regions ([`RegionMask`]). Most triangles lie inside one region
 //!    and need only one comparison per side. [`Transform::bin`] and [`Transform::touched`] end with this step.
@@ -39,9 +39,9 @@
 //! | slope | up to [`MAX_SLOPE`], kept modulo 2^32; steeper planes are made flat and counted | tests/setup.rs |
 //! | sphere | silhouette below 2^47 in its regions, root of 12 bits | tests/input.rs |
 //!
-//! docs/numerics.md compares these formats with exact geometry on hard cases. All results are the same on every host:
-//! the code uses only additions, multiplications, divisions and square roots, in a fixed order. Loops over several
-//! triangles are compiled for each vector unit and give the same bits.
+//! docs/numerics.md compares these formats with exact geometry on hard cases. All results are the same on every
+//! computer: the code uses only additions, multiplications, divisions and square roots, in a fixed order. Loops over
+//! several triangles are compiled for each vector unit and give the same bits.
 //!
 //! # Example
 //!

@@ -43,7 +43,7 @@ pub(crate) fn root(value: f64) -> f64 {
 }
 
 /// Returns the integer nearest to a number below 2^51 in absolute value, ties to even. For larger numbers, the result
-/// is meaningless, but the same on every host.
+/// is meaningless, but the same on every computer.
 pub(crate) fn whole(value: f64) -> i64 {
     ((value + ROUND_DOUBLE).to_bits() as i64).wrapping_sub(ROUND_DOUBLE.to_bits() as i64)
 }

@@ -13,7 +13,7 @@ pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
 pub struct Outline {
     /// Distance of each corner from the picture's left border, in 1/16 px.
     pub x: [i32; 3],
-    /// Distance of each corner from the top of the whole frame, in 1/16 px, also if the picture is a field.
+    /// Distance of each corner from the top of the whole video frame, in 1/16 px, also if the picture is a field.
     pub y: [i32; 3],
     /// Depth of each corner, from [`crate::DEPTH_NEAR`] to [`crate::DEPTH_FAR`].
     pub z: [u32; 3],
@@ -30,7 +30,7 @@ impl Outline {
         i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
     }
 
-    /// Returns the edge expressions from corner 0 to 1, 1 to 2 and 2 to 0, over the lines of the frame.
+    /// Returns the edge expressions from corner 0 to 1, 1 to 2 and 2 to 0, over the lines of the video frame.
     #[inline(always)]
     pub(crate) fn edges(&self) -> [Linear; 3] {
         [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]

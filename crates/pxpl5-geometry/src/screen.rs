@@ -109,8 +109,8 @@ pub struct PhongTriangle {
     pub edges: [Linear; 3],
     /// Depth with [`format::Z_FRACTION_BITS`] fraction bits.
     pub z: Linear,
-    /// x, y and z of the normal in eye coordinates, with [`format::NORMAL_FRACTION_BITS`] fraction bits. The length 1
-    /// is 2^[`format::NORMAL_ONE_BITS`] before the fraction.
+    /// x, y and z of the normal in eye coordinates, with [`format::NORMAL_FRACTION_BITS`] fraction bits. A normal of
+    /// length 1 has the integer part 2^[`format::NORMAL_ONE_BITS`].
     pub normal: [Linear; 3],
     /// Red, green and blue of the whole triangle, 0 to 255 each.
     pub colour: [u8; 3],
@@ -162,7 +162,7 @@ impl Outline {
     }
 
     /// Returns the pixel in the middle of the visible part of the triangle, at which planes are most exact. The y of
-    /// this pixel counts frame lines.
+    /// this pixel counts lines of the video frame.
     #[inline(always)]
     fn middle(&self, viewport: &Viewport) -> [i32; 2] {
         [middle_pixel(&self.x, viewport.grid().width), middle_pixel(&self.y, viewport.frame_lines())]
@@ -182,8 +182,8 @@ fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {
     (low.clamp(0, last) + high.clamp(0, last)) / (2 * SUBPIXELS)
 }
 
-/// Converts an expression over the lines of the frame to an expression over the rows of the picture. The value at each
-/// pixel stays the same.
+/// Converts an expression in lines of the video frame (the whole screen) to an expression in rows of the picture. The
+/// picture of a field has only every second line. The value at each pixel stays the same.
 #[inline(always)]
 pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
     Linear {

@@ -51,7 +51,8 @@ pub struct ScreenSphere {
 impl ScreenSphere {
     /// Returns true if the bounding box of the sphere's image meets a rectangle.
     ///
-    /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last frame line.
+    /// `across` has the first and the last pixel column of the rectangle, and `lines` its first and last line in the
+    /// video frame.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
         self.ellipse.bounds().is_some_and(|[x, y]| overlaps(pixels(x), across) && overlaps(pixels(y), lines))

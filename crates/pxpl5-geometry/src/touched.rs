@@ -152,8 +152,8 @@ impl CornerLanes {
 
 /// Results of a first search by the bounding boxes of triangles.
 struct LaneTouches {
-    /// Codes as in [`Touched`]. The code [`SEVERAL`] without an index marks a triangle whose bounding box meets several
-    /// regions, so that its edges must be tested.
+    /// Codes of the triangles, with the meanings of the codes of [`Touched`]. The code [`SEVERAL`] without an index
+    /// marks a triangle whose bounding box meets several regions, so that its edges must be tested.
     codes: EachLane<u32>,
     any_several: bool,
     x: [EachLane<i32>; 2],

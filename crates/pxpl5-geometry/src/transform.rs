@@ -62,7 +62,7 @@ pub(crate) struct ToScreen {
     pub(crate) centre: [f32; 2],
 }
 
-/// A vertex on the screen: x and y in 1/16 px of the frame, z as fixed-point depth.
+/// A vertex on the screen: x and y in 1/16 px of the video frame, z as fixed-point depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Snapped {
     pub(crate) x: i32,
@@ -88,7 +88,8 @@ impl TriangleEnds {
         })
     }
 
-    /// Returns the smallest and largest distance of a corner from the top of the frame, over both views, in 1/16 px.
+    /// Returns the smallest and largest distance of a corner from the top of the video frame, over both views, in 1/16
+    /// px.
     #[must_use]
     pub fn y_range(&self) -> [i32; 2] {
         let ys = self.from.iter().chain(&self.to).map(|corner| corner.y);
@@ -229,7 +230,7 @@ impl Transform {
         })
     }
 
-    /// Returns the picture to which primitives are transformed.
+    /// Returns the size, regions and lines of the picture to which primitives are transformed.
     #[must_use]
     pub const fn viewport(&self) -> &Viewport {
         &self.viewport

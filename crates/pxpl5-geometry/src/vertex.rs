@@ -1,8 +1,8 @@
 //! Vertices that several triangles share, each transformed only once.
 //!
 //! Triangles of such vertices are [binned](Transform::touched), and set up in [groups](crate::TriangleLanes), if they
-//! need no clipping. The results equal those of [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`].
-//! These three functions also handle triangles that need clipping.
+//! need no clipping. The results equal the results of [`Transform::bin`], [`Transform::gouraud`] and
+//! [`Transform::phong`]. These three functions also handle triangles that need clipping.
 
 use crate::clip::Guard;
 use crate::light::{self, ModelLight, NormalRows};

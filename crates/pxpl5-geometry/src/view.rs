@@ -7,7 +7,7 @@ use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid};
 use serde::{Deserialize, Serialize};
 
-/// Largest width of a picture in pixels, and largest height in frame lines.
+/// Largest width of a picture in pixels, and largest height in lines of the video frame.
 ///
 /// Together, this limit and [`crate::GUARD_PIXELS`] ensure that edge expressions fit 32 bits.
 pub const MAX_PICTURE: u32 = 2048;
@@ -25,7 +25,7 @@ pub struct ViewTransform {
     pub projection: Mat4,
 }
 
-/// A picture: its division into regions, and its lines of the frame (all, even or odd).
+/// A picture: its division into regions, and its lines of the video frame (all, even or odd).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "PictureFields", into = "PictureFields")]
 pub struct Viewport {
@@ -41,11 +41,11 @@ struct PictureFields {
 }
 
 impl Viewport {
-    /// A whole NTSC frame: 640 x 480 in 20 regions (TR94).
+    /// A whole NTSC video frame: 640 x 480 in 20 regions (TR94).
     pub const FRAME: Self = Self { grid: RegionGrid::FRAME, lines: Lines::Frame };
 
-    /// Returns one NTSC field: 640 x 240 in 10 regions (TR94). Row r of the even field is frame line 2r, and row r of
-    /// the odd field is frame line 2r + 1.
+    /// Returns one NTSC field: 640 x 240 in 10 regions (TR94). Row r of the even field is line 2r of the video frame,
+    /// and row r of the odd field is line 2r + 1.
     #[must_use]
     pub const fn field(parity: pxpl5_wire::FieldParity) -> Self {
         Self { grid: RegionGrid::FIELD, lines: Lines::Field(parity) }
@@ -82,13 +82,14 @@ impl Viewport {
         self.grid
     }
 
-    /// Returns the frame lines that the picture contains: all, even or odd.
+    /// Returns the lines of the video frame that the picture contains: all, even or odd.
     #[must_use]
     pub const fn lines(&self) -> Lines {
         self.lines
     }
 
-    /// Returns the number of frame lines from one row of the picture to the next: 1 for a frame, 2 for a field.
+    /// Returns the number of lines of the video frame from one row of the picture to the next: 1 for a whole video
+    /// frame, 2 for a field.
     #[must_use]
     pub const fn line_step(&self) -> u32 {
         match self.lines {
@@ -97,7 +98,7 @@ impl Viewport {
         }
     }
 
-    /// Returns the frame line of the picture's first row: 0 or 1.
+    /// Returns the line of the video frame on which the picture's first row lies: 0 or 1.
     #[must_use]
     pub const fn first_line(&self) -> u32 {
         match self.lines {
@@ -106,7 +107,7 @@ impl Viewport {
         }
     }
 
-    /// Returns the height of the frame to which the picture belongs, in lines.
+    /// Returns the height of the video frame to which the picture belongs, in lines.
     #[must_use]
     pub const fn frame_lines(&self) -> u32 {
         self.grid.height * self.line_step()
@@ -133,8 +134,8 @@ impl From<Viewport> for PictureFields {
 
 /// The columns of a 4 x 4 matrix.
 ///
-/// Products are computed in the same order on every host. The library glam uses another order with vector units than in
-/// scalar code.
+/// Products are computed in the same order on every computer. The library glam uses another order with vector units
+/// than in scalar code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Columns(pub(crate) [[f32; 4]; 4]);
 

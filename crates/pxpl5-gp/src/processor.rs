@@ -146,9 +146,9 @@ const LINK: usize = 1;
 /// The clocks of a whole call cannot be reused, because no call repeats exactly. While the head is still, 96 % of the
 /// calls have the code, arguments and parameters of an earlier call. While the head moves, no call repeats in this
 /// sense. The measurements covered 48 fields each: 188 calls of Slats with 110 triangles, and 2,800 calls of Rendering
-/// Control with the aircraft scene. However, even calls with equal inputs find different lines in the caches, because
-/// the replacement of lines is pseudo-random. The time to the next memory refresh also differs from call to call. The
-/// clocks of short sequences of instructions can be reused (see [`i860::Config::memoise`]).
+/// Control with the aircraft scene. However, even calls with equal inputs find different cache lines in the caches,
+/// because the replacement of lines is pseudo-random. The time to the next memory refresh also differs from call to
+/// call. The clocks of short sequences of instructions can be reused (see [`i860::Config::memoise`]).
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,

@@ -60,8 +60,8 @@ use std::sync::Arc;
 /// The application scenes of TR94.
 const SCENES: [&str; 3] = ["mig", "molecules", "head"];
 
-/// Number of slaves among which a scene's triangles are divided: those of the preset `small-hmd`. Only the first
-/// slave's share is measured.
+/// Number of slaves among which a scene's triangles are divided: the number of slaves of the preset `small-hmd`. Only
+/// the first slave's share is measured.
 const BOARDS: usize = 12;
 
 /// Number of head poses from which each scene is transformed.

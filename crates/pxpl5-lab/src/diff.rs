@@ -33,7 +33,7 @@ pub struct Differences {
     pub same_trace: bool,
     /// Settings that differ.
     pub settings: Vec<Changed>,
-    /// Results that differ. Times of the host computer are left out.
+    /// Results that differ. Computing times of this computer are left out.
     pub results: Vec<Changed>,
     /// Number of results that are equal in both reports.
     pub equal: usize,

@@ -87,8 +87,8 @@ pub enum StudyError {
         /// Error of the parser.
         found: String,
     },
-    /// The pendulum rig gave no measurement: the tracker reported no low point of the pendulum, or the photodiode
-    /// detected no bright pixel.
+    /// The pendulum rig gave no measurement: the tracker reported no pass of the pendulum through its lowest point, or
+    /// the photodiode detected no bright pixel.
     #[error(transparent)]
     Rig(#[from] RigError),
     /// A requested frame was not shown completely.
@@ -96,7 +96,7 @@ pub enum StudyError {
         "expected the time of complete display for {expected} frames that low points requested, found it for {found}"
     )]
     NotShown {
-        /// Number of frames that the rig requested at low points of the pendulum.
+        /// Number of frames that the rig requested because the pendulum passed its lowest point.
         expected: usize,
         /// Number of requested frames that were shown completely, according to the pipeline's records.
         found: usize,

@@ -257,7 +257,7 @@ fn more_host_time(points: &[Point], primitives: usize, machine: (usize, usize)) 
     Some((other_ms / host_ms(points, primitives, (13, 5))? - 1.0) * 100.0)
 }
 
-/// Returns the host time per frame on a machine in milliseconds, or `None` if no frame was shown.
+/// Returns the computing time per frame of a machine in milliseconds, or `None` if no frame was shown.
 fn host_ms(points: &[Point], primitives: usize, (n_gps, n_renderers): (usize, usize)) -> Option<f64> {
     let mut shown = points.iter().filter(|p| p.frames > 0);
     let point = shown.find(|p| (p.primitives, p.n_gps, p.n_renderers) == (primitives, n_gps, n_renderers))?;
@@ -280,8 +280,8 @@ fn table(text: &mut String, points: &[Point]) {
     }
 }
 
-/// Writes a chart of the host time for each number of triangles, with logarithmic axes. Each row of the chart is one
-/// scene size, and each column is a tenth of a decade of the host time.
+/// Writes a chart of the computing time for each number of triangles, with logarithmic axes. Each row of the chart is
+/// one scene size, and each column is a tenth of a decade of the computing time.
 fn chart(text: &mut String, points: &[Point]) {
     let least = points.iter().filter(|p| p.frames > 0).map(|p| p.host_ms).fold(f64::INFINITY, f64::min).log10().floor();
     for p in points.iter().filter(|p| p.frames > 0) {

@@ -50,8 +50,8 @@ pub struct LimitQuery {
     pub stop: StopFlag,
 }
 
-/// A scene whose triangles are reduced evenly to each number that a search tries. The largest number is the scene's own
-/// number of triangles.
+/// A scene that a search simplifies to each number of triangles that the search tries. The largest number is the
+/// scene's own number of triangles.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Settings of the model's scene. The search ignores the number of triangles in these settings.

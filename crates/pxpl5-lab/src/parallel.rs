@@ -1,11 +1,11 @@
-//! Parallel execution of independent runs on all threads of the host. Results keep the order of the inputs. A run may
-//! start further parallel runs.
+//! Parallel execution of independent runs on all threads of this computer. Results keep the order of the inputs. A run
+//! may start further parallel runs.
 
 use rayon::prelude::*;
 
 /// Applies `run` to every item in parallel, and returns the results in the order of the items.
 ///
-/// The items are independent experiments or their settings. All cores of the host work. A run may start further
+/// The items are independent experiments or their settings. All cores of this computer work. A run may start further
 /// parallel runs.
 ///
 /// ```

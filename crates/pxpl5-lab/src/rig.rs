@@ -1,16 +1,16 @@
 //! The pendulum rig in front of the emulated machine. The rig measures latency from outside, and compares the result
 //! with the system's own time stamps.
 //!
-//! As in I3D95, the host starts a frame when the host detects the pendulum's low point. Frames alternate between dark
-//! and light, and the output of a D/A converter (the D/A line) changes when the program starts a frame. Frames
-//! therefore come on demand, the pipeline is not full, and the latency contains no wait for stages of an earlier frame.
-//! Under Rendering Control the host drives the line, so SEND and EDIT belong to the rendering part of the latency.
-//! Firmware that starts frames itself, such as Slats, switches the D/A line when the firmware samples the pose of a
-//! frame.
+//! As in I3D95, the host starts a frame when the host detects that the pendulum passes its lowest point. Frames
+//! alternate between dark and light, and the output of a D/A converter (the D/A line) changes when the program starts a
+//! frame. Frames therefore come on demand, the pipeline is not full, and the latency contains no wait for stages of an
+//! earlier frame. Under Rendering Control the host drives the line, so SEND and EDIT belong to the rendering part of
+//! the latency. Firmware that starts frames itself, such as Slats, switches the D/A line when the firmware samples the
+//! pose of a frame.
 //!
-//! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The low points come
-//! from the pendulum. The light comes from the pixels that the display scans at the photodiode. The D/A line comes from
-//! the board that starts the frame. The pipeline's records give the system's own time stamps.
+//! The traces of the simulated oscilloscope do not use the pipeline's own records of its pictures. The instants of the
+//! lowest point come from the pendulum. The light comes from the pixels that the display scans at the photodiode. The
+//! D/A line comes from the board that starts the frame. The pipeline's records give the system's own time stamps.
 
 use crate::StopFlag;
 use crate::error::StudyError;
@@ -36,20 +36,20 @@ use tracking::{Pose, rotation};
 /// A measurement of latency with the pendulum rig.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    /// Settings of the pendulum, of the detection of its low point, and of the photodiodes.
+    /// Settings of the pendulum, of the detection of its lowest point, and of the photodiodes.
     pub rig: PendulumRig,
     /// Tracker on the bob of the pendulum.
     pub tracker: TrackerConfig,
     /// Seed of the tracker's noise.
     pub seed: u64,
-    /// Number of measured passes of the pendulum through its low point, at least 2.
+    /// Number of measured passes of the pendulum through its lowest point, at least 2.
     pub passes: usize,
     /// Flag by which another thread stops the measurement.
     pub stop: StopFlag,
 }
 
-/// Default number of low points to measure. Low points occur at any time within a field. With this number, the mean
-/// wait for a retrace is known to a fifth of a field.
+/// Default number of measured passes of the pendulum through its lowest point. A pass can fall at any time within a
+/// field. With this number, the error of the mean wait for a retrace is about a fifth of a field.
 pub const PASSES: usize = 24;
 
 impl Rig {
@@ -125,8 +125,9 @@ impl Rig {
         Ok(measured.with_frames_counted_in_scan(counted.unwrap_or_default()))
     }
 
-    /// Returns the experiment of a measurement. Each report of the pendulum's low point has a head pose: alternately
-    /// toward the lamp and away from the lamp. The experiment is long enough for the last frame to be shown.
+    /// Returns the experiment of a measurement. Each report that the pendulum is at its lowest point has a head pose:
+    /// alternately toward the lamp and away from the lamp. The experiment is long enough for the last frame to be
+    /// shown.
     fn experiment(
         &self,
         machine: &MachineConfig,
@@ -292,8 +293,8 @@ fn watch(photodiodes: &mut [Photodiode], experiment: &Experiment) -> Result<Outc
     }
 }
 
-/// Returns one picture for each report of the pendulum's low point: the first complete picture with the head pose of
-/// the report. The pictures come from the pipeline's records.
+/// Returns one picture for each report that the pendulum is at its lowest point: the first complete picture with the
+/// head pose of the report. The pictures come from the pipeline's records.
 fn frames_asked_for(outcome: &Outcome, sightings: &[LowPointReport]) -> Result<Vec<PictureTimes>, StudyError> {
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
     let arrived_at: BTreeMap<ViewNumber, Time> =

@@ -31,8 +31,8 @@ pub(crate) struct ErrorSum {
 }
 
 impl ErrorSum {
-    /// Creates an empty sum for the display mode `showing`. If `without` is set, the cause of error `without` is turned
-    /// off.
+    /// Creates an empty sum for pictures in the display mode `showing`. If `without` is set, pictures are evaluated as
+    /// if this cause of error did not exist.
     pub(crate) fn of(showing: Showing, without: Option<Cause>) -> Self {
         Self { showing: Some(showing), without, ..Self::default() }
     }

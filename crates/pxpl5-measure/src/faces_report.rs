@@ -13,7 +13,7 @@ pub struct FacesReport {
     pub schema: &'static str,
     /// Number of texels along the edge of a face, including guard texels.
     pub face_texels: u64,
-    /// The instant at which the display latches (samples and holds) the orientation of the head.
+    /// Times at which the display reads the orientation of the head: once for each field, line or pixel.
     pub latch: Latch,
     /// Time from the latching of an orientation until the first pixel that uses this orientation is lit, in
     /// nanoseconds.

@@ -23,7 +23,7 @@ pub trait Measured {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] with the most similar name if no quantity is called `name`.
+    /// Returns [`SettingError`] with the most similar name if no quantity is called `name`.
     fn quantity(&self, name: &str) -> Result<Option<f64>, SettingError>;
 
     /// Returns the latency parts of the complete pictures in the result window. Pictures whose records were discarded

@@ -198,7 +198,7 @@ impl Measure {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] with the most similar name if no quantity is called `name`.
+    /// Returns [`SettingError`] with the most similar name if no quantity is called `name`.
     pub fn named(name: &str) -> Result<Self, SettingError> {
         find_named("quantity", name, QUANTITIES.iter().map(|quantity| (quantity.name, Self(quantity))))
     }

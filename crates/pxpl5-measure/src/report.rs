@@ -130,7 +130,7 @@ pub struct Report {
     ///
     /// Each corner of a triangle and each centre of a sphere counts once per view.
     pub vertex_transforms: u64,
-    /// Real time that the run took on the host computer, in seconds. `None` on a host without a clock.
+    /// Real time that the run took on this computer, in seconds. `None` on a system without a clock.
     pub host_seconds: Option<f64>,
 }
 

@@ -73,17 +73,17 @@ pub(crate) struct Trail<'a> {
     swaps: Vec<Time>,
 }
 
-/// Current position while a picture is followed backwards. The number in a variant is an index in the list `arrivals`,
-/// `drawn` or `stages`.
+/// Current position while the events that led to a picture are followed backwards. The number in a variant is an index
+/// in the list `arrivals`, `drawn` or `stages`.
 #[derive(Clone, Copy, Debug)]
 enum At {
-    /// At the start of a region's transfer to a display.
+    /// The position is the start of a region's transfer to a display.
     Arrival(usize),
-    /// At the end of a region's commands on a renderer.
+    /// The position is the end of the commands of the region `drawn[index]` on a renderer.
     Drawn(usize),
-    /// At the end of a stage on a board, or within the stage.
+    /// The position is the end of a stage on a board, or an instant within the stage.
     Stage(usize),
-    /// At the start of the latency, where the path ends.
+    /// The position is the start of the latency, where the path ends.
     Begin,
 }
 

@@ -268,8 +268,8 @@ pub(crate) fn diff<'py>(py: Python<'py>, a: &str, b: &str) -> PyResult<Bound<'py
 }
 
 /// Measures the latency of a pipeline with the pendulum rig of I3D95: from outside with photodiodes, and from inside
-/// with time stamps. ``passes`` is the number of low points, and ``line`` the line of the photodiode. Returns a
-/// dictionary with outside, inside, outside_less_inside_ms, agrees and bounds.
+/// with time stamps. ``passes`` is the number of passes of the pendulum through its lowest point, and ``line`` the line
+/// of the photodiode. Returns a dictionary with outside, inside, outside_less_inside_ms, agrees and bounds.
 ///
 /// Raises :class:`pxpl5.SettingError` for invalid settings, and for a pipeline that the rig cannot measure.
 #[pyfunction]

@@ -140,7 +140,7 @@ pub(crate) fn picture_of_parts(
     Ok(Picture { texts, ..Picture::new(py, pixels)? })
 }
 
-/// Decodes the bytes of a PNG file and returns the picture. The picture does not get the texts of the file.
+/// Decodes the bytes of a PNG file and returns the picture. Text chunks of the file are ignored.
 ///
 /// Raises :class:`pxpl5.SettingError` for bytes that are not a PNG file.
 #[pyfunction]

@@ -101,11 +101,11 @@ pub enum FaultKind {
     /// The words do not encode an instruction.
     #[error("{0}")]
     Illegal(DecodeErrorKind),
-    /// A field (a sequence of bits of pixel memory) extends beyond the end of pixel memory. The field's address is
-    /// relative to the selected context, the part of pixel memory that holds one region.
+    /// A bit field of pixel memory extends beyond the end of pixel memory. The bit field's address is relative to the
+    /// selected context, the part of pixel memory that holds one region.
     #[error("{} bits at {base} + {} reach beyond pixel memory", .operand.width, .operand.address)]
     FieldOutOfRange {
-        /// The field as encoded in the instruction: address relative to the context's first bit, and width in bits.
+        /// The bit field as encoded in the instruction: address relative to the context's first bit, and width in bits.
         operand: Operand,
         /// First bit, in pixel memory, of the selected context (the part that holds one region).
         base: u8,
@@ -113,9 +113,9 @@ pub enum FaultKind {
     /// An operand and the destination share bits of pixel memory, and the instruction does not allow this overlap.
     #[error("the operand at bit {operand} overlaps the destination at bit {destination}")]
     Overlap {
-        /// First bit, in pixel memory, of the field that receives the result.
+        /// First bit, in pixel memory, of the bit field that receives the result.
         destination: u8,
-        /// First bit, in pixel memory, of the operand's field.
+        /// First bit, in pixel memory, of the operand's bit field.
         operand: u8,
     },
 }

@@ -34,8 +34,8 @@ pub struct BitSerial {
     vectors: PresentVectors,
     controller: Controller,
     tiles: Vec<Tile>,
-    /// For each block of the backing store, the stored bit planes of all tiles. `None` if nothing was stored in the
-    /// block yet.
+    /// Stored bit planes of all tiles in each block of the backing store. `None` if nothing was stored in the block
+    /// yet.
     backing: Vec<Option<Vec<TilePlane>>>,
     clock: u64,
     faults: u64,
@@ -44,7 +44,7 @@ pub struct BitSerial {
 }
 
 impl BitSerial {
-    /// Creates an array of zeros. Only [`PixelArray::read_colour`] uses `layout`, to find the field of the colour.
+    /// Creates an array of zeros. Only [`PixelArray::read_colour`] uses `layout`, to find the bit field of the colour.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
         Self::with_vectors(layout, Vectors::best())

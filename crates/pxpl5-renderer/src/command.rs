@@ -63,7 +63,7 @@ pub enum CommandKind {
     Sphere = 5,
     /// Draws a sphere with normals (see [`PhongSphereCommand`]).
     PhongSphere = 6,
-    /// Shades all pixels at the end of the frame (see [`Shade`]).
+    /// Shades all pixels of a region after the last primitive of the region (see [`Shade`]).
     Shade = 7,
     /// Copies the region to a frame buffer (see [`CopyRegion`]).
     CopyRegion = 8,
@@ -125,21 +125,21 @@ impl CommandKind {
     /// Returns the number of clocks during which the command's program keeps the array busy.
     ///
     /// # Errors
-    /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
+    /// Returns [`Unsupported`] if the layout lacks a bit field that the program needs.
     pub fn clocks(self, layout: &Layout) -> Result<u32, Unsupported> {
         let program = Command::blank(self).program(layout)?;
         Ok(program.iter().map(ArrayInstruction::clocks).sum())
     }
 }
 
-/// An error for a command that needs a field of pixel memory that the layout does not have.
+/// An error for a command that needs a bit field of pixel memory that the layout does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
     pub kind: CommandKind,
-    /// Name of the layout that does not have the field, from `ContextPlan::name`.
+    /// Name of the layout that does not have the bit field, from `ContextPlan::name`.
     pub layout: &'static str,
-    /// Description of the missing field, or of the missing bits of scratch memory.
+    /// Description of the missing bit field, or of the missing bits of scratch memory.
     pub missing: &'static str,
 }
 
@@ -152,13 +152,13 @@ pub enum Command {
     Clear(Clear),
     /// Draws a triangle with interpolated colour (Gouraud).
     Triangle(TriangleCommand),
-    /// Draws a triangle whose pixels are shaded at the end of the frame.
+    /// Draws a triangle whose pixels are shaded after the last primitive of the region.
     PhongTriangle(PhongTriangleCommand),
     /// Draws a sphere with interpolated colour.
     Sphere(SphereCommand),
-    /// Draws a sphere whose pixels are shaded at the end of the frame.
+    /// Draws a sphere whose pixels are shaded after the last primitive of the region.
     PhongSphere(PhongSphereCommand),
-    /// Shades all pixels at the end of the frame.
+    /// Shades all pixels of a region after the last primitive of the region.
     Shade(Shade),
     CopyRegion(CopyRegion),
     /// Stores 32 bits of every pixel in the backing store.
@@ -191,7 +191,7 @@ impl Command {
     /// Returns the command's program of array instructions.
     ///
     /// # Errors
-    /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
+    /// Returns [`Unsupported`] if the layout lacks a bit field that the program needs.
     pub fn program(&self, layout: &Layout) -> Result<Vec<ArrayInstruction>, Unsupported> {
         let program = match self {
             Self::SelectRegion(command) => Ok(command.program(layout).to_vec()),
@@ -216,7 +216,7 @@ impl Command {
     /// Appends the words of the command's [program](Command::program) to `out`.
     ///
     /// # Errors
-    /// Returns [`Unsupported`] if the layout lacks a field that the program needs.
+    /// Returns [`Unsupported`] if the layout lacks a bit field that the program needs.
     pub fn encode(&self, layout: &Layout, out: &mut Vec<Word>) -> Result<(), Unsupported> {
         match self {
             Self::SelectRegion(command) => encode_all(&command.program(layout), out),
@@ -319,7 +319,7 @@ fn decode_range(words: &[Word], from: usize) -> Result<Vec<ArrayInstruction>, De
     Ok(out)
 }
 
-/// Returns the field of the normal's component 0 (x), 1 (y) or 2 (z).
+/// Returns the bit field of the normal's component 0 (x), 1 (y) or 2 (z).
 fn normal(layout: &Layout, component: u8) -> Result<Operand, MissingField> {
     layout.normal(component).ok_or(MissingField("a normal"))
 }

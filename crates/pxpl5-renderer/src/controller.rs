@@ -5,7 +5,7 @@ use crate::array::{ArrayFault, FaultKind};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, MEMORY_BITS, Operand, QUADRATIC_BITS};
 use pxpl5_wire::{Linear, Quadratic, Word};
 
-/// A field of pixel memory with its absolute address.
+/// A bit field of pixel memory with its absolute address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FieldBits {
     pub(crate) first: usize,
@@ -110,7 +110,7 @@ impl Controller {
     /// that holds one region).
     ///
     /// # Errors
-    /// Returns [`FaultKind::FieldOutOfRange`] if the field ends beyond pixel memory.
+    /// Returns [`FaultKind::FieldOutOfRange`] if the bit field ends beyond pixel memory.
     pub(crate) fn bits(&self, operand: Operand) -> Result<FieldBits, FaultKind> {
         let base = if operand.relative { self.base } else { 0 };
         let bits = FieldBits {
@@ -125,8 +125,8 @@ impl Controller {
         }
     }
 
-    /// Checks all operands of an instruction. Each field must lie in pixel memory, and the fields may overlap only as
-    /// the instruction allows.
+    /// Checks all operands of an instruction. Each bit field must lie in pixel memory, and the bit fields may overlap
+    /// only as the instruction allows.
     pub(crate) fn check(&self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
         // Shifts can work in place. Products and roots must not overlap their operands.
         match *instruction {

@@ -353,9 +353,10 @@ impl InputFifo {
     /// Computes the times of all commands of a batch in one step. The results equal the results of
     /// [`InputFifo::arrival`] and [`InputFifo::start`], called for each command.
     ///
-    /// The FIFO must not be watched. Each command must fit in the FIFO, must not block, and must take at least as long
-    /// as the transfer of its words. The words of each command then arrive while the previous command executes. Each
-    /// command after the first therefore starts at the end of the previous command.
+    /// `free_at` is the end of the command before the batch, and `span` the time of each command. No observer may
+    /// record the FIFO ([`InputFifo::watch`]). Each command must fit in the FIFO, must not block, and must take at
+    /// least as long as the transfer of its words. The words of each command then arrive while the previous command
+    /// executes. Each command after the first therefore starts at the end of the previous command.
     fn run_freely(&mut self, work: CommandBatch, free_at: Time, span: Span) {
         debug_assert!(
             self.waiting.is_empty() && self.words_left == self.words_in,

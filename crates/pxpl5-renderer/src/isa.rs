@@ -4,13 +4,14 @@
 //! instructions arrive in ring messages. An Enable register masks pixels. A tree evaluates linear and quadratic
 //! expressions in all pixels together. Each pixel has 208 bits of memory. A backing store moves 32-bit blocks in the
 //! background. Mnemonics, encodings and operand rules below are **assumed**. These instructions are the smallest set
-//! that can execute the published program of a triangle and the shading at the end of a frame.
+//! that can execute the published program of a triangle and the shading at the end of a region.
 //!
 //! # Words
 //!
-//! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. An operand encodes a *field* of pixel
-//! memory in 16 bits. Bit 15 is set if the field is signed. Bit 14 is set if the address is relative to the context's
-//! base. Bits 13..8 are width - 1. Bits 7..0 are the address of the least significant bit. Unused bits must be zero.
+//! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. An operand encodes a *bit field* of
+//! pixel memory in 16 bits. Bit 15 is set if the bit field is signed. Bit 14 is set if the address is relative to the
+//! context's base. Bits 13..8 are width - 1. Bits 7..0 are the address of the least significant bit. Unused bits must
+//! be zero.
 //!
 //! | opcode | instruction | words | bit clocks | effect |
 //! |---|---|---|---|---|
@@ -39,7 +40,7 @@
 //! | 51 | multiply constant *f, a, bits* | 3 | as multiply | f := a * constant |
 //! | 60, 61 | store block, load block | 1 | 2, then in the background | 32 bits to or from the backing store, **every** pixel |
 //! | 62 | wait | 1 | 2 | until the backing store is idle |
-//! | 70 | output | 9 | 2, then in the background | the region's colour field goes to a frame buffer |
+//! | 70 | output | 9 | 2, then in the background | the colour bits of the region go to a frame buffer |
 //!
 //! *n* is 3 words for a linear expression and 12 words for a quadratic expression (six coefficients of 64 bits, low
 //! word first). If bit 7 of the modifier (*again*) is set, *n* is 0, and the evaluator reuses its last coefficients of
@@ -116,24 +117,24 @@ impl Expression {
 pub enum ExpressionUse {
     /// Disables pixels where the expression is negative.
     DisableNegative,
-    /// Stores the bits of the expression in a field of pixel memory, from bit `shift` of the expression on.
+    /// Stores the bits of the expression in a bit field of pixel memory, from bit `shift` of the expression on.
     Load {
-        /// Field of pixel memory that receives the bits of the expression.
+        /// Bit field of pixel memory that receives the bits of the expression.
         field: Operand,
         /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
-    /// Adds the bits of the expression to a field of pixel memory, from bit `shift` of the expression on.
+    /// Adds the bits of the expression to a bit field of pixel memory, from bit `shift` of the expression on.
     Add {
-        /// Field of pixel memory to which the bits of the expression are added.
+        /// Bit field of pixel memory to which the bits of the expression are added.
         field: Operand,
         /// Number of lowest bits of the expression that are ignored.
         shift: u8,
     },
-    /// Compares the bits of the expression from bit `shift` on with a field of pixel memory, as unsigned numbers.
-    /// Disables the pixels in which the number from the expression is not less than the field.
+    /// Compares the bits of the expression from bit `shift` on with a bit field of pixel memory, as unsigned numbers.
+    /// Disables the pixels in which the number from the expression is not less than the bit field.
     DisableNotLess {
-        /// Field of pixel memory with which the bits of the expression are compared.
+        /// Bit field of pixel memory with which the bits of the expression are compared.
         field: Operand,
         /// Number of lowest bits of the expression that are ignored.
         shift: u8,
@@ -141,18 +142,18 @@ pub enum ExpressionUse {
     /// Computes the expression minus `subtrahend << left_shift`, and stores the bits of this difference from bit
     /// `shift` on.
     LoadMinus {
-        /// Field of pixel memory that receives the bits of the difference.
+        /// Bit field of pixel memory that receives the bits of the difference.
         field: Operand,
         /// Number of lowest bits of the difference that are ignored.
         shift: u8,
-        /// Field of pixel memory to subtract, sign-extended if it is signed, otherwise zero-extended.
+        /// Bit field of pixel memory to subtract, sign-extended if it is signed, otherwise zero-extended.
         subtrahend: Operand,
         /// Left shift of the subtrahend before the subtraction, in bits.
         left_shift: u8,
     },
 }
 
-/// An operation on two fields a and b of pixel memory, with a result of w bits.
+/// An operation on two bit fields a and b of pixel memory, with a result of w bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArithmeticOp {
     /// a + b, modulo 2^w.
@@ -201,11 +202,11 @@ pub enum ArrayInstruction {
     EnableNone,
     /// Inverts the Enable register in every pixel: E := not E.
     EnableInvert,
-    /// Loads the Enable register from a field of one bit.
+    /// Loads the Enable register from a bit field of one bit.
     EnableLoad(Operand),
-    /// Stores the Enable register in a field of one bit, in every pixel.
+    /// Stores the Enable register in a bit field of one bit, in every pixel.
     EnableStore(Operand),
-    /// Disables the pixels in which a field of one bit is 0: E := E AND field.
+    /// Disables the pixels in which a bit field of one bit is 0: E := E AND bit.
     EnableAnd(Operand),
     /// Selects the region for the following instructions, and the context (part of pixel memory) that holds it.
     Select {
@@ -226,78 +227,78 @@ pub enum ArrayInstruction {
     },
     /// Computes destination := source >> by. A shift by 0 copies the source.
     ShiftRight {
-        /// Field of pixel memory that receives the result.
+        /// Bit field of pixel memory that receives the result.
         destination: Operand,
-        /// Field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
+        /// Bit field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Number of bits to shift, 0 to 63.
         by: u8,
     },
     /// Computes destination := source << by in every enabled pixel.
     ShiftLeft {
-        /// Field of pixel memory that receives the result.
+        /// Bit field of pixel memory that receives the result.
         destination: Operand,
-        /// Field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
+        /// Bit field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Number of bits to shift, 0 to 63.
         by: u8,
     },
     /// Computes destination := source limited to 0 .. 2^w - 1, for a destination of w bits.
     Saturate {
-        /// Field of pixel memory that receives the result.
+        /// Bit field of pixel memory that receives the result.
         destination: Operand,
-        /// Field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
+        /// Bit field of pixel memory to read, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
     },
     /// Computes destination := floor(sqrt(radicand)). The remainder replaces the radicand.
     SquareRoot {
-        /// Field of pixel memory that receives the root. The field has 1 to 32 bits.
+        /// Bit field of pixel memory that receives the root. The bit field has 1 to 32 bits.
         destination: Operand,
-        /// Field of pixel memory with the radicand. The field has twice as many bits as the root.
+        /// Bit field of pixel memory with the radicand. The bit field has twice as many bits as the root.
         radicand: Operand,
     },
     /// Computes destination := a op b in every enabled pixel, for the operation `op`.
     Arithmetic {
         op: ArithmeticOp,
-        /// Field of pixel memory that receives the result.
+        /// Bit field of pixel memory that receives the result.
         destination: Operand,
-        /// First operand: a field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
+        /// First operand: a bit field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         a: Operand,
-        /// Second operand: a field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
+        /// Second operand: a bit field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         b: Operand,
     },
-    /// Compares two fields, and disables the pixels for which the comparison is false.
+    /// Compares two bit fields, and disables the pixels for which the comparison is false.
     Compare {
         /// Comparison of two numbers in each pixel. A pixel is disabled if the comparison is false.
         test: Test,
-        /// First operand: a field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
+        /// First operand: a bit field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         a: Operand,
-        /// Second operand: a field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
+        /// Second operand: a bit field of pixel memory, sign-extended if it is signed, otherwise zero-extended.
         b: Operand,
     },
-    /// Compares a field with a constant, and disables the pixels for which the comparison is false. The constant has
-    /// the width and signedness of the field.
+    /// Compares a bit field with a constant, and disables the pixels for which the comparison is false. The constant
+    /// has the width and signedness of the bit field.
     CompareConstant {
         /// Comparison of two numbers in each pixel. A pixel is disabled if the comparison is false.
         test: Test,
         a: Operand,
-        /// Constant. A field of less than 32 bits uses its low bits. For a field of more than 32 bits, the constant is
-        /// sign-extended if the field is signed, otherwise zero-extended.
+        /// Constant. A bit field of less than 32 bits uses its low bits. For a bit field of more than 32 bits, the
+        /// constant is sign-extended if the bit field is signed, otherwise zero-extended.
         value: u32,
     },
     /// Computes destination := value. For a destination of more than 32 bits, the value is sign-extended if the
     /// destination is signed, otherwise zero-extended.
     LoadConstant {
-        /// Field of pixel memory that receives the constant.
+        /// Bit field of pixel memory that receives the constant.
         destination: Operand,
         /// Constant that every enabled pixel stores.
         value: u32,
     },
-    /// Multiplies a field by a constant: destination := source * factor.
+    /// Multiplies a bit field by a constant: destination := source * factor.
     MultiplyConstant {
-        /// Field of pixel memory that receives the product.
+        /// Bit field of pixel memory that receives the product.
         destination: Operand,
-        /// Field of pixel memory to multiply, sign-extended if it is signed, otherwise zero-extended.
+        /// Bit field of pixel memory to multiply, sign-extended if it is signed, otherwise zero-extended.
         source: Operand,
         /// Factor in two's complement. Only its low `factor_bits` bits are used.
         factor: i32,
@@ -306,14 +307,14 @@ pub enum ArrayInstruction {
     },
     /// Stores 32 bits of every pixel in a block of the backing store. The array continues during the transfer.
     StoreBlock {
-        /// Field of 32 bits of pixel memory whose content is stored.
+        /// Bit field of 32 bits of pixel memory whose content is stored.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,
     },
     /// Loads 32 bits of every pixel from a block of the backing store. The array continues during the transfer.
     LoadBlock {
-        /// Field of 32 bits of pixel memory that receives the content of the block.
+        /// Bit field of 32 bits of pixel memory that receives the content of the block.
         field: Operand,
         /// Block of the backing store, 0 to 127.
         block: u8,
@@ -322,7 +323,7 @@ pub enum ArrayInstruction {
     Wait,
     /// Sends a colour of 24 bits, from each pixel of the region, to a frame buffer.
     Output {
-        /// Field of pixel memory with the colour, 24 bits.
+        /// Bit field of pixel memory with the colour, 24 bits.
         field: Operand,
         /// Frame buffer, region and lines that receive the pixels.
         target: CopyTarget,

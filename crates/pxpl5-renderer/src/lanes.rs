@@ -29,10 +29,10 @@ use pxpl5_wire::{CommandContent, CommandSink, REGION_SIZE, TriangleBatch, Word};
 use std::sync::Arc;
 use template::Templates;
 
-/// Pixel array that keeps a 32-bit word for each field (such as depth or colour) of each pixel.
+/// Pixel array that keeps a 32-bit word for each bit field (such as depth or colour) of each pixel.
 ///
 /// The array recognizes whole commands of its layout, and touches only the pixels that a command can change. The array
-/// executes all other instructions on all pixels, one field after the other.
+/// executes all other instructions on all pixels, one bit field after the other.
 #[derive(Clone, Debug)]
 pub struct Lanes {
     layout: Layout,
@@ -111,7 +111,7 @@ impl Lanes {
     /// Returns the depths of the upper left `width` x `height` pixels of the selected context (region in pixel memory),
     /// row by row.
     ///
-    /// A depth has as many bits as the layout's field Z.
+    /// A depth has as many bits as the layout's bit field Z.
     pub(crate) fn read_depth(&self, width: u32, height: u32) -> Arc<[Word]> {
         let depth = self.controller.bits(self.layout.plan().z);
         depth.map_or_else(|_| Arc::default(), |field| self.colour(field, width, height))

@@ -1,4 +1,4 @@
-//! Layouts: the division of the 208 bits of pixel memory into fields.
+//! Layouts: the division of the 208 bits of pixel memory into bit fields.
 
 use crate::isa::{MEMORY_BITS, Operand};
 use pxpl5_sim::parameters::SettingError;
@@ -6,11 +6,11 @@ use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
-/// A division of pixel memory into fields (sequences of bits) that was not checked yet.
+/// A division of pixel memory into bit fields that was not checked yet.
 ///
-/// Addresses of a context's fields are relative to the context's first bit, which is bit `i * context_bits` for context
-/// `i`. The address of the scratch is absolute, and all contexts share this field. Sharing is safe, because no command
-/// needs data that an earlier command has left in the scratch.
+/// Addresses of a context's bit fields are relative to the context's first bit, which is bit `i * context_bits` for
+/// context `i`. The address of the scratch is absolute, and all contexts share this bit field. Sharing is safe, because
+/// no command needs data that an earlier command has left in the scratch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContextPlan {
     /// Name of the layout in error messages.
@@ -19,18 +19,18 @@ pub struct ContextPlan {
     pub contexts: u8,
     /// Number of bits of pixel memory for each context, which holds one region.
     pub context_bits: u8,
-    /// Field of the colour in each context: 24 bits, 0xRRGGBB.
+    /// Bit field of the colour in each context: 24 bits, 0xRRGGBB.
     pub colour: Operand,
-    /// Field of the depth in each context, 8 to 24 bits. A smaller depth is nearer.
+    /// Bit field of the depth in each context, 8 to 24 bits. A smaller depth is nearer.
     pub z: Operand,
-    /// Field of the normal in each context: x, y and z in this order, 12 bits each, two's complement. `None` if the
+    /// Bit field of the normal in each context: x, y and z in this order, 12 bits each, two's complement. `None` if the
     /// layout does not support Phong shading.
     pub normal: Option<Operand>,
-    /// Field for temporary values of sphere and shading commands.
+    /// Bit field for temporary values of sphere and shading commands.
     pub scratch: Option<Operand>,
 }
 
-/// A division of pixel memory into fields (sequences of bits) that do not overlap.
+/// A division of pixel memory into bit fields that do not overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout(ContextPlan);
 
@@ -91,11 +91,11 @@ impl Layout {
         Self(SLATS_QUARTERS)
     }
 
-    /// Checks the fields of `plan` and creates the layout.
+    /// Checks the bit fields of `plan` and creates the layout.
     ///
     /// # Errors
-    /// Returns a [`SettingError`] if a field has a wrong width, or if fields overlap or extend beyond pixel memory. The
-    /// text of the second error draws the bit ranges.
+    /// Returns a [`SettingError`] if a bit field has a wrong width, or if bit fields overlap or extend beyond pixel
+    /// memory. The text of the second error draws the bit ranges.
     pub fn new(plan: ContextPlan) -> Result<Self, SettingError> {
         check_widths(&plan)?;
         let ranges = ranges(&plan);
@@ -110,7 +110,7 @@ impl Layout {
         )))
     }
 
-    /// Returns the fields of the layout as a plan, from which a similar layout can be made.
+    /// Returns the bit fields of the layout as a plan, from which a similar layout can be made.
     #[must_use]
     pub const fn plan(&self) -> &ContextPlan {
         &self.0
@@ -122,7 +122,7 @@ impl Layout {
         context.wrapping_mul(self.0.context_bits)
     }
 
-    /// Returns the field of colour component 0 (red), 1 (green) or 2 (blue).
+    /// Returns the bits of pixel memory for colour component `index`: 0 (red), 1 (green) or 2 (blue).
     #[must_use]
     pub const fn component(&self, index: u8) -> Operand {
         self.0.colour.part((2 - index) * COLOUR_BITS as u8, COLOUR_BITS as u8)
@@ -134,15 +134,16 @@ impl Layout {
         (Z_FRACTION_BITS + Z_BITS) as u8 - self.0.z.width
     }
 
-    /// Returns the field of component 0 (x), 1 (y) or 2 (z) of the normal. Returns `None` if the layout has no normals.
+    /// Returns the bits of pixel memory for component `index` of the normal: 0 (x), 1 (y) or 2 (z). Returns `None` if
+    /// the layout has no normals.
     #[must_use]
     pub fn normal(&self, index: u8) -> Option<Operand> {
         let all = self.0.normal?;
         Some(all.part(index * NORMAL_BITS as u8, NORMAL_BITS as u8).signed())
     }
 
-    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch field has only 30 to 35 bits.
-    /// Returns `None` if the scratch field is smaller.
+    /// Returns the number of bits of a sphere's square root: 12, or 10 if the scratch bit field has only 30 to 35 bits.
+    /// Returns `None` if the scratch bit field is smaller.
     #[must_use]
     pub fn root_bits(&self) -> Option<u8> {
         match self.0.scratch?.width {
@@ -152,7 +153,7 @@ impl Layout {
         }
     }
 
-    /// Returns the bit ranges of all fields, in the order of the fields in [`ContextPlan`].
+    /// Returns the bit ranges of all bit fields, in the order of the bit fields in [`ContextPlan`].
     #[must_use]
     pub fn ranges(&self) -> Vec<FieldRange> {
         ranges(&self.0)
@@ -162,7 +163,7 @@ impl Layout {
 /// A named range of bits in pixel memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldRange {
-    /// Name of the range in error messages: `scratch`, or the context and the field, for example `context 0 z`.
+    /// Name of the range in error messages: `scratch`, or the context and the bit field, for example `context 0 z`.
     pub name: String,
     /// First bit in pixel memory, 0 to 207.
     pub first: u32,
@@ -182,7 +183,7 @@ fn check_widths(plan: &ContextPlan) -> Result<(), SettingError> {
     plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
 }
 
-/// Checks the width of a field against `allowed`. `expected` describes the allowed widths in the error text.
+/// Checks the width of a bit field against `allowed`. `expected` describes the allowed widths in the error text.
 fn check_width(
     field: &'static str,
     expected: &'static str,
@@ -242,8 +243,8 @@ const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {
     a.first < b.end() && b.first < a.end()
 }
 
-/// Returns a text drawing with one line for each field: bit range, a bar with one character for each four bits, name,
-/// and error text.
+/// Returns a text drawing with one line for each bit field: bit range, a bar with one character for each four bits,
+/// name, and error text.
 fn draw(ranges: &[FieldRange], conflicts: &[Option<String>]) -> String {
     let mut out = String::new();
     for (range, conflict) in ranges.iter().zip(conflicts) {

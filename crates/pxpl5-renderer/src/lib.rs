@@ -14,11 +14,12 @@
 //! 1. Messages bring commands. The array is SIMD, so the time of a command depends only on the command's kind
 //!    ([`RendererTiming`], [`Renderer`]).
 //! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]). [`isa`] defines the
-//!    instructions, their words, clocks and effects. A [`Layout`] places the fields in pixel memory.
+//!    instructions, their words, clocks and effects. A [`Layout`] places the bit fields in pixel memory.
 //! 3. A triangle enables all pixels. Then the array disables the pixels at which one of three edge expressions is
 //!    negative. The depth test disables the pixels that are not nearer, and stores Z in the other enabled pixels.
 //!    Colours (Gouraud) or normals (Phong) follow. The silhouette of a sphere is a quadratic expression, whose square
-//!    root gives depth, normal and light. [`Shade`] computes colours from normals once, at the end of the frame.
+//!    root gives depth, normal and light. [`Shade`] computes colours from normals once, after the last primitive of a
+//!    region.
 //! 4. Pixels are computed separately from time. The reference model [`BitSerial`] moves bit planes like the hardware,
 //!    and defines every bit. [`BitSerial::skipping`] leaves out work that changes nothing. [`Lanes`] computes with
 //!    whole numbers instead of single bits, and only at the pixels that a command can change. The suite in

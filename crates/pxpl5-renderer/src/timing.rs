@@ -25,7 +25,7 @@ pxpl5_sim::parameters::parameter_table! {
         select_clocks: 6, "clocks", Derived, 1..=64 in 0..=MAX, "its program: one instruction";
         /// Execution time of the command that stores the background colour and the farthest depth in all pixels.
         clear_clocks: 62, "clocks", Derived, 16..=256 in 0..=MAX, "its program: one clock for each bit of colour and depth, and the fetches";
-        /// Execution time of the command that shades a region at the end of the frame.
+        /// Execution time of the command that shades a region after its last primitive.
         shade_clocks: 3_790, "clocks", Derived, 3_790..=8_000 in 0..=MAX, "its program with one light takes 95 us";
         /// Time to move one 32-bit block of all pixels to or from the backing store.
         backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us, about 64 chips x 4 bits a clock";

@@ -33,11 +33,11 @@ pub(crate) struct MessageInFlight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
-    /// Number of word times until the message ends. Used only after
-    /// [`Ring::move_every_word`](crate::Ring::move_every_word) was called.
+    /// Number of word times until the message ends. Only a ring that moves every word
+    /// ([`Ring::move_every_word`](crate::Ring::move_every_word)) uses this number.
     pub(crate) slots_left: u64,
-    /// The message, kept until it is passed to the receiver. Used only after
-    /// [`Ring::move_every_word`](crate::Ring::move_every_word) was called.
+    /// The message, kept until it is passed to the receiver. Only a ring that moves every word
+    /// ([`Ring::move_every_word`](crate::Ring::move_every_word)) keeps the message.
     pub(crate) message: Option<Box<Message>>,
 }
 

@@ -128,14 +128,14 @@ pub enum RingError {
         /// Time that the receiver stated in its answer.
         found: Time,
     },
-    /// A time in the input of the reference model is not a multiple of the model's tick.
+    /// A time in the input of the reference model is not a multiple of the model's time step.
     #[error("{what} of {found_ps} ps is no multiple of the tick of {tick}")]
     OffTick {
-        /// Description of the time that is not a multiple of the tick.
+        /// Name of the time that is not a multiple of the time step.
         what: &'static str,
-        /// The time that is not a multiple of the tick, in picoseconds.
+        /// The time that is not a multiple of the time step, in picoseconds.
         found_ps: u64,
-        /// Tick of the reference model, the step of its time.
+        /// Time step of the reference model.
         tick: Span,
     },
     /// The run of the reference model ended before all messages were delivered.

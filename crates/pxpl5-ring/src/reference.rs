@@ -1,11 +1,11 @@
 //! The reference model of the ring, word by word. The model is slow and obvious, and the fast ring is tested against
 //! it.
 //!
-//! Time advances tick by tick. Every tick has three steps, in this order:
+//! Time advances in equal time steps. In every time step, the model does three things, in this order:
 //!
 //! 1. Messages whose time has come join the queue of their source port.
 //! 2. Every channel at the end of a word slot moves one word: first the slots of the overhead, then the words of the
-//!    message. A word that does not fit into its receiver stays in its slot and is offered again in the next tick.
+//!    message. A word that does not fit into its receiver stays in its slot and is offered again in the next time step.
 //!    Channel and ports become free after the last word has moved and the receiver has answered.
 //! 3. The first messages of the queues are granted while channels are free. These messages are sorted by the time at
 //!    which they became first, then by source. A message needs a source port with a free send channel, and a free
@@ -81,7 +81,8 @@ impl Receivers for Elastic {
     }
 }
 
-/// The reference model: a ring whose time advances tick by tick. All messages are known before the first tick.
+/// The reference model: a ring whose time advances in equal time steps. All messages are known before the first time
+/// step.
 #[derive(Debug)]
 pub struct SteppedRing<'a, R> {
     timing: RingTiming,
@@ -146,8 +147,8 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         })
     }
 
-    /// Advances tick by tick until all messages are delivered. Returns the times of each message, in the order of the
-    /// messages in `traffic`. A tick is a step of the model's time, with the length `tick`.
+    /// Advances by time steps of length `tick` until all messages are delivered. Returns the times of each message, in
+    /// the order of the messages in `traffic`.
     ///
     /// # Errors
     ///

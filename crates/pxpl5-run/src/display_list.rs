@@ -9,7 +9,8 @@ use pxpl5_scene::Scene;
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Scene`] if the scene is empty, or if it has more moving structures than the host can send.
+/// Returns [`ExperimentError::Scene`] if the scene is empty, or if it has more moving structures than the host can
+/// send.
 pub fn display_list(scene: &Scene) -> Result<DisplayList, ExperimentError> {
     // Check that the scene has primitives and that its edits fit into a frame message.
     if scene.triangles().is_empty() && scene.spheres().is_empty() {

@@ -1,4 +1,5 @@
-//! The built-in displays: those of the papers, two current displays, and a display whose parameters the user sets.
+//! The built-in displays: the displays of the papers, two current displays, and a display whose parameters the user
+//! sets.
 
 use crate::registry::DisplayEntry;
 use address_recalculation::ArpConfig;

@@ -37,7 +37,8 @@ pub struct DuePictures {
     pub incomplete: u64,
     /// Number of due pictures that were never begun, or left out.
     pub missed: u64,
-    /// Number of periods of the result window in which the pipeline showed a picture in time, even if none was due.
+    /// Number of periods of the result window whose picture was complete and in time. Unlike `shown`, this number also
+    /// counts periods in which no picture was due.
     pub pictures: u64,
 }
 

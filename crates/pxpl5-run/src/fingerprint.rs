@@ -1,5 +1,5 @@
-//! Hashes of contents: 128-bit FNV-1a (Fowler, Noll, Vo), the same on every host. The hash detects accidental changes,
-//! but not malicious changes.
+//! Hashes of contents: 128-bit FNV-1a (Fowler, Noll, Vo), the same on every computer. The hash detects accidental
+//! changes, but not malicious changes.
 
 use glam::Vec3;
 use pxpl5_scene::{Frame, HeadPath, Hinge, Lighting, Scene, Sphere, Structure, Vertex};

@@ -18,7 +18,8 @@ pub enum Keep {
     /// run that records messages, and a run of a pipeline that needs old records
     /// ([`PictureRules::can_discard_records`](crate::PictureRules::can_discard_records)).
     Statistics,
-    /// Like [`Keep::Statistics`], but messages may be recorded, and no streaming observer is used.
+    /// The run keeps the same data as under [`Keep::Statistics`], but messages may be recorded, and no streaming
+    /// observer is used.
     ///
     /// A page that displays a run for hours uses this choice. Pixel errors and messages are available only for the last
     /// periods.

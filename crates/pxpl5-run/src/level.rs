@@ -30,7 +30,8 @@ pub enum Level {
     Analytic,
     /// Each message and each list of commands is one simulated event.
     Transaction,
-    /// Like [`Level::Transaction`], but clocks come from executed instructions instead of timing tables.
+    /// Events are simulated as at [`Level::Transaction`], but clocks come from executed instructions instead of timing
+    /// tables.
     Cycle,
 }
 

@@ -64,7 +64,8 @@ impl PictureResults {
         self.steady_from
     }
 
-    /// Returns the best result of the `every` periods that end with the period `last`.
+    /// Returns the best result in `every` periods, of which `last` is the last period. Shown is better than late, and
+    /// late is better than incomplete.
     pub(crate) fn best(&self, last: u64, every: u64) -> Option<PictureResult> {
         let end = (last as usize + 1).min(self.of_periods.len());
         let of_periods = self.of_periods.get((last + 1).saturating_sub(every) as usize..end)?;

@@ -201,7 +201,7 @@ impl Registry {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] with the most similar name if no pipeline has the name.
+    /// Returns [`SettingError`] with the most similar name if no pipeline has the name.
     pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, SettingError> {
         find_named("pipeline", name, self.pipelines.iter().map(|entry| (entry.name, entry)))
     }
@@ -210,7 +210,7 @@ impl Registry {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] with the valid names if no display has the name.
+    /// Returns [`SettingError`] with the valid names if no display has the name.
     pub fn display(&self, name: &str) -> Result<&DisplayEntry, SettingError> {
         find_named("display", name, self.displays.iter().map(|entry| (entry.name, entry)))
     }

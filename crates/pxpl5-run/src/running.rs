@@ -95,7 +95,7 @@ impl Experiment {
     ///
     /// # Errors
     ///
-    /// [`ExperimentError::Stopped`].
+    /// Returns [`ExperimentError::Stopped`] in this case.
     pub fn check_stopped(&self) -> Result<(), ExperimentError> {
         if self.host.is_stopped() {
             return Err(ExperimentError::Stopped("the run was stopped".to_owned()));

@@ -36,7 +36,7 @@ pub enum Pause {
 /// A running experiment that advances on request, for example by a field, a line or an event, or until a condition is
 /// met.
 ///
-/// Steps change no result: trace, pictures and report are the same as those of [`Experiment::run`].
+/// Steps change no result: trace, pictures and report equal the results of [`Experiment::run`].
 #[derive(Debug)]
 pub struct Stepper {
     experiment: Experiment,

@@ -18,8 +18,8 @@ use std::sync::Arc;
 /// Number of records below which a run discards nothing. A record, such as an arrival or a swap, takes about 80 bytes.
 const LEAST_RECORDS: usize = 32_768;
 
-/// Number of pictures after which the results of a picture are final. Records of a picture may arrive after those of
-/// later pictures.
+/// Number of pictures after which the results of a picture are final. Until then, records of a picture may arrive after
+/// records of later pictures.
 const PICTURES_HELD: usize = 32;
 const PERIODS_HELD: u64 = 32;
 

@@ -1,4 +1,4 @@
-//! The built-in scenes. Code generates these scenes, so the scenes are the same on every host.
+//! The built-in scenes. Code generates these scenes, so the scenes are the same on every computer.
 
 mod aircraft;
 mod full_screen;
@@ -63,7 +63,7 @@ pub fn names() -> &'static [(&'static str, &'static str)] {
 ///
 /// # Errors
 ///
-/// [`SettingError`] with the nearest valid name, or with the allowed number of triangles.
+/// Returns [`SettingError`] with the nearest valid name, or with the allowed number of triangles.
 pub fn builtin(name: &str) -> Result<Scene, SettingError> {
     match name {
         "aircraft" => Ok(aircraft::scene()),

@@ -28,7 +28,7 @@ impl Scene {
     /// an odd `n`. The ratio of spheres to triangles stays the same.
     ///
     /// Structures without primitives are removed together with their edits. The same scene and number give the same
-    /// result on every host.
+    /// result on every computer.
     ///
     /// # Errors
     ///

@@ -1,4 +1,5 @@
-//! Head motion in a scene: the pose of a head at any simulated time. The same seed gives the same motion on every host.
+//! Head motion in a scene: the pose of a head at any simulated time. The same seed gives the same motion on every
+//! computer.
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use pxpl5_sim::parameters::SettingError;

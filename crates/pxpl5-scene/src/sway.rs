@@ -33,17 +33,17 @@ type Sine = (f64, f64);
 // The root mean square angular speed, sqrt(sum (2 pi f A)^2 / 2) over all but the distance, is 44 degrees per second.
 // For nearly Gaussian speeds in three unequal directions the mean is about nine tenths of this: 40.
 
-/// Sines of the head's angle around the target, degrees.
+/// Sine waves whose sum is the head's angle around the target, degrees.
 const AZIMUTH: [Sine; 5] = [(0.041, 41.0), (0.067, 40.0), (0.097, 38.0), (0.131, 35.0), (0.43, 5.0)];
-/// Sines of the head's angle above the target, degrees.
+/// Sine waves whose sum is added to the head's mean angle above the target, degrees.
 const ELEVATION: [Sine; 3] = [(0.053, 12.0), (0.113, 9.0), (0.47, 4.0)];
-/// Sines of the head's distance from the target, as a fraction of the mean distance.
+/// Sine waves whose sum is the deviation from the mean distance to the target, as a fraction of this distance.
 const DISTANCE: [Sine; 2] = [(0.059, 0.06), (0.149, 0.04)];
-/// Sines of the angle of the gaze to the left of the target, degrees.
+/// Sine waves whose sum is the angle of the gaze to the left of the target, degrees.
 const GAZE_YAW: [Sine; 3] = [(0.37, 3.4), (0.89, 2.9), (1.61, 2.2)];
-/// Sines of the angle of the gaze above the target, degrees.
+/// Sine waves whose sum is the angle of the gaze above the target, degrees.
 const GAZE_PITCH: [Sine; 3] = [(0.31, 2.7), (0.97, 2.2), (1.73, 1.6)];
-/// Sines of the head's tilt to its left, degrees.
+/// Sine waves whose sum is the head's tilt to its left, degrees.
 const GAZE_ROLL: [Sine; 3] = [(0.17, 3.4), (0.71, 2.5), (1.37, 1.6)];
 
 /// The angles and the relative distance of the sway at one instant.

@@ -1,4 +1,4 @@
-//! Trigonometric functions in software and double precision. Their results have the same bits on every host.
+//! Trigonometric functions in software and double precision. Their results have the same bits on every computer.
 
 use std::f64::consts::{PI, TAU};
 

@@ -27,8 +27,8 @@ pub(crate) use parts::{colour_of_part, part_bar_element};
 pub use plane::{Curve, MarkedPoint, curve_chart, decade_chart, point_chart};
 pub use scale::AxisScale;
 
-/// Returns the values of tick marks: round numbers from 0 to at most `greatest`, at equal steps. The step is 1, 2 or 5
-/// times a power of ten. There are at most ten steps.
+/// Returns the values of the marks on an axis: round numbers from 0 to at most `greatest`, at equal steps. The step is
+/// 1, 2 or 5 times a power of ten. There are at most ten steps.
 fn ticks(greatest: f64) -> Vec<f64> {
     let power = 10f64.powf((greatest / 10.0).log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|times| times * power);
@@ -37,7 +37,7 @@ fn ticks(greatest: f64) -> Vec<f64> {
     values.take_while(|value| *value <= greatest).collect()
 }
 
-/// Removes the rounding errors in the last digits of a tick value, for example of 3 x 0.2 = 0.6000000000000001.
+/// Removes the rounding errors in the last digits of a mark's value, for example of 3 x 0.2 = 0.6000000000000001.
 fn readable(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
 }

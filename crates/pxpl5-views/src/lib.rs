@@ -21,7 +21,7 @@
 //! One module writes all SVG and HTML, with one escape function (`markup`, with shapes in `svg`). Likewise, one module
 //! writes all PNG (`png_bytes` and `Animation`), and one writes all CSV ([`results::csv_table`]).
 //!
-//! All output depends only on simulated time and is therefore the same on every host. Names, colours and letters of
+//! All output depends only on simulated time and is therefore the same on every computer. Names, colours and letters of
 //! surfaces come from the machine's displays ([`pxpl5_wire::display::Surface`]).
 //!
 //! **Not here:** files, threads and clocks of the host. All output goes to a [`std::io::Write`] or is returned as text

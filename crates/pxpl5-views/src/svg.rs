@@ -4,7 +4,7 @@ use crate::markup::Element;
 use std::fmt::{self, Display};
 
 /// A length in hundredths of an SVG unit. Numbers with two decimals come from integers, so a drawing has the same bytes
-/// on every host.
+/// on every computer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Units(pub(crate) i64);
 

@@ -2,7 +2,7 @@
 //!
 //! Each independent resource has a row, and time runs to the right. Retraces and the dependencies of one picture are
 //! drawn too. [`Timeline::of`] collects the observations of a run, and [`svg`] draws the timeline. A drawing depends
-//! only on simulated time and is therefore the same on every host.
+//! only on simulated time and is therefore the same on every computer.
 //!
 //! | row | bars |
 //! |---|---|

@@ -33,7 +33,7 @@ pub enum ProjectionKind {
     Orthographic,
     /// Projection from one eye for all slices.
     Perspective,
-    /// Projection from a random eye with a random shear for each slice.
+    /// Projection with a random eye position and a random shear, chosen anew for each slice.
     Jittered,
 }
 

@@ -72,7 +72,7 @@ pub struct VolumeComparison {
     pub triangles: u64,
     /// Width of the rings in `brightness_by_radius`, pixels.
     pub ring_px: u32,
-    /// Seed of the random eyes and shears of the jittered projection.
+    /// Seed of the random eye positions and shears of the jittered projection.
     pub seed: u64,
     /// One row for each variant.
     pub variants: Vec<VariantRow>,

@@ -1,4 +1,4 @@
-//! The settings of a volume by path.
+//! Sets and reads the settings of a volume by a path, such as `clip.variant`.
 
 use crate::choices::{ClipKind, Named};
 use crate::settings::VolumeSettings;

@@ -13,11 +13,11 @@ pxpl5_sim::parameters::parameter_table! {
 }
 
 pxpl5_sim::parameters::parameter_table! {
-    /// Parameters of the jittered projection, which gives each slice a random eye and a random shear.
+    /// Parameters of the jittered projection, which gives each slice a random eye position and a random shear.
     pub struct JitterNumbers {
-        /// Distance of the random eye from the slice.
+        /// Distance of the eye from the slice.
         eye_distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "the paper gives no value";
-        /// Radius of the disc in which the random eye lies.
+        /// Radius of the disc in which the random position of the eye lies.
         eye_radius: f64 = 0.5, "radii", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper gives no value";
         /// Greatest shift of a point by the shear, at the near or far plane of the slice.
         shear_px: f64 = 0.5, "px", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper states a shift of less than a pixel";

@@ -17,7 +17,7 @@ const THUMBNAIL: u32 = 64;
 /// Fraction of the lit pixels in a view that stay below white at the chosen exposure.
 const BELOW_WHITE: f64 = 0.98;
 
-/// Number of batches per row of a tile map.
+/// Number of batches of slices side by side in the picture of all tiles ([`tile_map`]).
 const MAP_COLUMNS: u32 = 11;
 
 /// The position of an eye before a volume, and the options of its view.
@@ -172,8 +172,8 @@ pub fn before_and_after(volume: &Volume, slice: u32) -> RgbImage {
     beside(&[coloured(volume, slice), halftoned(volume, slice)])
 }
 
-/// Returns a map of the tiles of every batch, with one pixel per tile. Occupied tiles are white. The batches are
-/// arranged row by row. Returns `None` if the volume was drawn without tiles.
+/// Returns a picture of the tiles of every batch of slices, row by row. A tile is a square of 3 x 3 pixels. Tiles with
+/// lit pixels are white. Returns `None` if the volume was drawn without tiles.
 #[must_use]
 pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
     let tile = u32::try_from(volume.settings.tile.size).ok().filter(|tile| *tile > 0)?;

@@ -23,7 +23,7 @@ pub struct VolumeReport {
     pub clip: String,
     /// Name of the projection.
     pub projection: &'static str,
-    /// Seed of the random eyes and shears of the jittered projection.
+    /// Seed of the random eye positions and shears of the jittered projection.
     pub seed: u64,
     /// Name of the renderer that drew the slices.
     pub renderer: &'static str,

@@ -33,7 +33,7 @@ pub struct VolumeSettings {
     pub jitter: JitterNumbers,
     /// Eye of the perspective projection.
     pub eye: EyeNumbers,
-    /// Seed of the random eyes and shears of the jittered projection.
+    /// Seed of the random eye positions and shears of the jittered projection.
     pub seed: u64,
     /// Method of sorting primitives into bins.
     pub binning: Binning,
@@ -60,7 +60,7 @@ pub struct VolumeSettings {
 }
 
 impl VolumeSettings {
-    /// Returns the settings of the SpatialGL paper: its display, the hyperbolic clip and jittered eyes.
+    /// Returns the settings of the SpatialGL paper: its display, the hyperbolic clip and the jittered projection.
     #[must_use]
     pub const fn paper() -> Self {
         Self {
@@ -114,7 +114,7 @@ impl VolumeSettings {
         }
     }
 
-    /// Returns the projection, with the position of its eye or the parameters of its jitter.
+    /// Returns the projection, with the position of its eye or the limits of its random eye positions.
     #[must_use]
     pub const fn slice_projection(&self) -> Projection {
         match self.projection {

@@ -93,7 +93,7 @@ pub struct RegionPlace {
     /// Ring port of the frame buffer that will receive the region. `None` if the commands suit any frame buffer and no
     /// program has set the port.
     pub frame_buffer: Option<NodeId>,
-    /// Lines of the frame that the rows of the picture fill.
+    /// Lines of the video frame that the rows of the picture fill.
     pub lines: Lines,
     /// Division of the picture into regions.
     pub grid: RegionGrid,
@@ -160,16 +160,18 @@ fn packed((colour, depth): (&Word, Word)) -> Word {
 /// The path of a region's colours from a renderer's pixel memory to the frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CopyPath {
-    /// Directly from pixel memory to the frame buffer. The following commands wait until the last pixel has arrived.
+    /// The colours go directly from pixel memory to the frame buffer. The following commands wait until the last pixel
+    /// has arrived.
     FromPixelMemory,
-    /// Into the renderer's backing store, and from there to the frame buffer while the following commands execute. The
-    /// step from the backing store to the frame buffer waits while this renderer still sends another region.
+    /// The colours go into the renderer's backing store, and from there to the frame buffer while the following
+    /// commands execute. The step from the backing store to the frame buffer waits while this renderer still sends
+    /// another region.
     ThroughBacking,
-    /// Into the renderer's backing store, where the colours stay until a [`CopyPath::FromBacking`] command for the same
-    /// target.
+    /// The colours go into the renderer's backing store and stay there until a [`CopyPath::FromBacking`] command for
+    /// the same target.
     IntoBacking,
-    /// From the renderer's backing store to the frame buffer. An earlier [`CopyPath::IntoBacking`] command for the same
-    /// target has filled the store.
+    /// The colours go from the renderer's backing store to the frame buffer. An earlier [`CopyPath::IntoBacking`]
+    /// command for the same target has filled the store.
     FromBacking,
 }
 
@@ -207,9 +209,9 @@ pub trait CommandWords: Debug + Send + Sync {
     /// Appends the words of message `part` to `out`. Every call appends the same words.
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
-    /// Passes the commands of message `part` to `out`. The source may leave out primitives that touch no pixel of the
-    /// region. `out` receives only whole commands. Before each drawing command, the passed commands set the Enable bits
-    /// of the pixels.
+    /// Passes the whole commands of message number `part` to `out`. An implementation may leave out primitives that
+    /// touch no pixel of the region. An implementation must pass commands that set the Enable bits before each drawing
+    /// command.
     ///
     /// Returns true if the passed commands may contain a primitive. The default implementation passes all commands and
     /// returns true.
@@ -253,17 +255,17 @@ impl CommandWords for Vec<Word> {
     }
 }
 
-/// The lines of a frame that a picture fills: all lines, or the lines of one field.
+/// The lines of a video frame that a picture fills: all lines, or the lines of one field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lines {
-    /// All lines of the frame.
+    /// All lines of the video frame.
     Frame,
     /// Every second line: the lines of one field.
     Field(FieldParity),
 }
 
-/// The two fields of an interlaced frame, distinguished by their lines. Line 0 is the top line of the picture and
+/// The two fields of an interlaced video frame, distinguished by their lines. Line 0 is the top line of the picture and
 /// belongs to the even field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -295,7 +297,7 @@ pub struct CopyTarget {
     pub frame_buffer: NodeId,
     /// Number of the pixel buffer, 0 or 1.
     pub buffer: u8,
-    /// Lines of the frame that the rows of the picture fill.
+    /// Lines of the video frame that the rows of the picture fill.
     pub lines: Lines,
     /// Division of the picture into regions.
     pub grid: RegionGrid,

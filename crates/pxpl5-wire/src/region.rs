@@ -72,7 +72,7 @@ pub struct RegionGrid {
 }
 
 impl RegionGrid {
-    /// A whole NTSC frame of 640 x 480 in 5 x 4 regions of 128 x 128. The last row has 96 lines (TR94).
+    /// A whole NTSC video frame of 640 x 480 in 5 x 4 regions of 128 x 128. The last row has 96 lines (TR94).
     pub const FRAME: Self = Self { width: 640, height: 480, region_width: 128, region_height: 128 };
 
     /// One NTSC field of 640 x 240 in 5 x 2 regions of 128 x 120 (TR94).

@@ -3,7 +3,7 @@
 use crate::{CopyTarget, FieldParity, Lines, PeriodNumber};
 use pxpl5_sim::{Clock, Time};
 
-/// Numbers of an interlaced video signal with two fields a frame.
+/// Numbers of an interlaced video signal with two fields in each video frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VideoNumbers {
     /// Period of the pixel clock, multiplied by `pixel_divisor`, in picoseconds.
@@ -12,7 +12,7 @@ pub struct VideoNumbers {
     pub pixel_divisor: u64,
     /// Number of pixel periods in a line, including blanking.
     pub line_pixels: u64,
-    /// Number of lines in a frame of two fields, including blanking.
+    /// Number of lines in a video frame of two fields, including blanking.
     pub frame_lines: u64,
     /// Number of visible pixels in a line.
     pub visible_pixels: u64,
@@ -26,8 +26,9 @@ pub struct VideoNumbers {
 
 /// The times of retraces, lines and pixels. All times are computed from time zero, so no rounding errors accumulate.
 ///
-/// Field `n` begins at retrace `n`. The field scans the even lines of the frame if `n` is even, else the odd lines.
-/// Lines follow an uninterrupted line clock. A field has 262.5 lines, so an odd field begins in the middle of a line.
+/// Field `n` begins at retrace `n`. The field scans the even lines of the video frame if `n` is even, else the odd
+/// lines. Lines follow an uninterrupted line clock. A field has 262.5 lines, so an odd field begins in the middle of a
+/// line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Video {
     numbers: VideoNumbers,
@@ -65,15 +66,15 @@ impl Video {
         PeriodNumber(if self.field.edge(n).0 == time.0 { n } else { n - 1 })
     }
 
-    /// Returns the time at which the beam begins line `y` of the frame in a field. The line begins with its blanking.
-    /// Returns `None` if the field does not scan the line.
+    /// Returns the time at which the beam begins line `y` of the video frame in a field. The line begins with its
+    /// blanking. Returns `None` if the field does not scan the line.
     #[must_use]
     pub fn line_start(&self, y: u32, field: PeriodNumber) -> Option<Time> {
         Some(self.line.edge(self.line_number(y, field)?))
     }
 
-    /// Returns the time at which the beam is at pixel `x` of line `y` of the frame in a field. Returns `None` if the
-    /// field does not scan the pixel.
+    /// Returns the time at which the beam is at pixel `x` of line `y` of the video frame in a field. Returns `None` if
+    /// the field does not scan the pixel.
     #[must_use]
     pub fn when(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         if x >= self.width() {
@@ -86,8 +87,8 @@ impl Video {
     }
 
     /// Returns the time at which the beam reaches the first pixel of a region in a field. The region is shown
-    /// completely if all its pixels have arrived by this time. Returns `None` for a region outside the frame, or for a
-    /// region without a line in this field.
+    /// completely if all its pixels have arrived by this time. Returns `None` for a region outside the video frame, or
+    /// for a region without a line in this field.
     #[must_use]
     pub fn reaches(&self, target: &CopyTarget, field: PeriodNumber) -> Option<Time> {
         let [left, top, _, height] = self.rectangle(target)?;
@@ -95,7 +96,7 @@ impl Video {
     }
 
     /// Returns left, top, width and height of a region, in the pixels and rows of its picture. Returns `None` if the
-    /// region does not lie in the frame or is larger than a renderer's pixel array.
+    /// region does not lie in the video frame or is larger than a renderer's pixel array.
     #[must_use]
     pub fn rectangle(&self, target: &CopyTarget) -> Option<[u32; 4]> {
         let rows = match target.lines {
@@ -111,15 +112,15 @@ impl Video {
         self.numbers.visible_pixels as u32
     }
 
-    /// Returns the number of visible lines in a frame.
+    /// Returns the number of visible lines in a video frame.
     #[must_use]
     pub const fn height(&self) -> u32 {
         self.numbers.visible_lines as u32 * 2
     }
 
-    /// Returns the number of whole scan lines between time zero and the start of line `y` of the frame in a field.
-    /// Returns `None` if the field does not scan the line. An odd field begins with a blanked half line, so its first
-    /// whole line begins half a line time after the retrace.
+    /// Returns the number of whole scan lines between time zero and the start of line `y` of the video frame in a
+    /// field. Returns `None` if the field does not scan the line. An odd field begins with a blanked half line, so its
+    /// first whole line begins half a line time after the retrace.
     fn line_number(&self, y: u32, field: PeriodNumber) -> Option<u64> {
         let parity = FieldParity::of_field(field);
         if y >= self.height() || y % 2 != parity.first_line() {
@@ -131,7 +132,7 @@ impl Video {
     }
 }
 
-/// Returns the line of the frame to which row `row` of a picture belongs.
+/// Returns the line of the video frame to which row `row` of a picture belongs.
 #[must_use]
 pub const fn frame_line(lines: Lines, row: u32) -> u32 {
     match lines {

@@ -9,10 +9,10 @@
 //!   renderers, display memories:              COPY u: colours, then depths          swap when all are there
 //! ```
 //!
-//! The programs are those of Rendering Control ([`host`](crate::host()), [`master`](crate::master()),
-//! [`slave`](crate::slave())), which draw any kind of picture that implements [`Drawn`](crate::Drawn). [`Faces`] is such
-//! a kind. The rules of TR94 for the start of a stage apply to updates instead of frames. An *update* draws one display
-//! memory: all six faces, in the grid of [`address_recalculation::region_grid`].
+//! The programs are the programs of Rendering Control ([`host`](crate::host()), [`master`](crate::master()),
+//! [`slave`](crate::slave())), which draw any kind of picture that implements [`Drawn`](crate::Drawn). [`Faces`] is
+//! such a kind. The rules of TR94 for the start of a stage apply to updates instead of frames. An *update* draws one
+//! display memory: all six faces, in the grid of [`address_recalculation::region_grid`].
 //!
 //! # Differences from Rendering Control
 //!

@@ -20,8 +20,8 @@ pub enum HostAction<S> {
 
 /// Runs the host's program, which sends one picture after the other to all graphics processors.
 ///
-/// Each time the host may send a picture, it calls `plan` with the number of the picture and the current time. SEND of
-/// a picture may begin when EDIT of the previous picture has finished (TR94).
+/// SEND of a picture may begin when EDIT of the previous picture has finished (TR94). Each time the host may send a
+/// picture, the host's program calls `plan` with the number of the picture and the current time.
 ///
 /// # Errors
 ///

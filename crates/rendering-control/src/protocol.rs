@@ -56,24 +56,24 @@ impl RegionEnd {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StageOrder<S> {
-    /// From the host to all graphics processors: the views of a picture and the edits of structures.
+    /// The host sends the view and the edits of a picture to all graphics processors.
     Send(S),
-    /// From the master to the slaves: EDIT of a picture and TRANSFORM of its first drawing may begin.
+    /// The master orders the slaves to apply the edits of a picture and to transform its first drawing.
     Edit(PictureNumber),
-    /// From a slave to the master: EDIT of a picture has finished.
+    /// A slave reports to the master that the slave has applied the edits of a picture.
     Edited(PictureNumber),
-    /// From the master to the host: all slaves have finished EDIT of a picture.
+    /// The master reports to the host that all slaves have applied the edits of a picture.
     EditsDone(PictureNumber),
-    /// From the master to the slaves: TRANSFORM of a drawing may begin, if the drawing is not the first of its picture.
+    /// The master permits the slaves to begin TRANSFORM of a second or later drawing of a picture.
     Transform(Drawing),
-    /// From a slave to the master: TRANSFORM of a drawing has finished. The message contains the number of entries in
-    /// each region's bin.
+    /// A slave reports to the master that the slave has transformed a drawing. The message contains the number of
+    /// entries in each region's bin.
     Transformed(Drawing, Vec<u32>),
-    /// From the master to a slave, or from a slave to the next slave: a token.
+    /// The master or a slave sends a token to a slave.
     Token(Token),
-    /// From the last slave to the master: the renderer has accepted all commands of a region.
+    /// The last slave reports to the master that the renderer has accepted all commands of a region.
     Accepted(Token),
-    /// From a renderer to the master: a region has arrived in the frame buffer with the ring port `frame_buffer`.
+    /// A renderer reports to the master that a region has arrived in the frame buffer at the ring port `frame_buffer`.
     /// `picture` is the low word of the picture's number.
     Copied { picture: Word, frame_buffer: NodeId },
 }

@@ -22,7 +22,7 @@ impl Drawing {
         PictureNumber(self.0 / eyes)
     }
 
-    /// Returns the eye of the drawing, from 0 to `eyes` - 1.
+    /// Returns the index of the eye for which this drawing is made, from 0 to `eyes` - 1.
     #[must_use]
     pub const fn eye(self, eyes: u64) -> u64 {
         self.0 % eyes

@@ -23,7 +23,7 @@ struct SlaveState<S> {
     next_transform: Drawing,
     /// The two sets of bins, each `None` while the set is empty.
     bins: [Option<Bins<S>>; 2],
-    /// For each set of bins, the number of tokens that this slave has received.
+    /// Number of tokens that this slave has received for each of the two sets of bins.
     tokens: [u16; 2],
 }
 
@@ -40,8 +40,8 @@ impl<S> SlaveState<S> {
         Self { sent: VecDeque::new(), next_edit, next_transform, bins: [None, None], tokens: [0; 2] }
     }
 
-    /// Counts a token that this slave has handled. A drawing has `of` tokens. After the last of them, empties the set
-    /// of bins with the index `context` and returns true.
+    /// Counts a token that this slave has handled, for the set of bins `context` (0 or 1). A drawing has `of` tokens. After
+    /// the last token of a drawing, the function empties the set of bins and returns true.
     fn count_token(&mut self, context: usize, of: u16) -> bool {
         self.tokens[context] += 1;
         let is_last = self.tokens[context] == of;

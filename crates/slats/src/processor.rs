@@ -38,7 +38,7 @@ struct ProcessorState {
     bottom: Option<Bottom>,
     /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],
-    /// For each unfinished field, the number of graphics processors that have reported the end of their work.
+    /// Number of graphics processors that have reported the end of their work for each unfinished field.
     finished: Vec<(PeriodNumber, usize)>,
 }
 

@@ -112,7 +112,7 @@ impl SliceClip {
         }
     }
 
-    /// Returns half the thickness of the slice's volume at a distance u from the axis, in pixels.
+    /// Returns half the thickness of the slice's volume, in pixels, at the horizontal distance u from the axis.
     #[must_use]
     pub fn half_thickness(self, wedge: HalfWedge, u: f64) -> f64 {
         let exact = u.abs() * wedge.tan;

@@ -37,7 +37,8 @@
 //! # Units
 //!
 //! Lengths are pixels of the slice image. Axes are right-handed with y up, and y is the axis of rotation. Depth runs
-//! from 0 (near, +s) to 1 (far).
+//! from 0 (near) to 1 (far). In a slice, u is the horizontal distance from the axis, v the height, and s the distance
+//! from the slice towards the near plane.
 //!
 //! # Not modelled
 //!

@@ -20,16 +20,17 @@ pub enum Projection {
     Perspective {
         /// Horizontal and vertical position of the eye relative to the axis of the image, in pixels.
         eye: [f64; 2],
-        /// Distance of the eye from the slice along +s, in pixels.
+        /// Distance of the eye from the plane of the slice, in pixels.
         distance: f64,
         /// Horizontal and vertical shear, in pixels per pixel of s, the distance from the slice.
         shear: [f64; 2],
     },
-    /// Projection with a random eye and a random shear for each slice.
+    /// Projection with a random eye position and a random shear, chosen anew for each slice.
     Jittered(Jitter),
 }
 
-/// The random eye and shear of each slice. Eye and shear depend only on the seed and the index of the slice.
+/// Seed and limits of the random eye position and shear of each slice. The random numbers depend only on the seed and
+/// the index of the slice.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Jitter {
@@ -37,14 +38,14 @@ pub struct Jitter {
     pub seed: u64,
     /// Distance of the eye from the slice in radii of the display. Assumed 4, 2 to 16.
     pub eye_distance: f64,
-    /// Radius of the disc in which the random eye lies, in radii of the display. Assumed 0.5, 0 to 1.
+    /// Radius of the disc in which the eye lies, in radii of the display. Assumed 0.5, 0 to 1.
     pub eye_radius: f64,
     /// Greatest shift of a point by the shear, at the near or far plane of the slice, in pixels. Assumed 0.5, 0 to 1.
     pub shear_px: f64,
 }
 
 impl Jitter {
-    /// Returns the assumed jitter with this seed. The eye is four display radii away, within a disc of half a radius.
+    /// Returns the assumed limits with this seed. The eye is four display radii away, within a disc of half a radius.
     /// The shear shifts points at the slice's near and far planes by at most half a pixel.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
@@ -55,7 +56,8 @@ impl Jitter {
 /// The eye and the shear of one slice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceEye {
-    /// Position of the eye in coordinates u, v and s, in pixels. `None` for an eye at infinity (a projection along s).
+    /// Position of the eye: horizontal and vertical position, and distance from the slice, in pixels. `None` for an eye
+    /// at infinity (a projection along the normal of the slice).
     pub eye: Option<[f64; 3]>,
     /// Horizontal and vertical shear, in pixels per pixel of s, the distance from the slice.
     pub shear: [f64; 2],
@@ -123,7 +125,8 @@ fn unit(seed: u64, slice: u32, draw: u64) -> f64 {
 }
 
 impl SliceEye {
-    /// Returns the matrix from (u, v, s, 1) to clip coordinates, with depth 0 at the near plane and 1 at the far plane.
+    /// Returns the matrix from the coordinates (u, v, s, 1) of the slice to clip coordinates, with depth 0 at the near
+    /// plane and 1 at the far plane.
     #[must_use]
     pub fn clip_matrix(&self, size: Size, reach: f64) -> DMat4 {
         let half = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
@@ -146,8 +149,8 @@ impl SliceEye {
         matrix_of_rows(rows)
     }
 
-    /// Returns the matrix rows from (u, v, s, 1) to homogeneous window coordinates: x to the right and y down in
-    /// pixels, depth, w.
+    /// Returns the matrix rows from the coordinates (u, v, s, 1) of the slice to homogeneous window coordinates: x to
+    /// the right and y down in pixels, depth, w.
     ///
     /// The result equals [`Self::clip_matrix`] followed by the viewport. This function avoids the rounding of a
     /// division by half the image's size and of a multiplication by the same number.

@@ -118,7 +118,7 @@ pub fn render_volume(
     Ok(VolumeFrame { planes, stats, colours: config.keeps_colours.then_some(colours) })
 }
 
-/// For each group of slices, the primitives that its slices draw.
+/// Primitives that the slices of each group of slices draw.
 struct Bins {
     lists: BTreeMap<u64, Bin>,
     memberships: u64,

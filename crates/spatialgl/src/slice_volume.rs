@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// SpatialGL paper's rule "signs equal" is ambiguous for such a point.
 ///
 /// The values `a` and `b` are the signed distances of the point from the two boundary planes. Both are positive in the
-/// positive lobe: the half of the double wedge on the +u side.
+/// positive lobe: the half of the double wedge with horizontal coordinate u > 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
@@ -99,11 +99,12 @@ pub enum SliceVolume {
     },
     /// A double wedge around the axis y: its planes, and its test.
     Wedge(WedgePlanes, WedgeTest),
-    /// The volume |s| <= offset + slope |u|, bounded by clip planes. Each side of the axis has its own drawing pass.
+    /// The volume |s| <= offset + slope |u|, bounded by clip planes. s is the distance from the slice, and u the
+    /// horizontal distance from the axis. Each side of the axis has its own drawing pass.
     Taper {
         /// Half thickness of the volume at the axis, pixels.
         offset: f64,
-        /// Growth of the half thickness, in pixels per pixel of |u|.
+        /// Growth of the half thickness, in pixels per pixel of distance from the axis.
         slope: f64,
     },
 }
@@ -124,7 +125,8 @@ impl SliceVolume {
         matches!(self, Self::Wedge(_, WedgeTest::UserPlanes(_)) | Self::Taper { .. } | Self::Slab { .. })
     }
 
-    /// Returns the coordinate s, in pixels, of the plane in which the slice is shown: 0, or the middle of a slab.
+    /// Returns the signed distance s, in pixels, from the slice to the middle of the volume. The distance is 0 except
+    /// for a slab.
     pub(crate) const fn middle(&self) -> f64 {
         match self {
             Self::Slab { low, high } => (*low + *high) / 2.0,

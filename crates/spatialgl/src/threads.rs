@@ -1,17 +1,17 @@
 #![cfg(feature = "threads")]
-//! Workers on several threads of the host.
+//! Workers on several threads of this computer.
 
 use crate::workers::{Task, Workers};
 use std::num::NonZero;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// Worker threads of the host. Each thread takes the next task when its current task is done.
+/// Worker threads of this computer. Each thread takes the next task when its current task is done.
 #[derive(Clone, Copy, Debug)]
 pub struct Threads(pub NonZero<usize>);
 
 impl Threads {
-    /// Returns the number of threads that the host can execute in parallel.
+    /// Returns the number of threads that this computer can execute in parallel.
     #[must_use]
     pub fn all() -> Self {
         Self(thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN))

@@ -13,7 +13,8 @@ pub struct SliceView {
     /// Matrix from the world to (u, v, s), all in pixels: horizontal position in the slice, vertical position, and
     /// distance from the slice.
     pub view: DMat4,
-    /// Matrix from (u, v, s, 1) to clip coordinates, with depth 0 at the near plane and 1 at the far plane.
+    /// Matrix from the coordinates (u, v, s, 1) of the slice to clip coordinates, with depth 0 at the near plane and 1
+    /// at the far plane.
     pub projection: DMat4,
     /// Part of space that the slice represents.
     pub volume: SliceVolume,

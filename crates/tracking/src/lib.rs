@@ -28,9 +28,9 @@
 //! converted to floating point. Lengths are metres. Angles are degrees in settings and radians in vectors. Axes are
 //! right-handed with y up, and a head looks along its own -z axis. A quaternion rotates head axes into world axes.
 //!
-//! The same seed gives the same numbers on every host. All transcendental functions come from `libm`, and each random
-//! number is a function of (seed, index). The tables of [`config`] hold every number that describes hardware or people,
-//! with unit, source, provenance and range.
+//! The same seed gives the same numbers on every computer. All transcendental functions come from `libm`, and each
+//! random number is a function of (seed, index). The tables of [`config`] hold every number that describes hardware or
+//! people, with unit, source, provenance and range.
 //!
 //! ```
 //! use tracking::motion::Synthetic;

@@ -1,5 +1,5 @@
 //! Random numbers as pure functions of (seed, index). The numbers can be computed in any order and are the same on
-//! every host.
+//! every computer.
 //!
 //! The generator is SplitMix64 (Steele, Lea and Flood 2014). The function [`pxpl5_sim::mix`] of the simulation kernel
 //! computes one step of the generator.

@@ -1,13 +1,13 @@
 //! The pendulum rig, which measures latency from outside the machine (TR94).
 //!
-//! An LED and a photodiode detect the low point of a pendulum's arc. A tracker on the pendulum sends reports to the
-//! host. When the host detects the low point in the reports, the host starts a new frame and switches its D/A output. A
-//! photodiode on the screen detects frames that are alternately dark and light. On the oscilloscope, tracking latency
-//! is the time from the low point to the step of the D/A output. Rendering latency is the time from the step of the D/A
-//! output to the step of the screen.
+//! An LED and a photodiode detect each pass of a pendulum through its lowest point. A tracker on the pendulum sends
+//! reports to the host. When the host detects a pass in the reports, the host starts a new frame and switches its D/A
+//! output. A photodiode on the screen detects frames that are alternately dark and light. On the oscilloscope, tracking
+//! latency is the time from the pass to the step of the D/A output. Rendering latency is the time from the step of the
+//! D/A output to the step of the screen.
 //!
 //! This module has the parts outside of the emulated system: the pendulum and the oscilloscope. The module also has the
-//! host's detection of low points. A program that uses this module simulates the system and supplies the steps of the
+//! host's detection of passes. A program that uses this module simulates the system and supplies the steps of the
 //! host's D/A output and the light on the screen.
 
 mod detection;
@@ -25,11 +25,12 @@ use crate::motion::Pendulum;
 use crate::time::PS_PER_S;
 use crate::tracker::TrackerModel;
 
-/// Greatest time without a detected low point, ps. After this time the measurement fails.
+/// Greatest time without a detected pass of the pendulum through its lowest point, ps. After this time the measurement
+/// fails.
 const PATIENCE_PS: u64 = 10 * PS_PER_S;
 
-/// Divisor of half a swing. Noise may make the detection of a low point early by at most half a swing divided by this
-/// number.
+/// Divisor of half a swing. Noise may make the detection of the lowest point early by at most half a swing divided by
+/// this number.
 const EARLY_PART: u64 = 10;
 
 /// The pendulum rig, which measures latency from outside the machine. The pendulum's pivot and the tracker's origin are
@@ -38,7 +39,7 @@ const EARLY_PART: u64 = 10;
 pub struct PendulumRig {
     /// Undamped pendulum that carries the tracker.
     pub pendulum: Pendulum,
-    /// Method by which the host detects the pendulum's low point.
+    /// Method by which the host detects that the pendulum passes its lowest point.
     pub detection: Detection,
     /// Width of the LED's light beam at the pendulum, m.
     pub beam_m: f64,
@@ -122,9 +123,9 @@ impl PendulumRig {
         Ok(Measurement::new(self.detection, tracker, place_ps, outside.ok_or(no_light)?, inside))
     }
 
-    /// Returns the instant of the pendulum's low point that caused a step of the host's D/A output. The result is the
-    /// last low point before the step, or the next low point if noise caused an early detection. The result is correct
-    /// for tracking latencies below nine tenths of a half swing, 0.64 s.
+    /// Returns the instant at which the pendulum passed its lowest point and so caused a step of the host's D/A output.
+    /// The result is the last pass before the step, or the next pass if noise caused an early detection. The result is
+    /// correct for tracking latencies below nine tenths of a half swing, 0.64 s.
     fn low_point_before(&self, dac_ps: u64) -> u64 {
         let half_ps = self.half_swing_ps();
         let guess = dac_ps.saturating_add(half_ps / EARLY_PART).saturating_sub(half_ps / 2) / half_ps;

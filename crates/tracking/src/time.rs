@@ -18,7 +18,7 @@ pub fn span_s(from_ps: u64, to_ps: u64) -> f64 {
     if to_ps >= from_ps { seconds(to_ps - from_ps) } else { -seconds(from_ps - to_ps) }
 }
 
-/// Returns the instant of tick `n` of a clock with `rate` ticks in `seconds` s: floor(n x seconds / rate), without
+/// Returns the start of period `n` of a clock with `rate` periods in `seconds` s: floor(n x seconds / rate), without
 /// drift. Returns `None` beyond the end of simulated time (2^64 ps, 213 days).
 pub(crate) fn tick_ps(n: u64, seconds: u32, rate: u32) -> Option<u64> {
     let ps = u128::from(n) * u128::from(PS_PER_S) * u128::from(seconds) / u128::from(rate);

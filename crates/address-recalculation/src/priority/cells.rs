@@ -25,8 +25,8 @@ impl Cell {
         Self { x: column(x, side_m), z: column(z, side_m) }
     }
 
-    /// Returns the number of the ring around `self` that contains `other`: 0 for the same cell, 1 for its eight
-    /// neighbours.
+    /// Returns the number of the ring of cells around `self` that contains `other`: 0 for the same cell, 1 for its
+    /// eight neighbours.
     #[must_use]
     pub fn ring(self, other: Self) -> u64 {
         self.x.abs_diff(other.x).max(self.z.abs_diff(other.z))
@@ -49,18 +49,18 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     near.saturating_add(after - before)
 }
 
-/// Assignment of cells to memories by rings. The home cell contained the eye at the time of the assignment, and all
-/// cells at the same distance from it form a ring.
+/// Assignment of cells to memories by rings of cells. The home cell contained the eye at the time of the assignment,
+/// and all cells at the same distance from the home cell form a ring of cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
-    /// The home cell, which contained the eye at the time of the assignment and is the centre of all rings.
+    /// The home cell, which contained the eye at the time of the assignment and is the centre of all rings of cells.
     pub home: Cell,
     /// Side of a cell (square of the floor) in metres.
     pub side_m: f64,
-    /// Number of rings around the home cell that memory 0 holds.
+    /// Number of rings of cells around the home cell that memory 0 holds.
     pub inner_rings: u64,
-    /// Ratio of the numbers of rings of neighbouring memories. Memory 1 holds one ring, memory 2 holds `ring_growth`
-    /// rings, and so on.
+    /// Number of rings of cells in a memory divided by the number in the previous memory, from memory 2 on. Memory 1
+    /// holds one ring of cells, memory 2 holds `ring_growth` rings of cells, and so on.
     pub ring_growth: u64,
     /// Number of memories.
     pub memories: usize,
@@ -77,7 +77,8 @@ impl CellAssignment {
     /// Returns the number of the outermost ring of cells that memory k = `memory` holds. The value does not apply to
     /// the last memory (the least often drawn), which has no outer limit.
     ///
-    /// The result is the inner rings plus 1 + g + g^2 + ... + g^(k-1), where g is [`CellAssignment::ring_growth`].
+    /// The result is the number of inner rings of cells plus 1 + g + g^2 + ... + g^(k-1), where g is
+    /// [`CellAssignment::ring_growth`].
     #[must_use]
     pub fn last_ring(&self, memory: usize) -> u64 {
         let next = |(rings, of_memory): (u64, u64)| {
@@ -114,7 +115,7 @@ impl CellAssignment {
     }
 
     /// Returns the distance, in metres, from a position to the border of a square block: the home cell and `rings`
-    /// rings around it. The distance is 0 outside the block.
+    /// rings of cells around it. The distance is 0 outside the block.
     fn inside_block(&self, place: DVec3, rings: u64) -> f64 {
         let across = |place: f64, home: i64| {
             let low = (home as f64 - rings as f64) * self.side_m;

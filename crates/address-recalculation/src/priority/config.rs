@@ -9,8 +9,8 @@ pxpl5_sim::parameters::parameter_table! {
         theta_deg: f64 = 0.3515625, "deg", Assumed, 0.09..=0.88 in 1e-9..=90.0, "CPR05 2.2: the spacing of pixels in the display memory, not printed; 90/256, so that tears are 3.75 pixels of 60/640 deg (CPR05 5: a few). Range: one such pixel to five texels of 90/512 deg";
         /// Number of rings of cells (squares of the floor) around the viewer's cell in the most often drawn memory.
         inner_rings: 1, "rings", Derived, 0..=2 in 0..=100, "with 0, the second memory of table 1 would be as fast as the first";
-        /// Number of rings of each memory, divided by the number of rings of the memory that is drawn twice as often.
-        /// Memory 1 holds one ring.
+        /// Number of rings of cells of each memory, divided by the number of rings of cells of the memory that is drawn
+        /// twice as often. Memory 1 holds one ring.
         ring_growth: 2, "1", Derived, 1..=2 in 1..=8, "CPR05 2.2: each memory has half the rate of the one before, so it may begin twice as far away; 1 gives equal rings";
         /// Distance that determines when a memory is due. The value 0 selects the distance to the border of the block
         /// of cells that the memory holds. The value 1 selects the distance to the memory's nearest occupied cell.

@@ -9,7 +9,7 @@ use crate::priority::validity::level;
 pub struct Objects {
     frame_s: f64,
     memories: usize,
-    /// For each object, the index of its memory and the time at which the object's image becomes wrong. `None` for an
+    /// Index of each object's display memory, and the time at which the object's image becomes wrong. `None` for an
     /// object that was never drawn.
     objects: Vec<Option<(usize, f64)>>,
     moved: u64,

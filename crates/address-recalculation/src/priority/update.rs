@@ -3,12 +3,12 @@
 /// The memories that a frame draws, and the memories that must become visible together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Update {
-    /// For each memory: true if the frame draws it.
+    /// Flag of each memory: true if the frame draws it.
     pub due: Vec<bool>,
-    /// For each memory: true if it exchanged content with another memory. All such memories must become visible
-    /// together.
+    /// Flag of each memory: true if this memory exchanged content with another memory. All such memories must become
+    /// visible together.
     pub together: Vec<bool>,
-    /// True if cells (squares of the floor) were assigned to memories anew, in rings around another cell.
+    /// True if cells (squares of the floor) were assigned to memories anew, in rings of cells around another cell.
     pub deals_anew: bool,
 }
 

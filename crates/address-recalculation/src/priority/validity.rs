@@ -33,7 +33,7 @@ pub enum SizeRule {
     /// The angle that a disc with the object's radius covers, perpendicular to the line of sight.
     #[default]
     Disc,
-    /// The angle of the bounding sphere's outline.
+    /// The angle that the outline of the object's bounding sphere covers.
     Sphere,
 }
 

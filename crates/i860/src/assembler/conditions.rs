@@ -1,7 +1,7 @@
 //! Conditional assembly: `.if`, `.elseif`, `.else` and `.endif`.
 //!
-//! The conditions are evaluated before macros are expanded and before linear code is scheduled. The conditions use the
-//! constants that the lines above define.
+//! The conditions are evaluated before macros are expanded and before linear stretches (code from `.linear` to
+//! `.endlinear`) are scheduled. The conditions use the constants that the lines above define.
 
 use super::expression::{Symbols, evaluate};
 use super::source::is_name;
@@ -78,7 +78,7 @@ pub(crate) fn select(source: &str) -> Result<Cow<'_, str>, (usize, String)> {
 }
 
 /// Stores the constant that a line defines. A value with an unknown name gives no constant here. The line can be a
-/// statement of linear code, or can use a label whose address is not known yet.
+/// statement of a linear stretch, or can use a label whose address is not known yet.
 fn define(code: &str, constants: &mut Symbols) {
     let equ = code.strip_prefix(".equ").or_else(|| code.strip_prefix(".set"));
     let parts = equ.map_or_else(|| code.split_once('='), |rest| rest.split_once(','));

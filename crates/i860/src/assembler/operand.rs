@@ -1,4 +1,4 @@
-//! Conversion of the text of operands to the fields of instructions.
+//! Conversion of the text of operands to the bit fields of instructions.
 
 use super::expression::{Symbols, evaluate};
 use crate::instruction::{Flags, Instruction, Op};
@@ -76,7 +76,7 @@ fn signed16(text: &str, symbols: &Symbols) -> Result<i32, String> {
     in_range(value, -0x8000, 0x7FFF)
 }
 
-/// An instruction that the assembler is building. The fields of the instruction are filled from the texts of the
+/// An instruction that the assembler is building. The bit fields of the instruction are filled from the texts of the
 /// operands.
 pub(super) struct Filler<'a> {
     pub(super) i: Instruction,

@@ -42,7 +42,7 @@ impl Width {
     }
 }
 
-/// The name of an operation in linear code, with the properties of the operation.
+/// The name of an operation in a linear stretch, with the properties of the operation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Name {
     pub(super) unit: Unit,
@@ -73,7 +73,7 @@ const ADDER: u32 = 4;
 const MULTIPLIER: u32 = 4;
 const MULTIPLIER_DOUBLE: u32 = 5;
 
-/// Finds an operation by its name in linear code, such as `mul.sd`.
+/// Finds an operation by its name in a linear stretch, such as `mul.sd`.
 pub(super) fn named(text: &str) -> Option<Name> {
     use Unit::{Adder, Graphics, Integer, Multiplier, Prefetch, Seed};
     use Width::{Double, Quad, Single};

@@ -1,12 +1,12 @@
-//! Parser of *linear stretches* of an assembler source. A linear stretch is straight-line code without registers and
-//! without an order.
+//! Parser of *linear stretches* of an assembler source. A linear stretch is straight-line code from `.linear` to
+//! `.endlinear`. It assigns no registers, and the scheduler chooses the order of its operations.
 
 use super::machine::{self, Name, Width};
 use super::settings::Settings;
 use crate::AssemblyError;
 use std::collections::HashMap;
 
-/// An operand in linear code: the value of an earlier line, or the text of a register or constant.
+/// An operand in a linear stretch: the value of an earlier line, or the text of a register or constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     /// The value of an earlier operation: the index of this operation, and the index of one register of the value.
@@ -16,7 +16,7 @@ pub(super) enum Source {
     Text(String),
 }
 
-/// One line of linear code: an operation with its operands.
+/// One line of a linear stretch: an operation with its operands.
 #[derive(Clone, Debug)]
 pub(super) struct Operation {
     pub(super) name: Name,
@@ -25,7 +25,7 @@ pub(super) struct Operation {
     pub(super) address: Option<(String, Source)>,
     /// Indices of the stores that must precede this operation.
     pub(super) after: Vec<usize>,
-    /// Register in which the code after the linear code expects the result, or `None`. No other line of the linear code
+    /// Register in which the code after the linear stretch expects the result, or `None`. No other line of the stretch
     /// reads this register.
     pub(super) register: Option<u8>,
 }
@@ -52,7 +52,7 @@ pub(super) fn pool(line: usize, registers: &[&str]) -> Result<Vec<u8>, AssemblyE
     found.map_or_else(|| error(line, format!("expected r1 to r31, found {registers:?}")), Ok)
 }
 
-/// Parses the parameters of a `.linear` line, the start of linear code.
+/// Parses the parameters of a `.linear` line, which begins a linear stretch.
 pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, AssemblyError> {
     let numbers: Option<Vec<u32>> = words.iter().map(|word| word.parse().ok()).collect();
     match numbers.as_deref() {
@@ -68,7 +68,7 @@ pub(super) fn settings(line: usize, words: &[&str]) -> Result<Settings, Assembly
     }
 }
 
-/// Parses the operations of one stretch of linear code.
+/// Parses the operations of one linear stretch.
 pub(super) fn operations(block: &[(usize, &str)]) -> Result<Vec<Operation>, AssemblyError> {
     let mut parser = Parser::default();
     for (line, text) in repeated(block)? {
@@ -81,7 +81,7 @@ fn without_comment(text: &str) -> &str {
     text.split("//").next().unwrap_or_default().trim()
 }
 
-/// Expands the `for` loops in a stretch of linear code.
+/// Expands the `for` loops in a linear stretch.
 fn repeated(block: &[(usize, &str)]) -> Result<Vec<(usize, String)>, AssemblyError> {
     let lines: Vec<(usize, String)> = block.iter().map(|(n, text)| (*n, without_comment(text).to_owned())).collect();
     repeat(&lines)

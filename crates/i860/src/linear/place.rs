@@ -344,7 +344,7 @@ impl<'a> Placer<'a> {
     }
 
     /// Returns the urgency of a pipe, in clocks: the longest path from one of the pipe's values to the end of the
-    /// linear code.
+    /// linear stretch.
     fn urgency(&self, pipe: &[Option<usize>]) -> Option<u32> {
         pipe.iter().flatten().map(|n| self.heights[*n].saturating_sub(self.operations[*n].name.latency)).max()
     }
@@ -586,7 +586,7 @@ impl<'a> Placer<'a> {
     }
 }
 
-/// Returns the longest path from each operation to the end of the linear code, in clocks. If `shake` is not 0, the
+/// Returns the longest path from each operation to the end of the linear stretch, in clocks. If `shake` is not 0, the
 /// function adds pseudo-random noise, which changes the schedule.
 fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut heights = vec![0; operations.len()];

@@ -1,4 +1,4 @@
-//! Parameters of the scheduler for one stretch of linear code.
+//! Parameters of the scheduler for one linear stretch, the straight-line code from `.linear` to `.endlinear`.
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {

@@ -250,9 +250,9 @@ fn chosen(all: &Interpretations) -> String {
            twice as far away, its picture stays correct for twice the time. The cells of each memory therefore begin at twice the\n  \
            distance of the cells of the previous memory.\n\n\
          - *No cascade*: The cascade is a derived rule for warping, and the paper gives table 1 before it introduces warping.\n\n\
-         - *To the block's border*: If distances are measured to occupied cells instead, the rates fit better for rings of equal\n  \
-           width. For rings whose widths double, the rates fit worse. The parameter `priority.to_held_cells` selects one of the\n  \
-           two rules for distances.\n\n\
+         - *To the block's border*: If distances are measured to occupied cells instead and all rings of cells have equal width,\n  \
+           the rates come nearer to the printed rates. If the widths of the rings of cells double, the rates differ more from the\n  \
+           printed rates. The parameter `priority.to_held_cells` selects one of the two rules for distances.\n\n\
          - *Reliability*: Three rates are little data. A rate is often 60 Hz divided by a whole number, so it stays constant over\n  \
            a range of sides of a cell. Two rates may therefore predict the third rate badly, as the table of left-out rates\n  \
            shows. If the rules are chosen by the rates of memories 2 and 3, the predicted rate of memory 1 equals the rate of\n  \
@@ -312,8 +312,8 @@ fn conservation(text: &mut String, all: &Experiments) {
          memory. Two constraints follow:\n\n\
          1. The columns with and without segmentation have the same sum. The paper prints the sums {} and {}, so there are {:.0}\n   \
             more sections without segmentation. In the model, the sums of sections are {:.0} and {:.0}.\n\n\
-         2. For each k, memories 0 to k together hold at least as many sections without segmentation as with segmentation. Both\n   \
-            the printed numbers and the numbers of the model satisfy the constraint for memories 0 to k:\n\n\
+         2. Memory 0 is the fastest memory. Without segmentation, the fastest memories 0 to k together therefore hold at least as\n   \
+            many sections as with segmentation, for every k. The printed numbers and the model's numbers satisfy this constraint:\n\n\
          | memories | printed, cut | printed, uncut | ours, cut | ours, uncut |\n|---|---|---|---|---|\n",
         cut.iter().sum::<f64>(),
         uncut.iter().sum::<f64>(),

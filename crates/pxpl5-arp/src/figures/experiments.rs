@@ -55,7 +55,7 @@ pub struct SlowRendererResult {
 /// Results of all simulated experiments.
 #[derive(Clone, Debug)]
 pub struct Experiments {
-    /// Two fits of the cell side in the gallery: with this project's rules, and with rings of equal width.
+    /// Two fits of the cell side in the gallery: with this project's rules, and with rings of cells of equal width.
     pub fits: [CellFit; 2],
     /// All interpretations of table 1 of the paper CPR05 (update rates).
     pub interpretations: Interpretations,
@@ -185,7 +185,7 @@ pub struct SizeRow {
     pub size_over_distance: f64,
     /// Time until translation changes the image by the threshold, computed from the distance of the middle, in seconds.
     pub translation_s: f64,
-    /// Time until growth changes the image by the threshold, for a disc and for a sphere, in seconds.
+    /// Time until the growth of the object's image reaches the threshold, for a disc and for a sphere, in seconds.
     pub size_s: [f64; 2],
 }
 

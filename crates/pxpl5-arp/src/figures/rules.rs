@@ -8,7 +8,8 @@ use serde::Serialize;
 pub struct Rules {
     /// Number of rings of cells around the viewer's cell in memory 0.
     pub inner_rings: u64,
-    /// Number of rings in a memory, divided by the number of rings in the memory before it, which is drawn more often.
+    /// Number of rings of cells in a memory, divided by the number of rings of cells in the memory before it, which is
+    /// drawn more often.
     pub ring_growth: u64,
     /// True if distances are measured to cells that hold segments (parts of objects). False if distances are measured
     /// to the border of a block of cells.
@@ -28,7 +29,8 @@ impl Rules {
 
     /// Returns all sets of rules that are compared.
     ///
-    /// Rings of equal width are combined with 0, 1 or 2 inner rings, and doubling rings with 1 inner ring.
+    /// Rings of equal width are combined with 0, 1 or 2 inner rings of cells, and doubling rings of cells with 1 inner
+    /// ring.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let flags = [(false, false), (false, true), (true, false), (true, true)];

@@ -33,7 +33,7 @@ pub(super) struct HeadArgs {
     frames: u32,
 }
 
-/// For each picture of the film, number of instants at which errors are evaluated.
+/// Number of instants, for each picture of the film, at which errors are evaluated.
 const INSTANTS_PER_FRAME: u32 = 8;
 
 pub(super) fn run(

@@ -15,7 +15,7 @@ pxpl5_sim::parameters::parameter_table! {
         width: 1280, "pixels", Published, 1280..=1280 in 1..=1408, "F89";
         /// Height of the picture: visible lines in each frame.
         height: 1024, "lines", Published, 1024..=1024 in 1..=1408, "F89";
-        /// Number of scans of the whole frame per second.
+        /// Number of scans of the whole screen per second.
         refresh_hz: 72, "Hz", Assumed, 60..=76 in 1..=1000, "monitors of this size at the time";
         /// Number of ring ports of one board. Successive regions use the ports in turn.
         ports: 1, "ports", Assumed, 1..=8 in 1..=8, "no source gives the number. 1 is the number of an NTSC frame buffer (TR94). With 1 port, the 80 regions of a picture take 66.6 ms or five scans, so at most 14.4 pictures per second reach the display. 8 is the number of channels of the ring";

@@ -121,7 +121,7 @@ pub struct ComparisonRow {
     /// Reason for missing results, with the number of triangles that the pipeline could draw. `None` if all results are
     /// present.
     pub failure: Option<String>,
-    /// Time in seconds that the runs took on the host.
+    /// Time in seconds that the runs took on this computer.
     pub host_seconds: f64,
     /// Errors of position on the screen in the run with the first seed, for each display field.
     #[serde(skip)]

@@ -88,7 +88,7 @@ impl NumberKey {
     }
 }
 
-/// Returns the key of every display parameter with its description. The ranges are those of the panel.
+/// Returns the key of every display parameter with its description. The ranges are the ranges of the display `panel`.
 pub(super) fn keys() -> impl Iterator<Item = (&'static str, String)> {
     KEYS.iter().map(|key| (key.key.name, key.with_limits(&PanelConfig::PAPERS).help()))
 }

@@ -22,7 +22,8 @@ pub struct SceneChoice {
     pub culled: bool,
     /// Motion of the head if the experiment has no tracker.
     pub motion: MotionChoice,
-    /// Contents of the model file ([`ExperimentFile::with_contents`]). If present, the host's file is not read.
+    /// Contents of the model file ([`ExperimentFile::with_contents`]). If present, the file on this computer is not
+    /// read.
     pub contents: Option<Arc<[u8]>>,
 }
 

@@ -128,10 +128,11 @@ fn of_readings(text: &mut String, readings: &Readings) {
            of 4 and 5 fields give a mean of 4.5 and a standard deviation of 0.5. The paper TR94 prints a mean of 4.47 and a\n  \
            deviation of 0.502. The other printed mean and deviation, 4.61 and 0.589, also need a few latencies of 6 fields. The\n  \
            latencies of the first eyes alone have a deviation of 0.1.\n\n\
-         - *room for all*: The 4,096 bits of a pixel hold 128 regions of 32 bits. A renderer could keep fewer regions only if a\n  \
-           rule of the software limited the number of regions.\n\n\
-         - *wait*: With room for all regions and the rule `store`, the latency of figure 4 is 6 % too long. With the rule `wait`,\n  \
-           the latency of figure 4 is 1 to 2 % too long. The text of the paper allows the rules `store` and `wait`.\n\n\
+         - *room for all*: The backing store of a renderer has 4,096 bits for each pixel, enough for 128 regions of 32 bits. A\n  \
+           renderer could keep fewer regions only if a rule of the software limited the number of regions.\n\n\
+         - *wait*: With the rule `store`, a renderer that has finished a region begins its next region at once. With this rule and\n  \
+           room for all regions, the latency of figure 4 is 6 % too long. With the rule `wait`, a renderer first waits for its\n  \
+           frame buffer, and this latency is 1 to 2 % too long. The text of the paper allows both rules.\n\n\
          - *large, culled*: The scene `head` takes twice the printed time on the small machine. The scene `head` also takes\n  \
            twice the printed time if back faces are drawn.\n\n\
          - *bins of one eye*: If the bins hold the triangles of both eyes, 7,700 triangles take 454 ms instead of the printed 293\n  \
@@ -253,8 +254,8 @@ fn head(text: &mut String, rows: &[FigureRow]) {
          *analytic* and *simulated* is the error of the analytic level.\n\n\
          A published figure is *out of reach* if it lies outside of the interval by more than the error of the analytic level. A\n\
          figure that is out of reach shows an error in the rules of the model, because no allowed parameter reproduces the\n\
-         figure. If the interval is *not varied*, the figure depends only on the scenes or on a motion. The parameters of the\n\
-         machine do not change a figure whose interval is *not varied*.\n\n\
+         figure. The interval of a figure is marked *not varied* if no parameter of the machine changes the figure. Such a\n\
+         figure depends only on the scenes or on a motion.\n\n\
          The intervals of figures 17, 19 and 19b come from simulations with events. The simulations of figures 17, 19 and 19b\n\
          vary the depth of a renderer's FIFO and the number of channels that a sender can use. The interval of figure 17 also\n\
          covers the positions of the photodiode on the screen and the interpretations.\n\n\

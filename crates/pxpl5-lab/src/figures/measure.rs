@@ -29,9 +29,9 @@ use tracking::rig::Measurement as RigMeasurement;
 pub struct Bench {
     /// Level of modelling at which every figure is measured.
     pub level: Level,
-    /// Parameters, by path, that differ from the presets, with their values. A path that begins with a preset's name
-    /// and a colon changes only that preset. For example, times of PPHIGS code must not change the machines that run
-    /// Slats. [`PHOTODIODE_LINE`] is a parameter of the pendulum rig.
+    /// Paths of parameters, and values that replace the values of the presets. A path that begins with a preset's name
+    /// and a colon changes only that preset. So the times of Rendering Control's graphics library (PPHIGS) can change
+    /// without effect on Slats. The path [`PHOTODIODE_LINE`] changes the pendulum rig instead of a machine.
     pub changes: Vec<(String, u64)>,
     /// Number of seeds of the head motion for the fly-through of the scene "mig" (row 7 of ACCURACY.md).
     pub seeds: u64,

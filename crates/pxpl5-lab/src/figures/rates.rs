@@ -138,7 +138,7 @@ fn of_boards() -> Vec<Measurement> {
                 ("R6", "I3D95", "pendulum"),
                 "tracker and rendering measured together from outside",
                 (90.0, "ms", None),
-                "the rig of figure 17 with the optical tracker on the bob: the result is the time from the low point to the light under the photodiode",
+                "the rig of figure 17 with the optical tracker on the bob: the result is the time from the instant at which the bob is at its lowest point to the light under the photodiode",
                 "The position of the photodiode on the screen and the detection of the low point are not published.",
             ),
             measure: rig_total,

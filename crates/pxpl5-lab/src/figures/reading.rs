@@ -97,7 +97,7 @@ impl Reading {
         varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
     }
 
-    /// Returns the answers of this interpretation in words, in the order of the questions.
+    /// Returns the answers to the seven questions in words.
     fn answers(&self) -> [String; 7] {
         let samples = if self.samples == LatencySamples::FirstEye { "first eye" } else { "each eye" };
         let fields = if self.fields == FieldCount::Exact { "exact" } else { "whole fields" };
@@ -108,7 +108,8 @@ impl Reading {
         [samples, fields, kept, self.finished.name().to_owned(), machine, faces, bins]
     }
 
-    /// Returns, in words, the answers in which this interpretation differs from another interpretation.
+    /// Returns those answers of `self`, in words, that differ from the answers of `other`. The questions are the
+    /// questions that the papers leave open about Rendering Control.
     #[must_use]
     pub fn difference(&self, other: &Self) -> String {
         let both = self.answers().into_iter().zip(other.answers());

@@ -248,7 +248,7 @@ pub const FIGURES: [Figure; 26] = [
         ("I3D95", RC),
         "measured from outside with pendulum and photodiode, a minimal data set, rendering alone",
         (55.5, "ms", Some(1.5)),
-        "full-screen:2 on small-hmd, one frame for each of 24 low points of the bob. The result is the mean time from the start of SEND to the \
+        "full-screen:2 on small-hmd, one frame for each of 24 passes of the bob through its lowest point. The result is the mean time from the start of SEND to the \
          light under a photodiode in the middle of the screen. The brackets give the results for a photodiode on the first and the last line.",
         FREE,
     )

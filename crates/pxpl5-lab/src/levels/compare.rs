@@ -30,8 +30,8 @@ const PIXELS: [Pixels; 3] = [Pixels::Off, Pixels::Lazy, Pixels::All];
 /// compared.
 const MIG: (u64, u64) = (2, 60);
 
-/// Number of experiments whose speed is measured. The experiments run one after the other, and the host does no other
-/// work at the same time.
+/// Number of experiments whose speed is measured. The experiments run one after the other, and the computer does no
+/// other work at the same time.
 const TIMED: u64 = 16;
 
 /// Parameters of a comparison of levels of modelling.
@@ -148,7 +148,7 @@ fn speeds(variant: (Level, bool), query: &LevelQuery) -> Result<Vec<LevelSpeed>,
     choices.iter().map(speed).collect()
 }
 
-/// Runs all timed experiments, and returns the number of simulated seconds per second of the host's time.
+/// Runs all timed experiments, and returns the number of simulated seconds per second of computing time.
 fn speed(variant: (Level, bool), pixels: Pixels, stop: &StopFlag) -> Result<f64, ExperimentError> {
     let registry = crate::registry();
     let (mut simulated, mut taken) = (0.0, 0.0);

@@ -45,8 +45,8 @@ pub struct LevelReport {
 pub struct LevelSpeed {
     /// Choice of the pixels that are computed.
     pub pixels: Pixels,
-    /// Simulated seconds per second of the host's time, on one simulating thread. Further threads, one for each core of
-    /// the host, compute the pixels.
+    /// Simulated seconds per second of computing time, on one simulating thread. Further threads, one for each core of
+    /// the computer, compute the pixels.
     pub simulated_seconds_per_second: Option<f64>,
 }
 

@@ -89,9 +89,11 @@ pub struct OverQuery {
 /// Result of a search for the values of a setting that reach a goal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OverLimit {
-    /// Smallest value that reaches the goal. `None` if no smaller value was tried and missed the goal.
+    /// Smallest value that reaches the goal. `None` if no value reaches the goal, or if the search found no miss below
+    /// the values that reach the goal.
     pub least: Option<f64>,
-    /// Greatest value that reaches the goal. `None` if no greater value was tried and missed the goal.
+    /// Greatest value that reaches the goal. `None` if no value reaches the goal, or if the search found no miss above
+    /// the values that reach the goal.
     pub most: Option<f64>,
     /// True if at least one tried value reaches the goal.
     pub reached: bool,

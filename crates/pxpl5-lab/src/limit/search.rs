@@ -161,18 +161,18 @@ impl<F> Tried<F> {
     }
 }
 
-/// Searches for the smallest size (number of triangles) that misses the goal, up to `ceiling`, as far as trials can
-/// show.
+/// Searches for the first miss: the smallest size (number of triangles) up to `ceiling` for which `reached` returns
+/// false, which means that the goal is missed.
 ///
 /// Sizes above the first miss may reach the goal, because a nearly empty clump (group of triangles) costs as many
-/// messages as a full clump. The result is guaranteed in three respects:
+/// messages as a full clump. The search tries only some sizes, but guarantees three facts:
 ///
-/// - The first miss misses the goal.
-/// - The sizes from [`Limit::unbroken_from`] to the size before the first miss reach the goal.
-/// - No tried size below these sizes misses the goal.
+/// - The reported first miss was tried and missed the goal.
+/// - All sizes from [`Limit::unbroken_from`] to the size before the first miss were tried and reached the goal.
+/// - No smaller size that was tried missed the goal.
 ///
 /// Below [`Limit::unbroken_from`] the search tries the sizes of the hints, and five sizes at growing distances. A miss
-/// between these sizes is not found.
+/// at any size between them is not found.
 ///
 /// # Errors
 ///
@@ -208,8 +208,8 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
     Ok(tried.limit(ceiling).triangles)
 }
 
-/// Returns the numbers of triangles to try below `limit`: consecutive numbers, doubtful numbers, and some numbers at
-/// distances that double.
+/// Returns the numbers of triangles to try below `limit`: consecutive numbers directly below `limit`, the numbers in
+/// `doubtful` (which may miss the goal according to the hints), and five numbers whose distances from `limit` double.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
     // All sizes directly below, from the largest down.

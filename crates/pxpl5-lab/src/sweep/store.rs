@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 /// Name of the file of result rows: a header line, then one line for each point.
 pub const ROWS_FILE: &str = "rows.jsonl";
-/// Name of the file of durations: the header line, then one line for each point with its duration on the host.
+/// Name of the file of durations: the header line, then one line for each point with its computing time.
 pub const TIMES_FILE: &str = "times.jsonl";
 /// Name of the file that holds the rows as a table of comma-separated values.
 pub const RESULTS_FILE: &str = "results.csv";
@@ -40,7 +40,7 @@ pub struct Store {
     _lock: File,
 }
 
-/// Duration of a point on the host, as written to the file of durations.
+/// Computing time of a point, as written to the file of durations.
 #[derive(Serialize)]
 struct PointTime {
     point: u64,
@@ -130,7 +130,7 @@ impl Store {
         self.rows.reader()?.row(point)
     }
 
-    /// Appends the row of a finished point, and the time in seconds that the point took on the host.
+    /// Appends the row of a finished point, and the time in seconds that the point took on this computer.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Bit-serial execution of the instructions that compute with fields of pixel memory.
+//! Bit-serial execution of the instructions that compute with bit fields of pixel memory.
 
 use super::planes;
 use super::tile::{EMPTY, FULL, Tile, TilePlane};
@@ -92,8 +92,8 @@ impl Tile {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }
 
-    /// Computes a field bit by bit, the least significant bit first. The function `f` returns the value of each bit in
-    /// all pixels of a tile. Each bit takes one clock.
+    /// Computes a bit field bit by bit, the least significant bit first. The function `f` returns the value of each bit
+    /// in all pixels of a tile. Each bit takes one clock.
     fn each_bit(&mut self, field: FieldBits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
@@ -107,8 +107,8 @@ impl Tile {
         self.each_bit(destination, |memory, i| source.bit(memory, i + by));
     }
 
-    /// Shifts a field left. The most significant bit moves first, so the source and the destination can be the same
-    /// field.
+    /// Shifts a bit field left. The most significant bit moves first, so the source and the destination can be the same
+    /// bit field.
     fn shift_left(&mut self, destination: FieldBits, source: FieldBits, by: usize) {
         let source = self.source(source);
         for i in (0..destination.width).rev() {

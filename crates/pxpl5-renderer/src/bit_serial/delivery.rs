@@ -27,8 +27,8 @@ pub(super) struct Delivery {
     pub(super) effect: ExpressionEffect,
 }
 
-/// An operation that each pixel performs with every arriving bit of an expression. A destination field is given by its
-/// first bit in pixel memory.
+/// An operation that each pixel performs with every arriving bit of an expression. A destination bit field is given by
+/// its first bit in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,
@@ -39,7 +39,7 @@ pub(super) enum ExpressionEffect {
 }
 
 impl Delivery {
-    /// Evaluates an expression bit by bit for one vector of pixels, and uses each bit as the field `effect` states.
+    /// Evaluates an expression bit by bit for one vector of pixels, and uses each bit as the bit field `effect` states.
     #[inline(always)]
     pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
         let shift = self.taken.start;
@@ -101,7 +101,7 @@ impl BitSink for ClearEnable {
     }
 }
 
-/// A bit consumer that stores an expression, without its lowest `shift` bits, in a field of pixel memory.
+/// A bit consumer that stores an expression, without its lowest `shift` bits, in a bit field of pixel memory.
 struct StoreBits {
     first: usize,
     shift: usize,
@@ -114,7 +114,7 @@ impl BitSink for StoreBits {
     }
 }
 
-/// A bit consumer that adds an expression, without its lowest `shift` bits, to a field of pixel memory.
+/// A bit consumer that adds an expression, without its lowest `shift` bits, to a bit field of pixel memory.
 struct AddBits {
     first: usize,
     shift: usize,
@@ -129,8 +129,8 @@ impl BitSink for AddBits {
     }
 }
 
-/// A bit consumer that compares an expression, without its lowest `shift` bits, with a field. Pixels in which the
-/// expression is not less than the field become disabled.
+/// A bit consumer that compares an expression, without its lowest `shift` bits, with a bit field. Pixels in which the
+/// expression is not less than the bit field become disabled.
 struct CompareBits {
     first: usize,
     shift: usize,
@@ -149,8 +149,8 @@ impl BitSink for CompareBits {
     }
 }
 
-/// A bit consumer that subtracts the field `source`, shifted left, from an expression. The lowest `shift` bits of the
-/// difference are not stored.
+/// A bit consumer that subtracts the bit field `source`, shifted left, from an expression. The lowest `shift` bits of
+/// the difference are not stored.
 struct StoreDifference {
     first: usize,
     shift: usize,

@@ -62,8 +62,8 @@ impl BitSerial {
         Ok(())
     }
 
-    /// Returns the used bits of an expression of `bits` bits, and the operation on these bits. Addresses of fields are
-    /// relative to the selected context, the part of pixel memory that holds one region.
+    /// Returns the used bits of an expression of `bits` bits, and the operation on these bits. Addresses of bit fields
+    /// are relative to the selected context, the part of pixel memory that holds one region.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
         // A test of the sign uses only the last bit. A difference uses all bits, because it needs their borrow.
         let (taken, effect) = match *usage {
@@ -90,8 +90,8 @@ impl BitSerial {
         Ok(Delivery { taken, effect })
     }
 
-    /// Returns the range of the expression's bits that enter the field `field`, and the field's first bit in pixel
-    /// memory. The lowest `shift` bits of the expression do not enter the field.
+    /// Returns the range of the expression's bits that enter the bit field `field`, and the bit field's first bit in
+    /// pixel memory. The lowest `shift` bits of the expression do not enter the bit field.
     fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
         let field = self.controller.bits(field)?;
         let shift = usize::from(shift);

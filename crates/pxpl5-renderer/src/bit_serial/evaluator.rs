@@ -26,9 +26,9 @@ const SQUARE_BITS: usize = 14;
 /// A set of leaves of an adder tree, with one bit for each of 128 columns or rows.
 type Leaves = [u64; 2];
 
-/// For each bit `l`, the columns (or rows) of pixels whose index has this bit set.
+/// Columns (or rows) of pixels whose index has bit `l` set, for each `l`.
 const NUMBERS: [Leaves; NUMBER_BITS] = leaves(1);
-/// For each bit `l`, the columns (or rows) of pixels whose squared index has this bit set.
+/// Columns (or rows) of pixels whose squared index has bit `l` set, for each `l`.
 const SQUARES: [Leaves; SQUARE_BITS] = leaves(2);
 
 const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
@@ -207,8 +207,8 @@ struct QuadraticBits {
 }
 
 pub(super) struct QuadraticCarries<V> {
-    /// For each bit of the column's index, the bit of the coefficient of x that is multiplied in this clock. Entry n
-    /// holds the bit that arrived n clocks ago.
+    /// Bit of the coefficient of x that is multiplied in this clock, for each bit of the column's index. Entry n holds
+    /// the bit that arrived n clocks ago.
     late: [V; NUMBER_BITS],
     product: [V; NUMBER_BITS],
     rows_and_columns: V,

@@ -28,7 +28,7 @@ pub(super) const EXPRESSIONS: usize = 8;
 
 /// Number of bits of a pixel column's index within a tile. The index is 0 to 31.
 const LEVELS: usize = 5;
-/// For each bit `l` of the index, the pixel columns (and rows) of a tile whose index has this bit set.
+/// Pixel columns (and rows) of a tile whose index has bit `l` set, for each `l`.
 const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff00, 0xffff_0000];
 
 /// A run: consecutive instructions that one tile executes completely before another tile begins.

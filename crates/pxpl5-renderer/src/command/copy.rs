@@ -93,7 +93,7 @@ impl CopyRegion {
 pub struct StoreBacking {
     /// Block of the backing store, 0 to 127.
     pub block: u8,
-    /// First bit of the field in pixel memory, an absolute address from 0 to 176.
+    /// First bit of the bit field in pixel memory, an absolute address from 0 to 176.
     pub address: u8,
 }
 
@@ -115,7 +115,7 @@ impl StoreBacking {
 pub struct LoadBacking {
     /// Block of the backing store, 0 to 127.
     pub block: u8,
-    /// First bit of the field in pixel memory, an absolute address from 0 to 176.
+    /// First bit of the bit field in pixel memory, an absolute address from 0 to 176.
     pub address: u8,
 }
 

@@ -17,7 +17,8 @@ pub struct TriangleCommand {
     pub colour: [Linear; 3],
 }
 
-/// A triangle with interpolated normals. The triangle's pixels are shaded at the end of the frame (Phong).
+/// A triangle with interpolated normals. The triangle's pixels are shaded after the last primitive of the region
+/// (Phong).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongTriangleCommand {
     /// Edge expressions. A pixel is inside if all three values are `>= 0`.

@@ -1,4 +1,4 @@
-//! The shading command at the end of the frame.
+//! The command that shades the pixels of a region after the last primitive of the region.
 
 use super::{CommandKind, MissingField, enable, normal};
 use crate::isa::{ArithmeticOp, ArrayInstruction, Operand, Test};
@@ -47,7 +47,7 @@ const COSINE_BITS: u8 = 10;
 
 /// Number of bits of scratch memory that the shading program needs.
 pub(super) const SHADE_BITS: u8 = 104;
-/// First bit of the field for the square root, relative to the start of the scratch memory.
+/// First bit of the bit field for the square root, relative to the start of the scratch memory.
 pub(super) const SHADE_ROOT: u8 = 72;
 
 pub(crate) struct ShadeFields {
@@ -163,7 +163,7 @@ fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Arra
     out.push(arithmetic(ArithmeticOp::Divide, cosine, positive, f.root));
 }
 
-/// Raises the cosine of the highlight to the power 32, and returns the field with the result. Each step squares the
+/// Raises the cosine of the highlight to the power 32, and returns the bit field with the result. Each step squares the
 /// value and stores the square in `f.a` or `f.b` alternately.
 fn power(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) -> Operand {
     let mut base = f.specular;

@@ -61,7 +61,7 @@ pub struct SphereCommand {
     pub root_factor: [i16; 3],
 }
 
-/// A sphere whose pixels are shaded at the end of the frame (Phong).
+/// A sphere whose pixels are shaded after the last primitive of the region (Phong).
 ///
 /// The z component of the normal is `root >> 2`. At the middle of the sphere, this component is `r / 4`, where r is the
 /// root at the middle. The sender uses the same scale for x and y. The length of the normal has no effect, because
@@ -201,7 +201,7 @@ impl SphereCommand {
 
 /// Returns the instructions for `component := limit(linear + (upper root * factor >> 8))`.
 ///
-/// The upper 10 bits of the product field hold the sum.
+/// The upper 10 bits of the product bit field hold the sum.
 fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &SphereScratch) -> [ArrayInstruction; 3] {
     let sum = scratch.product.part(8, 10).signed();
     [

@@ -34,15 +34,15 @@ pub enum DecodeErrorKind {
     /// Bits that must be zero are set.
     #[error("bits are set that must be zero")]
     ReservedBits,
-    /// A field (a sequence of bits of pixel memory) extends beyond the end of pixel memory.
+    /// A bit field of pixel memory extends beyond the end of pixel memory.
     #[error("{} bits at address {} reach beyond the {} bits of pixel memory", .0.width, .0.address, MEMORY_BITS)]
     FieldOutOfRange(Operand),
-    /// A field of pixel memory has a width that this instruction does not allow.
+    /// A bit field of pixel memory has a width that this instruction does not allow.
     #[error("the field at address {} has {} bits, expected {expected}", .field.address, .field.width)]
     Width {
-        /// The field as encoded in the instruction.
+        /// The bit field as encoded in the instruction.
         field: Operand,
-        /// Required width of the field in bits. For expressions and quotients, this number is the largest allowed
+        /// Required width of the bit field in bits. For expressions and quotients, this number is the largest allowed
         /// width.
         expected: u32,
     },

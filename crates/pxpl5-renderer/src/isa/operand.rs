@@ -1,9 +1,9 @@
-//! Operands of instructions: references to fields of pixel memory.
+//! Operands of instructions: references to bit fields of pixel memory.
 
-/// A field of pixel memory, as encoded in an instruction.
+/// A bit field of pixel memory, as encoded in an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Operand {
-    /// Address of the field's least significant bit. The address is absolute, or relative to the first bit of the
+    /// Address of the bit field's least significant bit. The address is absolute, or relative to the first bit of the
     /// selected context (the part of pixel memory that holds one region).
     pub address: u8,
     /// Width in bits, 1 to 64.
@@ -11,7 +11,7 @@ pub struct Operand {
     /// True if the address is relative to the first bit of the selected context (the part of pixel memory that holds
     /// one region).
     pub relative: bool,
-    /// True if the field holds a two's complement number. Such a field is sign-extended.
+    /// True if the bit field holds a two's complement number. Such a bit field is sign-extended.
     pub signed: bool,
 }
 
@@ -19,27 +19,27 @@ const SIGNED: u32 = 1 << 15;
 const RELATIVE: u32 = 1 << 14;
 
 impl Operand {
-    /// Returns an unsigned field whose address is relative to the selected context (the part of pixel memory that holds
-    /// one region).
+    /// Returns an unsigned bit field whose address is relative to the selected context (the part of pixel memory that
+    /// holds one region).
     #[must_use]
     pub const fn context(address: u8, width: u8) -> Self {
         Self { address, width, relative: true, signed: false }
     }
 
-    /// Returns an unsigned field of pixel memory at an absolute address, 0 to 207.
+    /// Returns an unsigned bit field of pixel memory at an absolute address, 0 to 207.
     #[must_use]
     pub const fn absolute(address: u8, width: u8) -> Self {
         Self { address, width, relative: false, signed: false }
     }
 
-    /// Returns this field, interpreted as a two's complement number.
+    /// Returns this bit field, interpreted as a two's complement number.
     #[must_use]
     pub const fn signed(self) -> Self {
         Self { signed: true, ..self }
     }
 
-    /// Returns the part of this field that begins at bit `low` of the field and has `width` bits. The part is signed if
-    /// this field is signed.
+    /// Returns the part of this bit field that begins at bit `low` of the bit field and has `width` bits. The part is
+    /// signed if this bit field is signed.
     #[must_use]
     pub const fn part(self, low: u8, width: u8) -> Self {
         Self { address: self.address + low, width, ..self }

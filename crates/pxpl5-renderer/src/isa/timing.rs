@@ -9,9 +9,9 @@
 //! The backing store works in parallel with the array. `RendererTiming::backing_block_clocks` is the time
 //! of a transfer.
 //!
-//! One bit of one field takes one clock. Assumed: each pixel has one full adder, whose operands and result move in the
-//! same clock. An expression arrives with its least significant bit first. A field of `w` bits therefore takes `s + w`
-//! clocks if the lowest `s` bits of the expression are left out.
+//! One bit of one bit field takes one clock. Assumed: each pixel has one full adder, whose operands and result move in
+//! the same clock. An expression arrives with its least significant bit first. A bit field of `w` bits therefore takes
+//! `s + w` clocks if the lowest `s` bits of the expression are left out.
 
 use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, LINEAR_BITS, QUADRATIC_BITS};
 
@@ -32,8 +32,8 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 /// takes 272 clocks) to 5 (Gouraud takes 267 clocks).
 pub const SET_UP_CLOCKS: u32 = 4;
 
-/// Number of clocks of an instruction that moves no field. Assumed: 2, like "enable all" in the published steps. The
-/// range is 1 to 4.
+/// Number of clocks of an instruction that moves no bit field. Assumed: 2, like "enable all" in the published steps.
+/// The range is 1 to 4.
 pub const CONTROL_CLOCKS: u32 = 2;
 
 /// Returns the number of clocks of a square root with a result of `n` bits.

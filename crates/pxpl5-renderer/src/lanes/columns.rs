@@ -1,5 +1,5 @@
-//! Pixel memory of the fast array. Every field of the layout is stored as a column, an array with one 32-bit word for
-//! each pixel.
+//! Pixel memory of the fast array. Every bit field of the layout is stored as a column, an array with one 32-bit word
+//! for each pixel.
 
 use crate::array::{PIXELS, Plane};
 use crate::command::{ShadeFields, SphereScratch};
@@ -22,16 +22,16 @@ struct FieldColumn {
 }
 
 /// All 208 bits of pixel memory as columns (arrays with one word for each pixel). A column begins at every bit at which
-/// a field of the layout begins or ends.
+/// a bit field of the layout begins or ends.
 #[derive(Clone, Debug)]
 pub(super) struct PixelColumns {
     columns: Vec<FieldColumn>,
-    /// For each bit of pixel memory, the index of the column (array of words) that holds the bit.
+    /// Index of the column (array of words) that holds each bit of pixel memory.
     column_of: [u8; MEMORY_BITS as usize],
 }
 
-/// The part of a field that lies in one column (array of words). The part begins at bit `low` of the column and at bit
-/// `at` of the field, and has `width` bits.
+/// The part of a bit field that lies in one column (array of words). The part begins at bit `low` of the column and at
+/// bit `at` of the bit field, and has `width` bits.
 #[derive(Clone, Copy, Debug)]
 struct FieldPiece {
     column: usize,
@@ -93,7 +93,7 @@ impl PixelColumns {
         }
     }
 
-    /// Reads a field of all pixels into `out`. Signed values are sign-extended to 64 bits, and unsigned values are
+    /// Reads a bit field of all pixels into `out`. Signed values are sign-extended to 64 bits, and unsigned values are
     /// zero-extended.
     pub(super) fn gather(&self, field: FieldBits, out: &mut [u64]) {
         out.fill(0);
@@ -151,8 +151,8 @@ fn column(first: usize, end: usize) -> FieldColumn {
     FieldColumn { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
 }
 
-/// Returns the first bit of each column (array of words). A column begins at every bit at which a field of the layout
-/// begins or ends. Longer columns are cut into columns of at most 32 bits.
+/// Returns the first bit of each column (array of words). A column begins at every bit at which a bit field of the
+/// layout begins or ends. Longer columns are cut into columns of at most 32 bits.
 fn cuts(layout: &Layout) -> Vec<usize> {
     let mut cuts = vec![0, MEMORY_BITS as usize];
     // First and last bits of the layout's fields.
@@ -176,7 +176,7 @@ fn cuts(layout: &Layout) -> Vec<usize> {
     split_wide(&cuts)
 }
 
-/// Returns the absolute addresses of the temporary fields that the programs of commands use.
+/// Returns the absolute addresses of the temporary bit fields that the programs of commands use.
 fn temporaries(layout: &Layout) -> Vec<Operand> {
     let sphere = SphereScratch::in_layout(layout).map(|s| vec![s.z, s.root]);
     let shade = ShadeFields::in_layout(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);
@@ -192,7 +192,7 @@ fn split_wide(cuts: &[usize]) -> Vec<usize> {
     out
 }
 
-/// Indices of the columns (arrays of words) that hold the fields of one context, which is a region in pixel memory.
+/// Indices of the columns (arrays of words) that hold the bit fields of one context, which is a region in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContextColumns {
     pub(super) base: u8,

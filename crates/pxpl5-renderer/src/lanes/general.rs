@@ -1,4 +1,4 @@
-//! General path of the fast array, which executes any instruction on all pixels, one field after the other.
+//! General path of the fast array, which executes any instruction on all pixels, one bit field after the other.
 
 use super::{Lanes, values};
 use crate::array::{Executed, FaultKind, OutputRegion, PIXELS};
@@ -99,7 +99,7 @@ impl Lanes {
         Ok(())
     }
 
-    /// Stores the first operand buffer, which has a 64-bit number for each pixel, in the field `destination` of all
+    /// Stores the first operand buffer, which has a 64-bit number for each pixel, in the bit field `destination` of all
     /// enabled pixels.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
@@ -123,7 +123,7 @@ impl Lanes {
         self.store(destination)
     }
 
-    /// Computes two results, such as a quotient and a remainder, in each pixel. The first operand is the field
+    /// Computes two results, such as a quotient and a remainder, in each pixel. The first operand is the bit field
     /// `source`, and the second operand buffer has the other operands. The first result goes to `destination`, and the
     /// second to `source`.
     fn two_results(

@@ -46,7 +46,7 @@ impl Lanes {
         Some(used)
     }
 
-    /// Returns the columns (arrays of words) for a sphere. Returns `None` if the fields of depth and radicand have
+    /// Returns the columns (arrays of words) for a sphere. Returns `None` if the bit fields of depth and radicand have
     /// different widths.
     ///
     /// With different widths, the command's program would leave a mixture of depth and radicand in the scratch memory.

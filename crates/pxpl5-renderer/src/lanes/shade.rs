@@ -1,7 +1,7 @@
 //! Fast shading, row by row.
 //!
-//! The code follows the program of [`crate::Shade`] instruction by instruction. The scratch fields therefore have the
-//! same values at the end as after the program.
+//! The code follows the program of [`crate::Shade`] instruction by instruction. The scratch bit fields therefore have
+//! the same values at the end as after the program.
 
 use super::columns::Values;
 use super::roots::{divide_10, square_root_24};
@@ -11,7 +11,8 @@ use crate::simd::{SimdVector, VectorKernel};
 
 const WIDTH: usize = 128;
 
-/// Number of fields that shading writes: the colour and the six scratch fields a, b, c, root, diffuse and specular.
+/// Number of bit fields that shading writes: the colour and the six scratch bit fields a, b, c, root, diffuse and
+/// specular.
 const RESULTS: usize = 7;
 
 /// A vectorized loop that shades all pixels whose depth differs from the depth of the far plane.
@@ -139,8 +140,8 @@ fn shade_pixel(shade: &Shade, n: [i32; 3], colour: u32) -> [u32; RESULTS] {
     [rgb, a, b, c, root, insert(diffuse, light, 8), specular]
 }
 
-/// Returns the cosine and the final content of the field `c`. The cosine is 0 for surfaces that face away. The field
-/// holds the remainder of the division, and the sign of the product in bit 23.
+/// Returns the cosine and the final content of the bit field `c`. The cosine is 0 for surfaces that face away. The bit
+/// field holds the remainder of the division, and the sign of the product in bit 23.
 #[inline(always)]
 fn cosine(vector: [i16; 3], n: [i32; 3], root: u32) -> (u32, u32) {
     let dot = n[0] * twelve(vector[0]) + n[1] * twelve(vector[1]) + n[2] * twelve(vector[2]);

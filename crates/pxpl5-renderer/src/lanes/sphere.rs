@@ -20,8 +20,8 @@ pub(super) struct DrawSphere<'a, P> {
     pub(super) root_bits: u8,
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
-    /// Field of the scratch memory for the square roots of all pixels. Its final content must equal the content after
-    /// the command's program.
+    /// Bit field of the scratch memory for the square roots of all pixels. Its final content must equal the content
+    /// after the command's program.
     pub(super) root: &'a mut Values,
     pub(super) temporary: &'a mut Values,
     pub(super) paint: P,

@@ -1,5 +1,5 @@
-//! Operations on the content of a field in one pixel. The content is extended to 64 bits: sign-extended if the field is
-//! signed, otherwise zero-extended.
+//! Operations on the content of a bit field in one pixel. The content is extended to 64 bits: sign-extended if the bit
+//! field is signed, otherwise zero-extended.
 
 use crate::isa::{ArithmeticOp, Test};
 

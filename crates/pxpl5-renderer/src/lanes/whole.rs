@@ -33,8 +33,8 @@ impl Lanes {
         Some(commands * kind.words() as usize)
     }
 
-    /// Returns the columns (arrays of words) that hold the fields of the selected context, which is a region in pixel
-    /// memory. The result is cached until another context is selected.
+    /// Returns the columns (arrays of words) that hold the bit fields of the selected context, which is a region in
+    /// pixel memory. The result is cached until another context is selected.
     #[inline]
     fn context_columns(&mut self) -> Option<ContextColumns> {
         if self.selected.is_none_or(|known| known.base != self.controller.base) {
@@ -62,8 +62,8 @@ impl Lanes {
         Some([x, y, z])
     }
 
-    /// Returns the index of the column (array of words) that holds exactly this field, or `None` if no column holds
-    /// exactly this field.
+    /// Returns the index of the column (array of words) that holds exactly this bit field, or `None` if no column holds
+    /// exactly this bit field.
     pub(super) fn column(&self, operand: Operand) -> Option<usize> {
         let FieldBits { first, width, .. } = self.controller.bits(operand).ok()?;
         self.columns.find(first, width)

@@ -290,8 +290,8 @@ impl PictureRules for Slats {
     }
 }
 
-/// Number of further retraces at which a late field of [`Slats::backup`] can still be shown. In this time, the display
-/// scans the lines of the field twice more.
+/// Number of retraces after the due retrace at which [`Slats::backup`] can still show a late field. Even and odd fields
+/// alternate, so only two of these four retraces begin a scan of the late field's lines.
 const LATER_RETRACES: u64 = 4;
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -315,7 +315,7 @@ impl Copied {
 
 /// The buffers that each eye's frame buffer has shown, for runs of [`Slats::backup`].
 struct Backup {
-    /// For each eye, the first period and the buffer of each swap, in order.
+    /// First period and buffer of each swap, in order, for each eye.
     swaps: [Vec<(PeriodNumber, u8)>; 2],
 }
 

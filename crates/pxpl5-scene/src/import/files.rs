@@ -1,4 +1,4 @@
-//! Reading of model files on the host's disk. Only this module of the crate calls the operating system.
+//! Reading of model files from the disk of this computer. Only this module of the crate calls the operating system.
 #![cfg(feature = "files")]
 
 use pxpl5_sim::parameters::{FileError, FileErrorKind};

@@ -88,12 +88,13 @@ pub(super) fn area([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Makes a scene of a model that already has the position and size for the default view.
+/// Makes a scene of a model that was already moved and scaled to fit into the default view.
 pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
     seen_by(motion_for_fitted(), name, mesh.vertices(), mesh.triangles, spheres)
 }
 
-/// Returns the motion of a head that looks at a model with the position and size for the default view.
+/// Returns a head motion for a model that was already moved and scaled to fit into the default view. The head looks at
+/// this model.
 pub(super) fn motion_for_fitted() -> HeadMotion {
     HeadMotion::always_visible(Vec3::ZERO, IMPORT_RADIUS_M)
 }

@@ -104,8 +104,8 @@ pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, FileError> {
 /// order has no effect.
 #[derive(Default)]
 struct Alternates<'a> {
-    /// For each position of the chain with alternate locations (columns 22 to 27), the name of the first residue there.
-    /// A residue with a different name at the same position belongs to another molecule.
+    /// Name of the first residue at each position of the chain (columns 22 to 27) with alternate locations. A residue
+    /// with a different name at the same position belongs to another molecule.
     residues: HashMap<&'a [u8], &'a [u8]>,
     /// Position in the chain and name of every atom with alternate locations.
     atoms: HashSet<(&'a [u8], &'a [u8])>,

@@ -6,7 +6,7 @@ use serde::Serialize;
 /// A parameter of one of several tables: path, metadata and value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Prefix of the table and name of the field, such as `ring.word_ns`.
+    /// Prefix of the table and name of the parameter, such as `ring.word_ns`.
     pub path: String,
     /// Unit, provenance, range and source.
     #[serde(flatten)]
@@ -72,7 +72,7 @@ pub struct Choice<S> {
     pub set: fn(&mut S, &str) -> Result<(), SettingError>,
 }
 
-/// Sets a field to the value that has the name `text` in a list of names and values.
+/// Sets a choice to the value that has the name `text` in a list of names and values.
 ///
 /// # Errors
 ///

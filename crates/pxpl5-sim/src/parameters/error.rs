@@ -19,14 +19,14 @@ pub struct SettingError {
     /// Place where the setting was written, such as a file with a line, or a command line option. Empty if the place is
     /// clear from the call.
     pub place: Box<str>,
-    /// Name or path of the setting, such as `ring.word_ns`. For an unknown name, the field has the kind of thing that
+    /// Name or path of the setting, such as `ring.word_ns`. For an unknown name, this text is the kind of thing that
     /// the name should denote, such as `pipeline`.
     pub name: Box<str>,
     /// The expected value, in words.
     pub expected: Box<str>,
     /// The value or name that the setting has.
     pub found: Box<str>,
-    /// For an unknown name, the valid name that is most similar. Empty for errors of another kind.
+    /// Valid name that is most similar to an unknown name. Empty for errors of another kind.
     pub nearest: Box<str>,
 }
 
@@ -112,7 +112,8 @@ impl SettingError {
         Self { expected: "".into(), ..Self::unknown(what, found, valid) }
     }
 
-    /// Creates the error of a parameter that is a fixed property of a chip. `origin` is the source of its value.
+    /// Creates the error of an attempt to change a parameter that is a fixed property of a chip. `origin` is the source
+    /// of the fixed value.
     #[must_use]
     pub fn read_only(path: &str, value: Value, origin: &str) -> Self {
         Self::new(SettingErrorKind::ReadOnly, path, origin, value)
@@ -141,7 +142,7 @@ impl SettingError {
     ///
     /// # Errors
     ///
-    /// The error of [`SettingError::value`].
+    /// Returns the error of [`SettingError::value`] if `holds` is false.
     pub fn require(holds: bool, name: &str, expected: impl Display, found: impl Display) -> Result<(), Self> {
         if holds { Ok(()) } else { Err(Self::value(name, expected, found)) }
     }

@@ -50,7 +50,7 @@ macro_rules! parameter_table {
             /// The initial values of all parameters. The papers print or allow these values.
             $vis const PAPERS: Self = Self { $($field: $value,)* };
 
-            /// Unit, provenance, range and source of each parameter, in the order of the fields.
+            /// Unit, provenance, range and source of each parameter, in the order of the declaration.
             $vis const INFOS: &'static [$crate::parameters::ParameterInfo] = &[$($crate::parameters::ParameterInfo {
                 name: stringify!($field),
                 unit: $unit,
@@ -112,7 +112,7 @@ macro_rules! parameter_table {
     };
 }
 
-/// Expands to the type or value of a field: a whole number, or a real number if the declaration contains `f64`.
+/// Expands to the type or value of a parameter: a whole number, or a real number if the declaration contains `f64`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! number {

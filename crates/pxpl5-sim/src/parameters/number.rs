@@ -2,16 +2,16 @@
 
 use crate::parameters::{SettingError, Value};
 
-/// A number type that a field of a table can have: `u64` or `f64`.
+/// A number type that a parameter of a table can have: `u64` or `f64`.
 pub trait Number: Copy + Into<Value> {
     /// Converts a value to this number type. Returns `None` if the type is `u64` and the value is not a whole number.
     fn from_value(value: Value) -> Option<Self>;
 
-    /// Sets the field called `name` to a value.
+    /// Sets the parameter called `name` to a value.
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the field needs a whole number and the value is not whole.
+    /// Returns a [`SettingError`] if the parameter needs a whole number and the value is not whole.
     fn assign(&mut self, name: &'static str, value: Value) -> Result<(), SettingError> {
         *self = Self::from_value(value).ok_or(SettingError::not_whole(name, value))?;
         Ok(())

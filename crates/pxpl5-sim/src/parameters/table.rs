@@ -30,8 +30,8 @@ impl Entry {
 /// A table of parameters that was declared with [`parameter_table!`](crate::parameters::parameter_table). A machine can
 /// hold tables of different types as `&dyn ParameterTable`.
 pub trait ParameterTable {
-    /// Returns unit, provenance, range and source of each parameter, in the order of the fields. The table's constant
-    /// `INFOS` has the same content.
+    /// Returns unit, provenance, range and source of each parameter, in the order of the declaration. The table's
+    /// constant `INFOS` has the same content.
     fn infos(&self) -> &'static [ParameterInfo];
 
     /// Returns the value of a parameter.
@@ -46,11 +46,11 @@ pub trait ParameterTable {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if no parameter has this name, or if the field holds whole numbers and the
-    /// value is not whole.
+    /// Returns a [`SettingError`] if no parameter has this name, or if the parameter holds whole numbers and the value
+    /// is not whole.
     fn set(&mut self, name: &str, value: Value) -> Result<(), SettingError>;
 
-    /// Returns all parameters with their current values, in the order of the fields.
+    /// Returns all parameters with their current values, in the order of the declaration.
     fn entries(&self) -> Vec<Entry> {
         self.infos().iter().filter_map(|info| Some(Entry { info, value: self.get(info.name).ok()? })).collect()
     }

@@ -132,7 +132,7 @@ impl ChartSize {
 }
 
 impl Chart {
-    /// Returns the chart as SVG. The bytes are the same on every host.
+    /// Returns the chart as SVG. The bytes are the same on every computer.
     ///
     /// # Panics
     ///

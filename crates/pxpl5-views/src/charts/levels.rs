@@ -8,7 +8,7 @@ use super::scale::AxisScale;
 pub struct SpeedAndError {
     /// Name beside the marker, such as the name of a level of modelling.
     pub name: String,
-    /// Number of simulated display fields per second of real time on the host.
+    /// Number of simulated display fields per second of computing time.
     pub fields_per_host_second: f64,
     /// Mean absolute error over the published figures that were not used to fit parameters (free checks), in per cent.
     pub mean_error_percent: f64,

@@ -1,4 +1,4 @@
-//! Axes of charts: range, tick marks and labels.
+//! Axes of charts: range, marks and labels.
 
 use super::{readable, ticks};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};

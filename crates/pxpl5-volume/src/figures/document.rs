@@ -149,7 +149,8 @@ fn pictures(text: &mut String) {
          The picture shows figures 4 to 12 of the SpatialGL paper, row by row. The SpatialGL paper has no figures 1 to 3. The\n\
          command `pxpl5 volume figures --out DIR` draws the figures from values that the model computes for every pixel. The\n\
          first row of the picture shows a slice volume, its orientation and a tapered clip. The second row of the picture shows a\n\
-         biased evaluation, a hyperbola and a sliver. The third row of the picture shows bin planes, outcodes and a tile query.\n\n\
+         clip whose planes are moved outwards, the clip hyperbola, and a wall near the axis in several slices. The third row of\n\
+         the picture shows the planes between bins, the codes by which triangles are sorted into bins, and a tile query.\n\n\
          ![Clips and projections](pictures/volumetric-variants.png)\n\n\
          The picture shows the Mig for a viewer 40 degrees to the right and 25 degrees above. All views have the same exposure.\n\
          The command `pxpl5 volume compare --scene mig --out DIR` makes the picture. From top to bottom, the rows of the picture\n\

@@ -9,10 +9,10 @@ use std::fmt::{self, Debug};
 /// The directions that a picture shows. A display and its pipeline must have the same coverage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coverage {
-    /// The view of an eye, in the direction of the head.
+    /// A picture shows only the view of one eye in the direction of the head.
     View,
-    /// All directions around the eye, with depth. At scan-out, the display selects the view by the newest direction of
-    /// the head.
+    /// A picture shows all directions around the eye, with depth. At scan-out, the display selects the view by the
+    /// newest direction of the head.
     Surroundings,
 }
 

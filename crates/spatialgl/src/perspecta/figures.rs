@@ -56,7 +56,7 @@ fn cause(id: &str) -> &'static str {
         }
         "section 6" => {
             "The expected value holds for small triangles. The triangles of the Mig are large, so they \
-             lie on several bin planes and go into several bins."
+             cross several of the planes between bins and go into several bins."
         }
         _ => "",
     }
@@ -94,7 +94,7 @@ fn inputs(config: &PerspectaConfig) -> Vec<Definition> {
     vec![
         defined("P1", "slices strobed in a revolution", config.slices as f64, "slices"),
         defined("P6", "bits of a pixel on the GPU", GPU_PIXEL_BITS, "bits"),
-        defined("P13", "bin planes", bin_planes as f64, "planes"),
+        defined("P13", "planes between bins", bin_planes as f64, "planes"),
         defined("P14", "stages of binning: vertices, primitives", 2.0, "stages"),
         defined("P16", "side of a tile", f64::from(Tiling::PAPER.tile.unwrap_or(0)), "pixels"),
         defined("P18", "slices between stencil clears", f64::from(Tiling::PAPER.batch), "slices"),

@@ -281,7 +281,7 @@ struct Strobe {
     focal: f64,
     centre: [f64; 2],
     lambert: bool,
-    /// For each half of the screen (u < 0, u >= 0), true if the cutaway hides this half.
+    /// Flags of the two halves of the screen, left and right of the axis: true if the cutaway hides the half.
     cut: [bool; 2],
 }
 
@@ -318,8 +318,8 @@ impl Strobe {
         light.splat([self.centre[0] + right * scale, self.centre[1] - up * scale], levels, weight);
     }
 
-    /// Returns the absolute cosine |view . e_s| of the angle between the direction of view and the screen's normal, in
-    /// steps of 1/256.
+    /// Returns the absolute cosine of the angle between the direction of view and the screen's normal, in steps of
+    /// 1/256.
     fn facing(&self, to_eye: [f64; 3]) -> u64 {
         let length = dot(to_eye, to_eye).sqrt();
         (256.0 * (dot(self.normal, to_eye) / length).abs() + 0.5) as u64

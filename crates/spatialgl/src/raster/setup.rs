@@ -135,7 +135,7 @@ pub(super) struct Bounds {
 pub(super) struct Setup {
     /// Edges of the triangle. Edge i is opposite to corner i.
     pub(super) edges: [Edge; 3],
-    /// For each edge, the least value of its function for a sample inside: zero, or the smallest number above zero.
+    /// Least value of each edge's function for a sample inside the triangle: zero, or the smallest number above zero.
     pub(super) least: [f64; 3],
     /// Distances of the corners from the near plane.
     pub(super) near: [f64; 3],

@@ -57,7 +57,7 @@ impl Pendulum {
         TAU / self.natural_rad_per_s
     }
 
-    /// Returns the speed of the pendulum at its low point, m/s: 2 k sqrt(g arm) with k = sin(amplitude / 2). The
+    /// Returns the speed of the pendulum at its lowest point, m/s: 2 k sqrt(g arm) with k = sin(amplitude / 2). The
     /// formula follows from the conservation of energy.
     pub fn low_point_speed(&self) -> f64 {
         2.0 * self.modulus * self.natural_rad_per_s * self.arm_m

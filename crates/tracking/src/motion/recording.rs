@@ -147,7 +147,7 @@ impl Recording {
     ///
     /// # Errors
     ///
-    /// [`FileError`] with the expected and the found value. The number of a line is the number of the sample,
+    /// Returns [`FileError`] with the expected and the found value. The number of a line is the number of the sample,
     /// counted from 1.
     pub fn from_samples(samples: impl IntoIterator<Item = (f64, Pose)>) -> Result<Self, FileError> {
         read::given_samples(samples).map(Self::of_samples)

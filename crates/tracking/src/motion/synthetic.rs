@@ -72,7 +72,7 @@ pub struct Synthetic {
 }
 
 impl Synthetic {
-    /// Creates a random head motion. The same settings and seed give the same motion on every host.
+    /// Creates a random head motion. The same settings and seed give the same motion on every computer.
     ///
     /// # Errors
     ///

@@ -165,8 +165,8 @@ impl PredictorConfig {
         Ok(())
     }
 
-    /// Returns these settings as a parameter table. The table has only one baseline, so `baseline` is the value for
-    /// either position or orientation. A baseline is the number of reports between the two poses of a difference.
+    /// Returns these settings as a parameter table. `baseline` is the number of reports between the two poses whose
+    /// difference gives a speed. Position and orientation have one baseline each, but the table has only one.
     pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,

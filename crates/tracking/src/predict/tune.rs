@@ -83,7 +83,7 @@ pub fn training_seed(evaluated_seed: u64) -> u64 {
 ///
 /// The tuning uses 100 seconds of the motion's [`Motion::sibling`], or of the motion itself if it has no sibling. The
 /// tracker has no bias, metal or faults, and the seed of its noise differs from `evaluated_seed`. The same (motion,
-/// tracker, interval) gives the same result on every host.
+/// tracker, interval) gives the same result on every computer.
 ///
 /// # Errors
 ///

@@ -1,16 +1,16 @@
 use crate::tracker::TrackerReport;
 
-/// The method by which the host detects that the pendulum passes its low point, from the reported positions. TR94 does
-/// not state the method that was used.
+/// The method by which the host detects that the pendulum passes its lowest point, from the reported positions. TR94
+/// does not state the method that was used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detection {
-    /// The host detects that the pendulum has crossed the vertical. The first report after the low point shows the
+    /// The host detects that the pendulum has crossed the vertical. The first report after the lowest point shows the
     /// crossing, at most one report interval late. Noise of a millimetre has little effect, because the pendulum is
-    /// fastest at its low point.
+    /// fastest at its lowest point.
     Crossing,
     /// The host detects that the vertical velocity has turned from down to up. The velocity is a difference of two
-    /// reports, so the detection is half to one and a half report intervals late. The arc is flat at the low point, so
-    /// even 0.1 mm of noise gives wrong low points. This method suits trackers without noise.
+    /// reports, so the detection is half to one and a half report intervals late. The arc is flat at the lowest point,
+    /// so even 0.1 mm of noise causes wrong detections. This method suits trackers without noise.
     VelocitySign,
 }
 
@@ -27,8 +27,8 @@ impl Detection {
     }
 }
 
-/// A detector of the pendulum's low points in a sequence of reports. After each low point, the detector ignores further
-/// low points for a quarter of a swing, because noise could cause them.
+/// A detector of the pendulum's passes through its lowest point in a sequence of reports. After each detected pass, the
+/// detector ignores further passes for a quarter of a swing, because noise could cause them.
 #[derive(Clone, Debug)]
 pub(super) struct Detector {
     how: Detection,

@@ -3,7 +3,7 @@ use crate::time::{nearest_ps, span_s};
 use crate::tracker::TrackerModel;
 use pxpl5_sim::Statistics;
 
-/// The report by which the host detects that the pendulum has passed its low point.
+/// The report by which the host detects that the pendulum has passed its lowest point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LowPointReport {
     /// Time stamp of the report, ps: the instant at which its position was true.
@@ -12,25 +12,26 @@ pub struct LowPointReport {
     pub arrives_ps: u64,
 }
 
-/// One pass of the pendulum through its low point, measured by the time stamps of the emulated system.
+/// One pass of the pendulum through its lowest point, measured by the time stamps of the emulated system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InsidePass {
-    /// Tracker report by which the host detected the pendulum's low point.
+    /// Tracker report by which the host detected the pass.
     pub sighting: LowPointReport,
-    /// Instant at which the host started a frame because of the low point, ps.
+    /// Instant at which the host started a frame because of the pass, ps.
     pub started_ps: u64,
     /// Instant at which the pipeline counts this frame as shown, ps.
     pub shown_ps: u64,
 }
 
-/// One pass of the pendulum through its low point, measured on the oscilloscope without any time stamp of the system.
+/// One pass of the pendulum through its lowest point, measured on the oscilloscope without any time stamp of the
+/// system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutsidePass {
-    /// Instant at which the photodiode detects the pendulum at its low point, ps.
+    /// Instant at which the photodiode detects the pendulum at its lowest point, ps.
     pub low_point_ps: u64,
-    /// Instant at which the host switches its D/A output because the host has detected the low point, ps.
+    /// Instant at which the host switches its D/A output because the host has detected the pass, ps.
     pub dac_ps: u64,
-    /// Instant at which the photodiode on the screen detects the frame that the low point requested, ps.
+    /// Instant at which the photodiode on the screen detects the frame that was requested because of this pass, ps.
     pub light_ps: u64,
 }
 
@@ -43,8 +44,8 @@ fn over<P>(passes: &[P], span: impl Fn(&P) -> (u64, u64)) -> Statistics {
 /// time stamps ("inside").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// Latency from the pendulum's motion to the start of a frame. The outside latency begins at the low point. The
-    /// inside latency begins at the report's time stamp.
+    /// Latency from the pendulum's motion to the start of a frame. The outside latency begins when the pendulum passes
+    /// its lowest point. The inside latency begins at the report's time stamp.
     pub tracking: Statistics,
     /// Latency from the start of a frame to its display. The outside latency ends when the photodiode detects the
     /// frame. The inside latency ends when the pipeline counts the frame as shown.
@@ -158,21 +159,22 @@ impl Measurement {
     }
 }
 
-/// The traces of an oscilloscope with three channels: the pendulum's low point, the host's D/A output and the screen.
+/// The traces of an oscilloscope with three channels: the pendulum at its lowest point, the host's D/A output and the
+/// screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
-    /// Trace of the photodiode at the low point. The trace has one pulse for each pass of the pendulum, centred on the
-    /// instant of the low point.
+    /// Trace of the photodiode at the lowest point of the pendulum. The trace has one pulse for each pass of the
+    /// pendulum, centred on the instant of the lowest point.
     pub low_point: ScopeTrace,
-    /// Trace of the host's D/A output, with one step for each frame that a low point requested.
+    /// Trace of the host's D/A output, with one step for each frame that was requested because of a pass.
     pub dac: ScopeTrace,
     /// Trace of the photodiode on the screen, low for dark frames and high for light frames.
     pub screen: ScopeTrace,
 }
 
 impl Oscilloscope {
-    /// Creates an oscilloscope whose first channel has a pulse for every low point up to the last step of the host's
-    /// D/A output. A pulse lasts as long as the pendulum takes to cross the light beam.
+    /// Creates an oscilloscope whose first channel has a pulse for every pass of the pendulum up to the last step of
+    /// the host's D/A output. A pulse lasts as long as the pendulum takes to cross the light beam.
     #[must_use]
     pub fn of(rig: &PendulumRig, dac: ScopeTrace, screen: ScopeTrace) -> Self {
         let last_ps = dac.edges().last().map_or(0, |edge| edge.t_ps);
@@ -181,9 +183,9 @@ impl Oscilloscope {
         Self { low_point: ScopeTrace::pulsing("low point", low_points, pulse_ps), dac, screen }
     }
 
-    /// Finds the passes of the pendulum in the traces. Each step of the host's D/A output gives one pass. The low point
-    /// lies before this step. After this step, the screen changes to the same level (high for light frames). Returns
-    /// `None` if the screen lacks one of these changes.
+    /// Finds the passes of the pendulum in the traces. Each step of the host's D/A output gives one pass. The instant
+    /// of the lowest point lies before this step. After this step, the screen changes to the same level (high for light
+    /// frames). Returns `None` if the screen lacks one of these changes.
     #[must_use]
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {

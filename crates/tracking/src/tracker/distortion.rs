@@ -28,8 +28,9 @@ pub struct MagneticDistortion {
 }
 
 impl MagneticDistortion {
-    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. Without the
-    /// limit by `reach_m`, positions 1 m from the transmitter would be wrong by 20 mm (assumed).
+    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. The error
+    /// grows with the squared distance, but more slowly far from the transmitter (`reach_m`). With the squared distance
+    /// alone, the error 1 m from the transmitter would be 20 mm (assumed).
     pub fn floor_below(transmitter_m: DVec3) -> Self {
         Self::floor_below_by(&Tables::PAPERS, transmitter_m)
     }

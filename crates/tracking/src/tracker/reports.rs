@@ -10,7 +10,7 @@ use crate::rotation;
 impl TrackerModel {
     /// Returns the reports that the host receives while the head follows `motion`, in order of arrival. The sequence
     /// ends if a fault makes the tracker fail permanently. The same (model, motion, seed) gives the same sequence on
-    /// every host.
+    /// every computer.
     pub fn reports<M: Motion>(&self, motion: M, seed: u64) -> Reports<M> {
         Reports::new(self.clone(), motion, seed)
     }

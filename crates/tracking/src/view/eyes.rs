@@ -69,7 +69,7 @@ impl Hmd {
 
 /// Returns the rotation that moves a point onto the axis of view. The point lies `right` metres to the right and
 /// `ahead` metres ahead. The function uses square roots instead of angles, so its result has the same bits on every
-/// host.
+/// computer.
 fn turn_towards(right: f64, ahead: f64) -> DMat4 {
     let distance = (right * right + ahead * ahead).sqrt();
     let (sin, cos) = (right / distance, ahead / distance);

@@ -22,9 +22,9 @@ pub(super) struct ByCells {
     cells: Arc<[Vec<Cell>]>,
     falloff: Falloff,
     length_m: f64,
-    /// For each display memory, the position of the eye in the last update of the memory.
+    /// Position of the eye in the last update of each display memory.
     drawn_from: Vec<DVec3>,
-    /// For each display memory, true if its last update contained any structure.
+    /// Flag of each display memory: true if its last update contained any structure.
     held: Vec<bool>,
     has_moving: bool,
 }

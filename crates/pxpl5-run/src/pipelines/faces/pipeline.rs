@@ -63,8 +63,8 @@ pub struct FacePipeline {
     /// Otherwise each whole structure is in the fastest (most often updated) display memory among the memories of the
     /// cells that the structure touches.
     pub segmented: bool,
-    /// For warped cells: how the displacement of vertices decreases with the distance from the border to a display
-    /// memory with a lower update rate.
+    /// Rule by which, for warped cells, the displacement of vertices decreases with the distance from the border to a
+    /// display memory with a lower update rate.
     pub falloff: Falloff,
     /// Lens between display and eye.
     pub lens: FaceLens,

@@ -22,7 +22,7 @@ pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
     pub(super) notes: Arc<RequestedUpdates>,
-    /// For each structure of the scene, true if the structure moves by itself or with the head.
+    /// Flag of each structure of the scene: true if the structure moves by itself or with the head.
     pub(super) moving: Vec<bool>,
     /// Number of updates that were sent so far, for each display memory.
     sent: Vec<u64>,

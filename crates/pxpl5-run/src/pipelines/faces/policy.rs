@@ -11,8 +11,8 @@ pub enum FacePolicy {
     /// Each structure is drawn into the display memory of its cell. The memory depends on the cell's distance from the
     /// user's cell (CPR05).
     Cells,
-    /// Like [`FacePolicy::Cells`], but vertices are moved so that images of adjacent display memories meet at their
-    /// borders.
+    /// Structures are assigned as under [`FacePolicy::Cells`], but vertices are moved so that images of adjacent
+    /// display memories meet at their borders.
     CellsWarped,
 }
 

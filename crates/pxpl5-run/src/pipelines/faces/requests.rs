@@ -17,7 +17,7 @@ pub struct RequestedUpdate {
     pub memory: usize,
     /// Time at which the policy decided that the display memory must be redrawn.
     pub due_at: Time,
-    /// For each structure of the scene, true if the display memory contains the structure.
+    /// Flag of each structure of the scene: true if the display memory contains the structure.
     pub structures: Arc<[bool]>,
 }
 

@@ -1,4 +1,4 @@
-//! Reading of files that a glTF file refers to, such as buffers, from the host's disk.
+//! Reading of files that a glTF file refers to, such as buffers, from the disk of this computer.
 #![cfg(feature = "files")]
 
 use std::fs;
