@@ -61,8 +61,8 @@ pub trait Drawn: Clone + 'static {
     /// Returns the destination of a region of the picture of `eye`: ring port, buffer, and place in the picture.
     fn target(&self, sent: &Self::Sent, eye: u64, region: RegionId) -> CopyTarget;
 
-    /// Returns the eye of a frame buffer, found by the ring port `port`. Returns `None` if no frame buffer has this
-    /// port.
+    /// Returns the eye of a frame buffer, found by the ring port `port`. Drawings of one eye have eye 0. Returns `None`
+    /// if no frame buffer has this port.
     fn eye_at(&self, port: NodeId) -> Option<u64>;
 
     /// Returns the number of swaps of the frame buffers so far. When the number increases, the master may begin new

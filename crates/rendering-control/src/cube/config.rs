@@ -63,8 +63,8 @@ impl Drawn for Faces {
         }
     }
 
-    fn eye_at(&self, _: NodeId) -> Option<u64> {
-        Some(0)
+    fn eye_at(&self, port: NodeId) -> Option<u64> {
+        self.memories.contains(&port).then_some(0)
     }
 
     fn swaps(&self, gp: &Gp) -> u64 {
