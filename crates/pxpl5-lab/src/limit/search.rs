@@ -209,7 +209,8 @@ pub fn about<E>(ceiling: u32, reached: impl FnMut(u32) -> Result<bool, E>) -> Re
 }
 
 /// Returns the numbers of triangles to try below `limit`: consecutive numbers directly below `limit`, the numbers in
-/// `doubtful` (which may miss the goal according to the hints), and five numbers whose distances from `limit` double.
+/// `doubtful`, and five numbers whose distances from `limit` double. According to the hints, doubtful numbers may miss
+/// the goal.
 fn below(limit: u32, doubtful: &[u32]) -> impl Iterator<Item = u32> {
     let in_a_row = in_a_row(limit);
     // All sizes directly below, from the largest down.
