@@ -144,7 +144,11 @@ fn what_is_wrong_is_named_with_what_was_expected_and_found() {
             2,
             vec!["arp.face_texels", "a multiple of 128", "found 500"],
         ),
-        (vec!["arp", "run", "--policy", "objekts"], 2, vec!["--policy", "full, objects or cells", "found `objekts`"]),
+        (
+            vec!["arp", "run", "--policy", "objekts"],
+            2,
+            vec!["--policy", "--policy: expected objects, full or cells", "found `objekts`"],
+        ),
         (vec!["arp", "run", "--warp", "curved"], 2, vec!["--warp", "linear, smoothstep or step", "found `curved`"]),
         (vec!["arp", "run", "--lens", "radial:-0.3"], 2, vec!["arp.lens", "expected"]),
         (vec!["arp", "run", "--set", "priority.threshold=2"], 2, vec!["priority.threshold", "2px", "found \"2\""]),
