@@ -183,7 +183,7 @@ pub use slats::CopySchedule;
 /// assert_eq!(Pixels::Lazy.to_string(), "lazy");
 /// assert_eq!("statistics".parse(), Ok(Keep::Statistics));
 /// let error = "cycles".parse::<Level>().expect_err("no level");
-/// assert_eq!(error.to_string(), "expected analytic, transaction or cycle, found `cycles`");
+/// assert_eq!(error.to_string(), "expected cycle, analytic or transaction, found `cycles`");
 /// ```
 pub use pxpl5_run::{Keep, Level, Pixels};
 

@@ -173,5 +173,5 @@ fn a_photodiode_below_the_screen_is_refused() {
     let mut rig = Rig::assumed(TrackerConfig::ideal());
     rig.rig.photodiode_line = 240;
     let error = rig.measure(&MachineConfig::small_hmd(), named("slats")).expect_err("there are 240 lines");
-    assert!(error.to_string().contains("240 lines"), "{error}");
+    assert!(error.to_string().contains("from 0 to 239, found 240"), "{error}");
 }

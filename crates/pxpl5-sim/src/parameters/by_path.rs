@@ -113,7 +113,7 @@ pub fn choose<T: Copy>(field: &mut T, all: &[(&'static str, T)], text: &str) -> 
 /// let error = picture.set("screen.lines", "0", "--set").expect_err("too few");
 /// assert_eq!(error.to_string(), "--set: screen.lines: expected a whole number of 1 to 4096 lines, found 0");
 /// let error = picture.set("lit", "of", "--set").expect_err("no such name");
-/// assert_eq!(error.to_string(), "--set: lit: expected on or off, found `of`");
+/// assert_eq!(error.to_string(), "--set: lit: expected off or on, found `of`");
 /// # Ok::<(), pxpl5_sim::parameters::SettingError>(())
 /// ```
 pub trait PathSettings: Sized + 'static {
