@@ -14,9 +14,9 @@ fn an_optimization_is_parsed_from_the_name_that_it_prints() {
         // Names on the command line consist of small letters and hyphens.
         assert!(saving.name().bytes().all(|b| b == b'-' || b.is_ascii_lowercase()));
     }
-    let error = "sleep".parse::<Optimization>().expect_err("no optimization");
+    let error = "idle-board".parse::<Optimization>().expect_err("no optimization");
     let [first @ .., last] = Optimization::ALL.map(Optimization::name);
-    assert_eq!(error.to_string(), format!("expected {} or {last}, found `sleep`", first.join(", ")));
+    assert_eq!(error.to_string(), format!("expected {} or {last}, found `idle-board`", first.join(", ")));
 }
 
 /// The boards' clock of 40 MHz has forty edges per microsecond.
