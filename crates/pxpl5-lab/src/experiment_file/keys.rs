@@ -234,10 +234,9 @@ impl ExperimentFile {
 }
 
 /// Former names of keys, each with the current name. The next version accepts the current names only.
-const RENAMED: [(&str, &str); 7] = [
+const RENAMED: [(&str, &str); 6] = [
     ("head.display", "head.raster"),
     ("head.judge_at", "head.evaluate_at"),
-    ("display.preset", "display"),
     ("motion.path", "head.path"),
     ("motion.sway", "head.sway"),
     ("motion.distance", "head.distance"),
@@ -276,8 +275,8 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
 /// Returns the full path of a key, or `None` for an unknown key. The prefix `machine.` is optional for a parameter of
 /// the machine.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
-    // Former names of keys are still accepted.
-    let path = renamed(path);
+    // A table `[display]` names its display with the key `preset`. Former names of keys are still accepted.
+    let path = if path == "display.preset" { "display" } else { renamed(path) };
     if is_key(registry, path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
         return Some(path.to_owned());
     }
