@@ -151,8 +151,8 @@ class PipelineRow(TypedDict):
     has_closed_form: bool
 
 
-class VolumeFigureRow(TypedDict):
-    """A published figure beside the value of the model."""
+class PublishedFigure(TypedDict):
+    """The values of a published figure that rows of tables and dictionaries share."""
 
     id: str
     statement: str
@@ -162,18 +162,23 @@ class VolumeFigureRow(TypedDict):
     published: float | None
     origin: str
     spread: float | None
-    #: Ends of the interval of values that agree with the paper, as JSON.
-    accepted: str | None
     simulated: float | None
     unit: str
-    unprinted: str | None
     error_percent: float | None
     is_met: bool
     provenance: str
     analytic: float | None
+    cause: str
+
+
+class VolumeFigureRow(PublishedFigure):
+    """A published figure beside the value of the model."""
+
+    #: Ends of the interval of values that agree with the paper, as JSON.
+    accepted: str | None
+    unprinted: str | None
     #: Ends of the interval over the open parameters, as JSON.
     interval: str | None
-    cause: str
     #: Further numbers as JSON.
     details: str
 

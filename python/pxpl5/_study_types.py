@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TypedDict
 
 from ._report_types import BudgetData, HmdData, PercentilesData, StatisticsData, WindowData
+from ._rows import PublishedFigure
 
 
 class ParameterData(TypedDict):
@@ -62,27 +63,12 @@ class FittedData(TypedDict, total=False):
     fitted: str
 
 
-class VolumeFigureData(FittedData):
+class VolumeFigureData(PublishedFigure, FittedData):
     """A published figure beside the value of the model."""
 
-    id: str
-    statement: str
-    source: str
-    experiment: str
-    scene: str | None
-    published: float | None
-    origin: str
-    spread: float | None
     accepted: list[float] | None
-    simulated: float | None
-    unit: str
     unprinted: list[float] | None
-    error_percent: float | None
-    is_met: bool
-    provenance: str
-    analytic: float | None
     interval: list[float] | None
-    cause: str
     details: list[DetailData]
 
 

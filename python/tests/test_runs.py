@@ -201,15 +201,24 @@ except KeyboardInterrupt:
 """
 
 
-def test_ctrl_c_ends_a_comparison_and_leaves_its_folder_free(tmp_path: Path) -> None:
-    process = subprocess.Popen([sys.executable, "-c", COMPARED], stdout=subprocess.PIPE, text=True, cwd=tmp_path)
+def interrupted(program: str, folder: Path) -> tuple[float, str]:
+    """Runs a program in a folder and sends Ctrl-C after 2 s.
+
+    Returns the seconds from Ctrl-C to the program's line "interrupted", and the program's last line.
+    """
+    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, cwd=folder)
     assert process.stdout is not None and process.stdout.readline() == "begun\n"
     time.sleep(2.0)
     process.send_signal(signal.SIGINT)
     sent_s = time.monotonic()
     out, _ = process.communicate(timeout=60)
-    first, second = out.splitlines()
-    assert float(first.split()[1]) - sent_s < 2 and "seeds was [1, 2, 3, 4, 5], expected [1, 2]" in second
+    first, last = out.splitlines()
+    return float(first.split()[1]) - sent_s, last
+
+
+def test_ctrl_c_ends_a_comparison_and_leaves_its_folder_free(tmp_path: Path) -> None:
+    seconds, second = interrupted(COMPARED, tmp_path)
+    assert seconds < 2 and "seeds was [1, 2, 3, 4, 5], expected [1, 2]" in second
     # Rows of stopped runs are not stored.
     assert len((tmp_path / "out" / "rows" / "rows.jsonl").read_text().splitlines()) == 1
 
@@ -242,15 +251,9 @@ for _ in range(20):
         "pxpl5.rig('rendering-control', passes=2_000)",
     ],
 )
-def test_ctrl_c_ends_studies_and_their_threads(call: str) -> None:
-    process = subprocess.Popen([sys.executable, "-c", STUDY.format(call=call)], stdout=subprocess.PIPE, text=True)
-    assert process.stdout is not None and process.stdout.readline() == "begun\n"
-    time.sleep(2.0)
-    process.send_signal(signal.SIGINT)
-    sent_s = time.monotonic()
-    out, _ = process.communicate(timeout=60)
-    first, second = out.splitlines()
-    assert float(first.split()[1]) - sent_s < 0.5
+def test_ctrl_c_ends_studies_and_their_threads(call: str, tmp_path: Path) -> None:
+    seconds, second = interrupted(STUDY.format(call=call), tmp_path)
+    assert seconds < 0.5
     assert second == "idle"
 
 

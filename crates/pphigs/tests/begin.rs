@@ -1,7 +1,10 @@
 //! Tests of the i860 code that begins a pass and applies edits. The parameter blocks and matrices must equal the blocks
 //! and matrices of the native firmware.
 
+mod numbers;
+
 use glam::{Mat4, Quat, Vec3};
+use numbers::Numbers;
 use pphigs::{
     DisplayList, DisplayStructure, EditWork, EyeView, FrameView, ModelEdit, ModelFrame, Picture, PlacedStructure,
     RegionBinning, Shading, Share, place_all,
@@ -23,18 +26,7 @@ fn board() -> Processor {
     Processor::new(NodeId(1), 2 << 20, CodeVersion::Compiled, i860::Config::cycle())
 }
 
-struct Numbers(SplitMix64);
-
 impl Numbers {
-    /// Returns a number from -1 to 1.
-    fn next(&mut self) -> f32 {
-        2.0 * self.0.unit() - 1.0
-    }
-
-    fn vector(&mut self, size: f32) -> Vec3 {
-        Vec3::new(self.next(), self.next(), self.next()) * size
-    }
-
     fn rigid(&mut self) -> Mat4 {
         let turn = Quat::from_scaled_axis(self.vector(3.0));
         Mat4::from_rotation_translation(turn, self.vector(20.0))

@@ -1,7 +1,10 @@
 //! Tests of the i860 code for six views around an eye. Each view's words and bins must equal the words and bins of the
 //! native firmware. The number of primitives that are transformed for a view outside which they lie must be small.
 
+mod numbers;
+
 use glam::{Mat4, Quat, Vec3, Vec4};
+use numbers::Numbers;
 use pphigs::{
     BinHandoffWork, CubeTransform, CubeTransformOutput, DisplayList, DisplayStructure, EyeView, FrameView, ModelEdit,
     ModelFrame, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages,
@@ -15,18 +18,7 @@ use std::sync::Arc;
 
 const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
 
-struct Numbers(SplitMix64);
-
 impl Numbers {
-    /// Returns a number from -1 to 1.
-    fn next(&mut self) -> f32 {
-        2.0 * self.0.unit() - 1.0
-    }
-
-    fn vector(&mut self, size: f32) -> Vec3 {
-        Vec3::new(self.next(), self.next(), self.next()) * size
-    }
-
     /// Returns a position near or far from the eye.
     fn place(&mut self) -> Vec3 {
         self.vector(1.0).normalize_or(Vec3::X) * 20.0_f32.powf(0.9 * self.next())

@@ -1,6 +1,9 @@
 //! Tests of spheres as i860 code on a board. The words and bins must equal the words and bins of the native firmware.
 
+mod numbers;
+
 use glam::{Mat4, Quat, Vec3};
+use numbers::Numbers;
 use pphigs::{
     DisplayList, DisplayStructure, EyeView, FrameView, ModelEdit, ModelFrame, Pass, Picture, RegionBinning,
     RegionEnvelope, Shading, Share, region_messages,
@@ -12,18 +15,7 @@ use pxpl5_sim::SplitMix64;
 use pxpl5_wire::{FieldParity, Lines, NodeId, RegionGrid, RegionId, ViewNumber, Word};
 use std::sync::Arc;
 
-struct Numbers(SplitMix64);
-
 impl Numbers {
-    /// Returns a number from -1 to 1.
-    fn next(&mut self) -> f32 {
-        2.0 * self.0.unit() - 1.0
-    }
-
-    fn vector(&mut self, size: f32) -> Vec3 {
-        Vec3::new(self.next(), self.next(), self.next()) * size
-    }
-
     fn colour(&mut self) -> [u8; 3] {
         [0; 3].map(|_| self.0.bits() as u8)
     }

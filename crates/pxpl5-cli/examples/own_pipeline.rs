@@ -5,6 +5,7 @@
 //! `cargo run --release -p pxpl5-cli --example own_pipeline -- run --pipeline one-at-a-time --scene mig`.
 
 // ANCHOR: imports
+use pxpl5_cli::pxpl5::device::Display;
 use pxpl5_cli::pxpl5::firmware::{
     Body, CopyContent, CopyOrder, CopyPath, CopyTarget, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture,
     PictureNumber, Priority, RegionBinning, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport,
@@ -26,14 +27,16 @@ struct OneAtATime {
 }
 
 impl OneAtATime {
-    const fn picture(&self) -> Picture {
-        Picture {
-            viewport: Viewport::FRAME,
+    /// Returns a picture with the size of the display's first surface, such as 640 x 480 pixels.
+    fn picture(&self, display: &dyn Display) -> Result<Picture, SettingError> {
+        let grid = display.surfaces()[0].grid();
+        Ok(Picture {
+            viewport: Viewport::new(grid, Lines::Frame)?,
             shading: self.shading,
             binning: RegionBinning::Touched,
-            layout: Layout::rendering_control_phong(),
+            layout: self.layout(),
             pixels: true,
-        }
+        })
     }
 }
 // ANCHOR_END: pipeline
@@ -108,7 +111,7 @@ impl Pipeline for OneAtATime {
     }
 
     fn layout(&self) -> Layout {
-        self.picture().layout
+        Layout::rendering_control_phong()
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), SettingError> {
@@ -117,7 +120,8 @@ impl Pipeline for OneAtATime {
         let node = ports.gps[0];
         let gp = machine.processor(node, Priority::Foreground);
         let view = move |number, time| views(number, time);
-        let program = firmware(gp, ports, Arc::clone(&setup.list), self.picture(), view);
+        let picture = self.picture(machine.record().display())?;
+        let program = firmware(gp, ports, Arc::clone(&setup.list), picture, view);
         machine.load(node, Priority::Foreground, Box::pin(program));
         Ok(())
     }

@@ -71,8 +71,8 @@ pub struct Figures {
     pub groups: Vec<FigureGroup>,
 }
 
-/// Published figures under other assumptions than the assumptions of [`Figures`]. Only the document ACCURACY.md needs
-/// them.
+/// Published figures under other assumptions than the assumptions of [`Figures`]. The document ACCURACY.md has all of
+/// them. The JSON of the command has the first list.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Alternatives {
     /// Rows of the main table, measured with the times of executed i860 code, without intervals.

@@ -20,11 +20,12 @@ use crate::pipeline::PictureTimes;
 use crate::registry::PipelineEntry;
 use pphigs::Shading;
 use pxpl5_framebuffer::{NtscDisplay, Video};
+use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Mark, Stage};
 use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError, names};
-use pxpl5_wire::{PictureNumber, RegionGrid, ViewNumber};
+use pxpl5_wire::{Lines, PictureNumber, RegionGrid, ViewNumber};
 use std::any::Any;
 
 pub(crate) fn entries() -> Vec<PipelineEntry> {
@@ -45,6 +46,12 @@ fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     let what = format!("{blocks} blocks of {} bits (renderer.kept_bits) for a finished region", renderer.kept_bits);
     let expected = format!("{needed} at least, room for {what}");
     Err(SettingError::value("renderer.backing_bits", expected, found))
+}
+
+/// Returns the viewport of a picture that fills the first surface of the machine's display.
+fn whole_picture(record: &Record) -> Result<Viewport, SettingError> {
+    let grid = record.display().surfaces().first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
+    Viewport::new(grid, Lines::Frame)
 }
 
 /// Returns the first display of the machine. Returns an error unless the display is interlaced and has at least 640 x

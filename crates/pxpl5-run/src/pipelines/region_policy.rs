@@ -6,8 +6,8 @@
 
 use crate::picture_ends::PictureResult;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
+use crate::pipelines::{shading_value, whole_picture};
 use pphigs::{DisplayList, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages};
-use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Fault, Gp, Priority, Stage};
 use pxpl5_machine::{Machine, Ports, Record};
 use pxpl5_renderer::Layout;
@@ -114,16 +114,6 @@ impl PolicyPipeline {
     pub const fn new(policy: Arc<dyn RegionPolicy>, shading: Shading) -> Self {
         Self { policy, shading }
     }
-
-    const fn picture(&self) -> Picture {
-        Picture {
-            viewport: Viewport::FRAME,
-            shading: self.shading,
-            binning: RegionBinning::Touched,
-            layout: Layout::rendering_control_phong(),
-            pixels: true,
-        }
-    }
 }
 
 struct Drawing {
@@ -216,11 +206,7 @@ impl Pipeline for PolicyPipeline {
     }
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
-        let shading = if self.shading == Shading::Phong { "phong" } else { "gouraud" };
-        // The value of a key is a number or a name that this program defines. So a number represents the policy's name.
-        let digits = crate::Fingerprint::of(self.policy.name().as_bytes()).to_string();
-        let number = digits.get(..15).and_then(|digits| u64::from_str_radix(digits, 16).ok());
-        vec![("shading", KeyValue::Name(shading)), ("policy", KeyValue::Whole(number.unwrap_or_default()))]
+        vec![("shading", shading_value(self.shading)), ("policy", KeyValue::Text(self.policy.name().into()))]
     }
 
     fn eyes(&self) -> usize {
@@ -228,7 +214,7 @@ impl Pipeline for PolicyPipeline {
     }
 
     fn layout(&self) -> Layout {
-        self.picture().layout
+        Layout::rendering_control_phong()
     }
 
     fn shading(&self) -> Shading {
@@ -240,7 +226,13 @@ impl Pipeline for PolicyPipeline {
         let views = Arc::clone(&setup.views);
         let node = ports.gps[0];
         let gp = machine.processor(node, Priority::Foreground);
-        let picture = Picture { pixels: setup.pixels, ..self.picture() };
+        let picture = Picture {
+            viewport: whole_picture(machine.record())?,
+            shading: self.shading,
+            binning: RegionBinning::Touched,
+            layout: self.layout(),
+            pixels: setup.pixels,
+        };
         let drawing = Drawing { ports, list: Arc::clone(&setup.list), picture, policy: Arc::clone(&self.policy) };
         let program = firmware(gp, drawing, move |number, time| views(number, time));
         machine.load(node, Priority::Foreground, Box::pin(program));

@@ -1,19 +1,18 @@
 //! Rendering Control on the emulated machine.
 
-use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in};
+use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in, whole_picture};
 use crate::keys::PipelineSettings;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
 use pphigs::{Picture, RegionBinning, Shading};
-use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::parameters::{Key, KeyValue, KeyValues, SettingError};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::Surface;
-use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
 use rendering_control::{Frames, RenderingControlConfig, frames, host, master, slave};
 use std::sync::Arc;
 
@@ -80,13 +79,6 @@ impl RenderingControl {
         Self { mono: true, ..Self::stereo() }
     }
 
-    /// Returns the layout of an eye's picture, or an error if the display does not suit the pipeline.
-    fn drawn(self, surfaces: &[Surface], pixels: bool) -> Result<Picture, SettingError> {
-        let grid = surfaces.first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
-        let viewport = Viewport::new(grid, Lines::Frame)?;
-        Ok(Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels })
-    }
-
     fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig<Frames>, SettingError> {
         let ports = machine.ports();
         // The first GP is the master, and all others are slaves.
@@ -96,7 +88,13 @@ impl RenderingControl {
         }
         // A finished region takes one block of the backing store.
         region_has_room(machine.record(), 1)?;
-        let picture = self.drawn(machine.record().display().surfaces(), pixels)?;
+        let picture = Picture {
+            viewport: whole_picture(machine.record())?,
+            shading: self.shading,
+            binning: RegionBinning::Touched,
+            layout: self.layout(),
+            pixels,
+        };
         Ok(RenderingControlConfig {
             host: ports.host,
             master: *master,
