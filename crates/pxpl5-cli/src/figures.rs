@@ -62,6 +62,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let figures = run_all_with(&bench, |done, of| advance(&bar, done, of)).map_err(CliError::failure);
     bar.finish_and_clear();
     let figures = figures?;
+    chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
     // Only the document and JSON have the figures under other assumptions.
     if args.json || args.write.is_some() || args.check.is_some() {
         let bar = progress(0, "figures under other assumptions", false);
@@ -76,7 +77,6 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
             return print(&json_text(&figures, &alternatives));
         }
     }
-    chart_file.map(|file| file.write(chart(&figures.rows).svg().as_bytes())).transpose()?;
     print(&text(&figures))
 }
 

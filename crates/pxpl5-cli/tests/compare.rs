@@ -189,7 +189,7 @@ fn a_folder_gets_the_tables_the_drawings_of_the_run_and_the_four_pictures() {
 fn what_is_wrong_with_an_option_is_said_and_the_exit_code_is_2() {
     for (arguments, expected) in [
         (["--head", "pan:fast"], "such as pan:200"),
-        (["--head", "dance"], "expected scene, still, pan:DEG_PER_S"),
+        (["--head", "dance"], "expected still, pan:DEG_PER_S"),
         (["--tracker", "sonar"], "expected optical, fastrak"),
         (["--predict", "oracle"], "expected none, velocity"),
         (["--fields", "3"], "found 3"),

@@ -19,7 +19,7 @@ use tracking::tracker::TrackerConfig;
 const FASTEST_PAN: f64 = 10_000.0;
 
 /// Forms of all motions that [`motion`] and [`walk`] accept, for help texts and errors.
-pub const MOTIONS: &str = "scene, still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
+pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
                            walk:M_PER_S:SEED) along the scene's path, or a recording (FILE.csv, FILE.txt, FILE.tum or FILE.jsonl)";
 
 /// Maximum speed of the motions `slide` and `walk` in metres per second.
@@ -121,14 +121,10 @@ pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + S
             let seed = seed.parse().map_err(|_| number(seed, "a seed of 0 to 2^64 - 1, such as synthetic:1"))?;
             Arc::new(Synthetic::recorded_use(seed))
         }
-        ("scene", "") => {
-            let reason = "`scene` is the motion in front of a scene, and there is no scene here";
-            return Err(SettingError::combination(reason));
-        }
         ("walk", _) => return Err(no_path(text)),
         _ if is_recording(text) => Arc::new(recording(Path::new(text), replay)?),
         _ => {
-            return Err(unknown("motion", text, listed("scene still pan slide sine pendulum synthetic walk"), MOTIONS));
+            return Err(unknown("motion", text, listed("still pan slide sine pendulum synthetic walk"), MOTIONS));
         }
     })
 }

@@ -4,8 +4,7 @@
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
-use tracking::motion::Motion;
-use tracking::{Pose, SettingSink};
+use tracking::Pose;
 
 use crate::config::{FIT_DISTANCE_RADII, WHOLE_DISTANCE_RADII};
 use crate::sway::{self, Sway, Swing};
@@ -159,23 +158,6 @@ impl HeadMotion {
         let (eye, gaze) = self.path.eye_and_gaze(seconds, &swing);
         let exact = Pose { position: eye, orientation: (gaze * swing.gaze()).normalize() };
         exact.in_single_precision()
-    }
-}
-
-impl Motion for HeadMotion {
-    fn pose(&self, t_ps: u64) -> Pose {
-        Self::pose(self, t_ps)
-    }
-
-    fn identify(&self, settings: &mut SettingSink) {
-        settings("motion", &"scene");
-        settings("motion.path", &format_args!("{:?}", self.path));
-        settings("motion.sway", &format_args!("{:?}", self.sway));
-    }
-
-    /// Returns the same path with other sway, or `None` without sway.
-    fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
-        (self.sway.scale > 0.0).then(|| Box::new(self.with_seed(!self.sway.seed)) as _)
     }
 }
 

@@ -32,8 +32,6 @@ impl PartialEq for HeadChoice {
     }
 }
 
-/// Name of the motion in front of the scene, as a motion of a tracked head.
-const SCENE: &str = "scene";
 const TRACKER: &str = "optical";
 const PREDICT: &str = "kalman";
 
@@ -59,7 +57,7 @@ impl HeadChoice {
         let tracker_name = file.text("head.tracker")?.unwrap_or(TRACKER).to_owned();
         let predict = file.text("head.predict")?.unwrap_or(PREDICT).to_owned();
         // Build motion, tracker and predictor with the experiment's numbers.
-        let moving = moving(file, &motion_name, &replay, seed)?;
+        let moving = moving(file, &motion_name, &replay)?;
         let tables = tracking_numbers::read(file, &tracker_name)?;
         let by_name = tracker_by(&tables, &tracker_name);
         let (of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
@@ -139,21 +137,16 @@ impl HeadChoice {
 /// Prefix of the keys that assign the columns of a recording's file.
 pub(super) const COLUMNS: &str = "head.columns.";
 
-/// Builds the head motion that is called `name`. The motion `scene` is the motion in front of the scene, with `seed`
-/// for its sway. The motion `walk` follows the path of the scene.
+/// Builds the head motion that is called `name`. The motion `walk` follows the path of the scene.
 fn moving(
     file: &ExperimentFile,
     name: &str,
     replay: &Replay,
-    seed: u64,
 ) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, SettingError> {
     // A recording in memory has priority over a file.
     if let Some(contents) = file.contents(name).filter(|_| is_recording(name)) {
         let recording = recording_of(&**contents, name, replay);
         return Ok(Arc::new(recording.map_err(|error| refused(file, "head.motion", &error))?));
-    }
-    if name == SCENE {
-        return Ok(Arc::new(SceneChoice::read(file)?.load()?.motion().with_seed(seed)));
     }
     if !is_walk(name) {
         return replayed(name, replay).map_err(|error| refused(file, "head.motion", &error));

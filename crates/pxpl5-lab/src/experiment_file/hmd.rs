@@ -87,6 +87,7 @@ pub(super) const KEYS: [Number; 6] = [
     ),
 ];
 
+const NEAR: &str = "hmd.near";
 const FAR: &str = "hmd.far";
 const LENS: &str = "hmd.lens";
 
@@ -109,11 +110,11 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
     // Each number is within its range, so only the lens and the order of the planes can be wrong.
     Hmd::new(config).map_err(|error| {
         let is_lens = &*error.name == "lens_distortion";
-        let setting = if is_lens { file.get(LENS) } else { file.get(FAR).or_else(|| file.get("hmd.near")) };
-        match setting {
-            Some(setting) if is_lens => wrong(LENS, setting, &error.expected),
-            Some(setting) => wrong(FAR, setting, "a number above hmd.near, at most 1e9"),
-            None => error,
+        match (file.get(LENS).filter(|_| is_lens), file.get(FAR), file.get(NEAR)) {
+            (Some(lens), ..) => wrong(LENS, lens, &error.expected),
+            (None, Some(far), _) => wrong(FAR, far, "a number above hmd.near, at most 1e9"),
+            (None, None, Some(near)) => wrong(NEAR, near, &format!("a number below hmd.far, {}", config.far_m)),
+            (None, None, None) => error,
         }
     })
 }

@@ -74,7 +74,7 @@ const COMMON: &[Key] = &[
         ..Key::new(
             "head.distance",
             "distance from the scene's centre, for still, look and orbit",
-            KeyValues::Real(0.0, 1e9),
+            KeyValues::Real(1e-9, 1e9),
         )
     },
     Key {

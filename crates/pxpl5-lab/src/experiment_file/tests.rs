@@ -157,16 +157,6 @@ fn former_names_of_keys_mean_the_same_and_are_noted() {
 }
 
 #[test]
-fn a_tracked_head_can_follow_the_motion_in_front_of_the_scene() {
-    let plan = plan(&format!("{RC}seed = 5\nhead.path = \"orbit\"\nhead.sway = 1\nhead.motion = \"scene\"\n"));
-    let own = plan.load_scene().expect("built in").motion().with_seed(5);
-    let head = plan.head.as_ref().expect("a head").head();
-    for time_ps in [0, 700_000_000_000] {
-        assert_eq!(head.motion().pose(time_ps), own.pose(time_ps));
-    }
-}
-
-#[test]
 fn a_walk_goes_along_the_path_of_the_scene_and_begins_where_the_scene_does() {
     let text = "pipeline = \"slats\"\nscene = \"gallery\"\nhead.motion = \"walk:1\"\n";
     let walking = plan(text);

@@ -280,7 +280,7 @@ const COLUMNS: [TableColumn<FigureRow>; 8] = [
 fn misses(text: &mut String, rows: &[FigureRow]) {
     let _ = writeln!(text, "\n## Misses and their causes");
     for row in rows.iter().filter(|row| !row.is_met) {
-        let cause = if row.cause.is_empty() { "The cause is not known" } else { row.cause };
+        let cause = row.cause_or_unknown().trim_end_matches('.');
         let out = if row.is_out_of_reach() {
             " This is a modelling error, because no allowed parameter values reproduce the figure."
         } else {

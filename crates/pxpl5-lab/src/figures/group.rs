@@ -73,7 +73,7 @@ impl FigureGroup {
         );
         // Each miss is followed by its known cause.
         for row in missed {
-            let _ = writeln!(text, "\n- Row **{}** is a miss. {}", row.id, row.cause);
+            let _ = writeln!(text, "\n- Row **{}** is a miss. {}", row.id, row.cause_or_unknown());
         }
         // The experiments come last, for readers who want to repeat them.
         text + "\n" + &table(&[NUMBER, EXPERIMENT, DETAILS], &self.rows)

@@ -180,6 +180,8 @@ impl OverQuery {
             search.reaches(number);
             search.report(&mut progress);
         }
+        // The values after a stop were not tried.
+        self.stop.check()?;
         let reached = search.trials.iter().filter(|(_, trial)| trial.reached).map(|(number, _)| *number).max();
         let Some(inside) = reached else { return search.none() };
         // Towards smaller values, then towards greater ones.
@@ -202,7 +204,6 @@ impl OverQuery {
             }
             *end = Some((hit, miss));
         }
-        // The values after a stop were not tried.
         self.stop.check()?;
         let [least, most] = ends;
         let miss = least.or(most).map(|(_, miss)| miss);

@@ -1,6 +1,6 @@
 //! Access to the parameters of several tables, and to named choices, by path.
 
-use crate::parameters::{Entry, ParameterInfo, ParameterTable, SettingError, Value, find_named};
+use crate::parameters::{Entry, ParameterInfo, ParameterTable, SettingError, Value, find_named, unknown_parameter};
 use serde::Serialize;
 
 /// A parameter of one of several tables: path, metadata and value.
@@ -191,7 +191,9 @@ pub fn assignment_of<'a>(assignment: &'a str, place: &str) -> Result<(&'a str, &
 }
 
 fn set_number(table: &mut dyn ParameterTable, name: &str, path: &str, text: &str) -> Result<(), SettingError> {
-    let Some(entry) = table.entries().into_iter().find(|entry| entry.info.name == name) else { return Ok(()) };
+    let Some(entry) = table.entries().into_iter().find(|entry| entry.info.name == name) else {
+        return Err(unknown_parameter(name, table.infos()));
+    };
     let expected = || SettingError::value(path, entry.info.expected(), text);
     // A whole number is also valid for a real setting, but not the reverse.
     let is_real = matches!(entry.value, Value::Real(_));

@@ -65,8 +65,8 @@ impl HmdConfig {
         HeadMountedView { eye_separation_m, horizontal_fov_deg, width_px, height_px, near_m, far_m }.check()?;
         SettingError::require(far_m > near_m, "far_m", "above near_m, at most 1e9", far_m)?;
         if let Some(metres) = self.convergence_m {
-            let expected = "0.1 or more, or none for parallel axes";
-            SettingError::require((0.1..f64::INFINITY).contains(&metres), "convergence_m", expected, metres)?;
+            let expected = "0.1 to 1e6, or none for parallel axes";
+            SettingError::require((0.1..=1e6).contains(&metres), "convergence_m", expected, metres)?;
         }
         let lens = "0: the model shows flat pictures without a lens";
         SettingError::require(self.lens_distortion == 0.0, "lens_distortion", lens, self.lens_distortion)
