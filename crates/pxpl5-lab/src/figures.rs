@@ -119,6 +119,8 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         parallel::both(|| parallel::both(rows, groups), || parallel::both(intervals, families));
     // Report the first error in the order of the parts.
     let (mut rows, groups, families) = (rows?, groups?, vec![families?]);
+    // After a stop, intervals are missing or too narrow.
+    bench.stop.check().map_err(|error| FigureError { id: "intervals".to_owned(), reason: error.to_string() })?;
     fill(&mut rows, &intervals);
     Ok(Figures { rows, intervals, families, groups })
 }

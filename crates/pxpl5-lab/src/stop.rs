@@ -73,6 +73,25 @@ mod tests {
         let ended = over.search(|_, _| stop.stop());
         assert!(matches!(ended, Err(StudyError::Experiment(ExperimentError::Stopped(_)))), "{ended:?}");
 
+        // The first value runs and misses. A stopped search must not say that no value reaches the goal.
+        let text = "pipeline = \"rendering-control\"\nscene = \"full-screen:10\"\nfields = 120\n";
+        let file = ExperimentFile::parse(text, "test").expect("TOML");
+        let plan = file.resolve().expect("valid");
+        let stop = StopFlag::default();
+        let (key, goal) = ("machine.n_gps".to_owned(), Goal::LatencyFields(0.01));
+        let values = OverQuery::values(&plan, &key, Some(3.0), Some(20.0)).expect("a range");
+        let unstopped = OverQuery {
+            file: file.clone(),
+            key: key.clone(),
+            values: OverQuery::values(&plan, &key, Some(3.0), Some(4.0)).expect("a range"),
+            goal,
+            stop: StopFlag::default(),
+        };
+        assert!(unstopped.search(|_, _| ()).is_ok_and(|limit| !limit.reached));
+        let over = OverQuery { file, key, values, goal, stop: stop.clone() };
+        let ended = over.search(|_, _| stop.stop());
+        assert!(matches!(ended, Err(StudyError::Experiment(ExperimentError::Stopped(_)))), "{ended:?}");
+
         let stop = StopFlag::default();
         let bench = || Bench::new(Level::Analytic).with_mig(1, 12).with_stop(stop.clone());
         let ended = readings::run(&bench(), 2, |_, _| stop.stop()).map(|_| ());

@@ -1,6 +1,5 @@
 //! Values of the settings of pipelines.
 
-use address_recalculation::Lens;
 use pxpl5_sim::parameters::KeyValue;
 use std::collections::BTreeMap;
 
@@ -29,10 +28,10 @@ impl PipelineSettings {
         if let Some(KeyValue::Whole(number)) = self.values.get(key) { Some(*number) } else { None }
     }
 
-    /// Returns the value of a lens key, or `None` if the user did not set the key.
+    /// Returns the text of a key, or `None` if the user did not set the key.
     #[must_use]
-    pub fn lens(&self, key: &str) -> Option<Lens> {
-        if let Some(KeyValue::Text(text)) = self.values.get(key) { text.parse().ok() } else { None }
+    pub fn text(&self, key: &str) -> Option<&str> {
+        if let Some(KeyValue::Text(text)) = self.values.get(key) { Some(text) } else { None }
     }
 
     /// Returns the value of a key with named values, or `None` if the user did not set the key.

@@ -35,7 +35,8 @@ pub trait Drawn: Clone + 'static {
     const VIEWS: u16 = 1;
 
     /// True if the master announces each drawing to its frame buffer before COPY. The announcement lists the regions
-    /// that will arrive and requests the swap. Empty regions are then neither drawn nor copied.
+    /// that will arrive and requests the swap. Empty regions are then neither drawn nor copied. Pictures that are
+    /// announced have one eye.
     ///
     /// If false, all regions are copied, and the master requests the swap when the whole picture has arrived.
     const ANNOUNCES: bool = false;

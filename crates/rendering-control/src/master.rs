@@ -199,6 +199,7 @@ impl<D: Drawn> RegionMaster<D> {
 
     /// Announces a drawing to its frame buffer: sends the list of regions that will arrive, and the swap request.
     async fn announce(&mut self, place: usize) {
+        debug_assert_eq!(self.config.drawn.eyes(), 1, "an announcement does not name an eye");
         self.under_way[place].announced = true;
         let one = &self.under_way[place];
         let messages = self.config.drawn.announcement(&one.sent, one.regions(false).make_contiguous());

@@ -84,8 +84,9 @@ impl Tables {
     }
 }
 
-/// Tables of numbers that an experiment cannot change, with the names of the tables. The tables have head speeds, the
-/// pendulum rig that measures latency, NTSC video, and the head-mounted display.
+/// Tables of numbers without keys `tracking.*`, with the names of the tables. The tables have head speeds, the pendulum
+/// rig that measures latency, NTSC video, and the head-mounted display of the papers. The keys `hmd.*` and `display`
+/// change the head-mounted display of an experiment.
 pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
     ("head", &HeadSpeeds::PAPERS),
     ("rig", &RigNumbers::PAPERS),
@@ -276,9 +277,9 @@ parameter_table! {
         /// Number of pixels from the top to the bottom of a picture.
         height_px: 480, "px", Published, 480..=480 in 1..=65536, "TR94";
         /// Distance from the eye to the plane in front of which nothing is drawn.
-        near_m: f64 = 0.05, "m", Assumed, 0.000001..=1000000.0, "nearer than a hand";
+        near_m: f64 = 0.05, "m", Assumed, 0.01..=0.3 in 0.000001..=1000000.0, "nearer than a hand";
         /// Distance from the eye to the plane behind which nothing is drawn.
-        far_m: f64 = 50.0, "m", Assumed, 0.000001..=1000000000.0, "24 bits of depth give steps of 1.2 um at 1 m";
+        far_m: f64 = 50.0, "m", Assumed, 10.0..=1000.0 in 0.000001..=1000000000.0, "24 bits of depth give steps of 1.2 um at 1 m";
     }
 }
 

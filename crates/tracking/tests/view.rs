@@ -98,9 +98,13 @@ fn an_orientation_of_any_length_counts_by_its_direction() {
 #[test]
 fn numbers_out_of_range_are_named() {
     type Damage = fn(&mut HmdConfig);
-    let damage: [(&str, Damage); 6] = [
+    let damage: [(&str, Damage); 10] = [
         ("eye_separation_m", |c| c.eye_separation_m = -0.1),
         ("horizontal_fov_deg", |c| c.horizontal_fov_deg = 180.0),
+        ("horizontal_fov_deg", |c| c.horizontal_fov_deg = f64::NAN),
+        ("convergence_m", |c| c.convergence_m = Some(0.05)),
+        ("convergence_m", |c| c.convergence_m = Some(2e6)),
+        ("convergence_m", |c| c.convergence_m = Some(f64::NAN)),
         ("width_px", |c| c.width_px = 0),
         ("near_m", |c| c.near_m = f64::NAN),
         ("far_m", |c| c.far_m = 0.05),

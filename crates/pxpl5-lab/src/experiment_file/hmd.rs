@@ -39,7 +39,7 @@ pub(super) const KEYS: [Number; 6] = [
             unit: "m",
             default: "0.05 (assumed: nearer than a hand)",
             ..Key::new(
-                "hmd.near",
+                NEAR,
                 "distance from the eye to the plane in front of which nothing is drawn",
                 KeyValues::Real(1e-6, 1e6),
             )
@@ -65,7 +65,7 @@ pub(super) const KEYS: [Number; 6] = [
             unit: "m",
             default: "inf (assumed: the papers print no angle)",
             ..Key::new(
-                "hmd.convergence",
+                CONVERGENCE,
                 "distance from the head to the point where the optical axes of both eyes meet, or inf for parallel axes",
                 KeyValues::Real(0.1, f64::INFINITY),
             )
@@ -89,6 +89,7 @@ pub(super) const KEYS: [Number; 6] = [
 
 const NEAR: &str = "hmd.near";
 const FAR: &str = "hmd.far";
+const CONVERGENCE: &str = "hmd.convergence";
 const LENS: &str = "hmd.lens";
 
 /// Reads the parameters of the head-mounted display.
@@ -107,15 +108,15 @@ pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline) -> Result<Hmd
         }
         set(&mut config, value);
     }
-    // Each number is within its range, so only the lens and the order of the planes can be wrong.
+    // Only the lens, the convergence and the order of the planes can still be wrong.
     Hmd::new(config).map_err(|error| {
-        let is_lens = &*error.name == "lens_distortion";
-        match (file.get(LENS).filter(|_| is_lens), file.get(FAR), file.get(NEAR)) {
-            (Some(lens), ..) => wrong(LENS, lens, &error.expected),
-            (None, Some(far), _) => wrong(FAR, far, "a number above hmd.near, at most 1e9"),
-            (None, None, Some(near)) => wrong(NEAR, near, &format!("a number below hmd.far, {}", config.far_m)),
-            (None, None, None) => error,
-        }
+        let (key, expected) = match &*error.name {
+            "lens_distortion" => (LENS, error.expected.to_string()),
+            "convergence_m" => (CONVERGENCE, "0.1 to 1e6, or inf for parallel axes".to_owned()),
+            _ if file.get(FAR).is_some() => (FAR, "a number above hmd.near, at most 1e9".to_owned()),
+            _ => (NEAR, format!("a number below hmd.far, {}", config.far_m)),
+        };
+        file.get(key).map_or(error, |setting| wrong(key, setting, &expected))
     })
 }
 

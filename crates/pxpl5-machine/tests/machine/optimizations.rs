@@ -17,6 +17,9 @@ fn an_optimization_is_parsed_from_the_name_that_it_prints() {
     let error = "idle-board".parse::<Optimization>().expect_err("no optimization");
     let [first @ .., last] = Optimization::ALL.map(Optimization::name);
     assert_eq!(error.to_string(), format!("expected {} or {last}, found `idle-board`", first.join(", ")));
+    // The most similar name comes first.
+    let error = "transfer".parse::<Optimization>().expect_err("no optimization");
+    assert!(error.to_string().starts_with("expected transfers, "), "{error}");
 }
 
 /// The boards' clock of 40 MHz has forty edges per microsecond.

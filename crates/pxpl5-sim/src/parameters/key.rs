@@ -89,7 +89,8 @@ pub struct Key {
     pub values: KeyValues,
     /// Unit of a number, or an empty text.
     pub unit: &'static str,
-    /// Default value with its provenance, in words. Empty if the key has no default, or if the about text states it.
+    /// Default value with its provenance, in words. Empty if the key has no default, if the default depends on the
+    /// pipeline, or if the about text states the default.
     pub default: &'static str,
     /// Paths of machine parameters that the key sets too. A user must not set both the key and one of these parameters.
     pub sets: &'static [&'static str],

@@ -63,7 +63,7 @@ fn with_settings(new: FacePipeline, latch: Latch, settings: &PipelineSettings) -
         shading: shading_or(settings, new.shading),
         segmented: settings.flag(SEGMENT.name).unwrap_or(new.segmented),
         falloff: falloff.map_or(new.falloff, |(_, falloff)| falloff),
-        lens: settings.lens(LENS.name).and_then(FaceLens::of).unwrap_or(new.lens),
+        lens: settings.text(LENS.name).and_then(|text| text.parse().ok()).and_then(FaceLens::of).unwrap_or(new.lens),
         ..new
     }
 }

@@ -36,7 +36,10 @@ impl FaceHistory {
     /// display does not accept cube faces.
     #[must_use]
     pub fn held(record: &Record) -> Option<Self> {
-        let (display, notes) = display(record).zip(record.attached())?;
+        let display = display(record)?;
+        // Only the pipelines of this module attach requests.
+        let none = RequestedUpdates::default();
+        let notes = record.attached().unwrap_or(&none);
         let memories = (0..).zip(display.nodes()).map(|(memory, port)| shown(record, notes, memory, *port));
         Some(Self { memories: memories.collect() })
     }
