@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let experiment = plan.experiment(plan.load_scene()?);
             // Tracker and predictor stay the same, and the recording replaces the motion.
             let head = experiment.tracked_head().ok_or("the settings have a head")?;
-            let head = Head::clone(head).moving(recording.clone());
+            let head = Head::clone(head).with_motion(recording.clone());
             let report = experiment.head(head).run()?.report();
             let head = report.head.ok_or("a report without a head")?;
             let error = head.error.pixels;

@@ -273,7 +273,7 @@ pub use pxpl5_run::{PolicyFrame, PolicyPipeline, RegionAssignment, RegionPolicy}
 ///
 /// // The motion is given in the world's coordinates, not relative to the start of the scene's own motion.
 /// let motion = std::sync::Arc::new(from_fn(|_| Pose::IDENTITY));
-/// let head = Head::new(motion, TrackerConfig::ideal(), PredictorKind::None, 1)?.placed(HeadPlace::World);
+/// let head = Head::new(motion, TrackerConfig::ideal(), PredictorKind::None, 1)?.with_place(HeadPlace::World);
 /// # drop(head);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -42,7 +42,7 @@ pub use pxpl5_measure::{LatencyPartStatistics, Report, SurfaceStatistics, TooHea
 /// // A device moves each picture to the newest pose.
 /// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
 /// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?;
-/// let head = head.before(Raster::Reprojected(Reprojection::new(Warp::Rotation, Every::Line)));
+/// let head = head.with_raster(Raster::Reprojected(Reprojection::new(Warp::Rotation, Every::Line)));
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(90).pixels(Pixels::Off);
 /// let report = experiment.head(head).run()?.report();
@@ -215,7 +215,7 @@ pub use pxpl5_run::{FinalResults, ObserverFactory, StreamingObserver};
 ///
 /// // VDRT: the raster is shifted by the error of the pose.
 /// let turn = from_fn(|seconds| Pose { orientation: DQuat::from_rotation_y(seconds), ..Pose::IDENTITY });
-/// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?.before(Raster::Vdrt);
+/// let head = Head::new(Arc::new(turn), TrackerConfig::ideal(), PredictorKind::None, 1)?.with_raster(Raster::Vdrt);
 /// let scene = scene::builtin("full-screen:4")?;
 /// let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
 /// let outcome = experiment.head(head).run()?;

@@ -75,7 +75,7 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
 /// instant, for one eye.
 fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
     let head = Head::new(Arc::new(Pan::at(deg_per_s)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
-    let head = head.expect("in range").before(raster).with_aim(Aim::FirstPixel);
+    let head = head.expect("in range").with_raster(raster).with_aim(Aim::FirstPixel);
     Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Field, false), edge_scene(0.0))
         .head(head)
         .fields(fields)
@@ -174,7 +174,7 @@ fn poses_in_the_world_stay_and_poses_of_the_scene_begin_at_its_start() {
         let scene = pxpl5::scene::builtin("room").expect("built in");
         let start = scene.motion().pose(0);
         let jitp = Jitp::new(Viewpoint::Field, false);
-        let experiment = Experiment::new(MachineConfig::small_hmd(), jitp, scene).head(head.placed(place));
+        let experiment = Experiment::new(MachineConfig::small_hmd(), jitp, scene).head(head.with_place(place));
         let outcome = experiment.fields(20).pixels(Pixels::Off).run().unwrap_or_else(|error| panic!("{error}"));
         (outcome.head().expect("a head").truth(pxpl5::Time(1_000_000_000)), start)
     };

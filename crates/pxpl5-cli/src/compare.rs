@@ -35,6 +35,8 @@ use std::path::PathBuf;
   pxpl5 compare --out out/compare --resume                          after an interruption
   pxpl5 compare --until-precision 10% --max-seeds 40
 
+Defaults of a comparison: --scene room --machine small-hmd --head synthetic --tracker optical --fields 300.
+
 Every pipeline has the same settings and one run for each seed. With the head `synthetic`, each seed gives another motion. The pipelines
 have the values of their papers. A recording sets the length of the runs. The command `pxpl5 run --pipeline NAME` runs one pipeline alone, with its own keys and pictures.")]
 pub(crate) struct CompareArgs {

@@ -272,7 +272,9 @@ impl ExperimentFile {
     pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), SettingError> {
         let canonical = self.canonical_key(path, &place)?;
         if keys::renamed(path) != path {
-            self.notes.push(format!("{place}: {path} is now {canonical}; the next version does not accept {path}"));
+            // A call in a program has no place.
+            let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
+            self.notes.push(format!("{place}{path} is now {canonical}; the next version does not accept {path}"));
         }
         let setting = Setting { value, place, folder: folder.to_owned() };
         // A number with a unit is kept as a number in the key's own unit.

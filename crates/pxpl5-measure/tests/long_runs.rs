@@ -55,10 +55,10 @@ fn experiments() -> Vec<Experiment> {
     let [none, velocity, kalman] = [PredictorKind::None, PredictorKind::ConstantVelocity, PredictorKind::Kalman];
     vec![
         slats(2_000).head(head(synthetic(), fastrak(), kalman)),
-        slats(2_000).head(head(Pan::at(60.0), TrackerConfig::flock_of_birds(), none).before(Raster::Vdrt)),
+        slats(2_000).head(head(Pan::at(60.0), TrackerConfig::flock_of_birds(), none).with_raster(Raster::Vdrt)),
         slats(2_000).head(head(synthetic(), silent(5.0, 6.5), velocity)),
         control(2_000).head(head(synthetic(), fastrak(), velocity).with_aim(Aim::FirstPixel)),
-        control(2_000).head(head(walk(), TrackerConfig::optical_ceiling(), kalman).before(Raster::Vdrt)),
+        control(2_000).head(head(walk(), TrackerConfig::optical_ceiling(), kalman).with_raster(Raster::Vdrt)),
         control(1_500).head(head(synthetic(), TrackerConfig::polhemus_3space(), none)).on_demand(),
         experiment("jitp-field", small(), scene("mig", 60), 1_500).head(head(synthetic(), fastrak(), kalman)),
         experiment("jitp-scanline-racing", small(), scene("full-screen:4", 0), 500).head(head(

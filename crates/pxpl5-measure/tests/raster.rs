@@ -62,7 +62,7 @@ fn run(axis: DVec3, raster: Raster) -> Outcome {
     let registry = Registry::of_papers();
     let pipeline = (registry.pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
     let head = Head::new(Arc::new(Turning { axis }), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
-    let head = head.expect("in range").with_aim(Aim::Middle).before(raster);
+    let head = head.expect("in range").with_aim(Aim::Middle).with_raster(raster);
     let scene = Arc::new(builtin("full-screen:2").expect("built in"));
     let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head);
     experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("two triangles")

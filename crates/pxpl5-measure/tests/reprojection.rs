@@ -269,7 +269,7 @@ fn a_display_of_instants_has_no_smear_and_a_plain_raster_no_report() {
 #[test]
 fn vdrt_is_one_setting_and_its_errors_stay_what_they_are() {
     assert_eq!(Raster::Vdrt.reprojection(), Some(Reprojection::VDRT));
-    let outcome = fields(head(Turning(2.0)).before(Raster::Vdrt), "full-screen:2");
+    let outcome = fields(head(Turning(2.0)).with_raster(Raster::Vdrt), "full-screen:2");
     let eye = outcome.report().eye.expect("a device").reprojection.expect("a device");
     assert_eq!((eye.device, eye.looked_at), (Reprojection::VDRT, 16 * 12 * (FIELDS - WARM_UP_PERIODS)));
     assert!(eye.pose_age_ms.mean > 0.0);

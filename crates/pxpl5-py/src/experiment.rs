@@ -67,7 +67,7 @@ impl Experiment {
             let Some(head) = native.tracked_head().cloned() else {
                 return Err(wrong_setting("a motion: expected a head with a tracker, found none"));
             };
-            native = native.head(pxpl5::Head::clone(&head).moving(Arc::clone(&motion.moving)));
+            native = native.head(pxpl5::Head::clone(&head).with_motion(Arc::clone(&motion.moving)));
         }
         let motion = motion.and_then(|motion| motion.called.clone());
         Ok(Self { plan, native, functions: PythonFunctions { motion, policy } })
@@ -83,9 +83,9 @@ impl Experiment {
     }
 
     /// Returns warnings about results that no source supports. The warnings concern parameters outside their plausible
-    /// range, and runs at the cycle level in which some times do not come from executed code.
+    /// range, runs at the cycle level in which some times do not come from executed code, and former names of keys.
     fn warnings(&self) -> Vec<String> {
-        self.native.warnings()
+        self.plan.notes.iter().cloned().chain(self.native.warnings()).collect()
     }
 
     /// Returns all parameters by path with values, units and sources, including the parameters of the tracker.

@@ -90,7 +90,7 @@ impl Head {
     /// Creates a head with a motion, a tracker and a predictor. The predictor assumes the same noise that the tracker
     /// model adds.
     ///
-    /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), unless [`Head::placed`] changes
+    /// The motion begins where the scene's own motion begins ([`HeadPlace::Scene`]), unless [`Head::with_place`] changes
     /// this.
     ///
     /// A run tunes the predictor's parameters for this motion and for the pipeline's prediction interval. See
@@ -147,7 +147,7 @@ impl Head {
 
     /// Replaces the motion. Tracker and predictor stay the same.
     #[must_use]
-    pub fn moving(self, motion: Arc<dyn Motion + Send + Sync>) -> Self {
+    pub fn with_motion(self, motion: Arc<dyn Motion + Send + Sync>) -> Self {
         Self { motion, ..self }
     }
 
@@ -160,7 +160,7 @@ impl Head {
 
     /// Replaces the prediction method and keeps all other settings of the predictor.
     #[must_use]
-    pub const fn predicting(mut self, kind: PredictorKind) -> Self {
+    pub const fn with_prediction(mut self, kind: PredictorKind) -> Self {
         self.predictor.kind = kind;
         self
     }
@@ -187,7 +187,7 @@ impl Head {
 
     /// Sets the coordinates of the motion: relative to the start of the scene's own motion, or in the scene.
     #[must_use]
-    pub const fn placed(mut self, place: HeadPlace) -> Self {
+    pub const fn with_place(mut self, place: HeadPlace) -> Self {
         self.place = place;
         self
     }
@@ -200,7 +200,7 @@ impl Head {
 
     /// Sets the correction that the head-mounted display applies to a picture during scan-out.
     #[must_use]
-    pub const fn before(mut self, raster: Raster) -> Self {
+    pub const fn with_raster(mut self, raster: Raster) -> Self {
         self.raster = raster;
         self
     }

@@ -129,7 +129,7 @@ fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
 
 #[test]
 fn a_head_is_named_by_its_settings_a_line_each() {
-    let found = head(Pan::at(200.0)).before(Raster::Vdrt).fingerprint().to_string();
+    let found = head(Pan::at(200.0)).with_raster(Raster::Vdrt).fingerprint().to_string();
     let TrackerConfig { rate_hz, filter_gain, .. } = TrackerConfig::ideal();
     let predictor = tracking::predict::PredictorConfig::for_tracker(PredictorKind::None, &TrackerConfig::ideal());
     let lines = [
@@ -216,7 +216,7 @@ fn every_tracker_predictor_seed_and_raster_has_a_name_of_its_own() {
         of(TrackerConfig::flock_of_birds_on_patched_host(), PredictorKind::None, 1),
         of(TrackerConfig::optical_ceiling(), PredictorKind::None, 1),
         of(TrackerConfig::polhemus_3space(), PredictorKind::None, 1),
-        head(Pan::at(1.0)).before(Raster::Vdrt).fingerprint(),
+        head(Pan::at(1.0)).with_raster(Raster::Vdrt).fingerprint(),
     ];
     for (number, name) in names.iter().enumerate() {
         assert!(!names[..number].contains(name), "head {number}");

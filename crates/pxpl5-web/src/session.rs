@@ -156,7 +156,7 @@ fn moved_on_the_page(experiment: Experiment, begin: &[u8]) -> Result<(Experiment
     }
     let begin = Recording::read(begin).map_err(|error| error.to_string())?;
     let moves = GrowingRecording::new(begin);
-    let head = Arc::unwrap_or_clone(head).moving(Arc::new(moves.clone()));
+    let head = Arc::unwrap_or_clone(head).with_motion(Arc::new(moves.clone()));
     Ok((experiment.head(head), Some(moves)))
 }
 

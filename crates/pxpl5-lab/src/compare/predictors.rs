@@ -73,7 +73,7 @@ pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chos
 }
 
 fn with_predictor(experiment: &Experiment, head: &Head, showing: Showing, kind: PredictorKind) -> PredictorError {
-    let with_kind = Arc::new(head.clone().predicting(kind));
+    let with_kind = Arc::new(head.clone().with_prediction(kind));
     of_run(kind, showing, experiment.clone().head(with_kind).pixels(Pixels::Off).run())
 }
 

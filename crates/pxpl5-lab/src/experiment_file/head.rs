@@ -65,8 +65,11 @@ impl HeadChoice {
         let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
         let numbers = tracking_numbers::parameters_with(&tables, own_table, &of_tracker);
         let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
-        let head =
-            head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).with_aim(aim).placed(place);
+        let head = head
+            .map_err(|error| refused(file, "head.tracker", &error))?
+            .with_raster(raster)
+            .with_aim(aim)
+            .with_place(place);
         let head = evaluated(file, if is_tuned(file)? { head.tuned() } else { head })?;
         let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
         let head = head.with_unsupported_parameters(supposed);
