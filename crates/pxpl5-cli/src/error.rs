@@ -77,16 +77,11 @@ impl From<SettingError> for CliError {
 impl From<FileError> for CliError {
     fn from(error: FileError) -> Self {
         let message = match error.kind {
-            FileErrorKind::Unfinished => with_resume(&error),
+            FileErrorKind::Unfinished => format!("{error} (--resume)"),
             _ => error.to_string(),
         };
         Self { code: code_of(error.kind), message }
     }
-}
-
-/// Returns the message of an error that a resume avoids, with the option of the command.
-fn with_resume(error: &impl Display) -> String {
-    format!("{error} (--resume)")
 }
 
 /// Returns the exit code for a file that cannot be used.
@@ -104,7 +99,6 @@ impl From<StudyError> for CliError {
         match error {
             StudyError::Setting(error) => error.into(),
             StudyError::File(error) => error.into(),
-            StudyError::Unfinished { .. } => Self::usage(with_resume(&error)),
             _ => Self::usage(error),
         }
     }
@@ -113,7 +107,7 @@ impl From<StudyError> for CliError {
 impl From<ExperimentError> for CliError {
     fn from(error: ExperimentError) -> Self {
         match &error {
-            ExperimentError::Config(_) | ExperimentError::Fields { .. } => Self::usage(error),
+            ExperimentError::Config(_) => Self::usage(error),
             ExperimentError::Run { .. } => Self::failure(format!("{error}; nothing was written. {}", advice(&error))),
             _ => Self::failure(error),
         }

@@ -287,7 +287,7 @@ impl Rig {
         boards: usize,
         part: impl Fn(DisplayList) -> DisplayList,
     ) -> Result<Self, ExperimentError> {
-        let scene = Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
+        let scene = Arc::new(builtin(scene)?);
         let list = Arc::new(part(display_list(&scene)?));
         let (views, _) = views(&scene, 1, Hmd::unc(), 2);
         let share = Share::new(list, 0, boards);

@@ -40,23 +40,12 @@ pub use table::{FIGURES, Figure, WITHOUT_CLOSED_FORM};
 pub use topics::figure_groups;
 
 use crate::application_time::{ApplicationTime, application_times};
+use crate::error::StudyError;
 use crate::intervals::{Interval, fill, intervals};
 use crate::parallel;
 use crate::readings::{self, Readings};
-use pxpl5_run::ExperimentError;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
-use thiserror::Error;
-
-/// Error of a figure whose experiment yields no result.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("figure {id}: {reason}")]
-pub struct FigureError {
-    /// Number of the figure in ACCURACY.md.
-    pub id: String,
-    /// Reason why the experiment yields no result.
-    pub reason: String,
-}
 
 /// All published figures with the model's values and intervals.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -93,8 +82,8 @@ const FRAMES: u64 = 150;
 ///
 /// # Errors
 ///
-/// Returns the first [`FigureError`].
-pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
+/// Returns the first [`StudyError`].
+pub fn run_all(bench: &Bench) -> Result<Figures, StudyError> {
     run_all_with(bench, |_, _| {})
 }
 
@@ -105,7 +94,7 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
 /// # Errors
 ///
 /// Fails in the same cases as [`run_all`].
-pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
+pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, StudyError> {
     let steps = FIGURES.len() as u64 + 3;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
@@ -120,7 +109,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     // Report the first error in the order of the parts.
     let (mut rows, groups, families) = (rows?, groups?, vec![families?]);
     // After a stop, intervals are missing or too narrow.
-    bench.stop.check().map_err(|error| FigureError { id: "intervals".to_owned(), reason: error.to_string() })?;
+    bench.stop.check().map_err(StudyError::of_figure("intervals"))?;
     fill(&mut rows, &intervals);
     Ok(Figures { rows, intervals, families, groups })
 }
@@ -131,11 +120,10 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
 ///
 /// # Errors
 ///
-/// Returns the first [`FigureError`].
-pub fn alternatives_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Alternatives, FigureError> {
+/// Returns the first [`StudyError`].
+pub fn alternatives_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Alternatives, StudyError> {
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, 3);
-    let of_fly_through = |error: ExperimentError| FigureError { id: "7".to_owned(), reason: error.to_string() };
     let by_code = bench.clone().with_times_of_code();
     let ranked = bench.clone().with_mig(SEEDS, FRAMES);
     let of_code = || {
@@ -147,8 +135,8 @@ pub fn alternatives_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> R
     let (of_code, (readings, times)) = parallel::both(of_code, || parallel::both(readings, of_application));
     Ok(Alternatives {
         of_code: of_code?,
-        readings: readings.map_err(of_fly_through)?,
-        application_times: times.map_err(of_fly_through)?,
+        readings: readings.map_err(StudyError::of_figure("7"))?,
+        application_times: times.map_err(StudyError::of_figure("7"))?,
     })
 }
 
@@ -159,9 +147,6 @@ fn stepped<T>(step: &impl Fn(), part: impl FnOnce() -> T) -> T {
     result
 }
 
-fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, FigureError> {
-    match bench.measure(figure.id) {
-        Ok(measured) => Ok(figure.row(measured)),
-        Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
-    }
+fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, StudyError> {
+    bench.measure(figure.id).map(|measured| figure.row(measured)).map_err(StudyError::of_figure(figure.id))
 }

@@ -153,7 +153,7 @@ pub fn applications() -> Result<Vec<Application>, ExperimentError> {
 }
 
 fn application(scene: &'static str, machine: &'static str) -> Result<Application, ExperimentError> {
-    let built = Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
+    let built = Arc::new(builtin(scene)?);
     let config = MachineConfig::preset(machine)?;
     let experiment = Experiment::new(config, RenderingControl::stereo(), built).fields(FIELDS).pixels(Pixels::Off);
     let seeds: Vec<u64> = (1..=SEEDS).collect();

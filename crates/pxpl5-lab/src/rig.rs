@@ -22,6 +22,7 @@ use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_run::{Coverage, Experiment, ExperimentError, Head, Outcome, PictureTimes, Pipeline, Pixels};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_sim::Time;
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
@@ -159,9 +160,9 @@ impl Rig {
 
 /// Returns an error for a pipeline in which a photodiode on the screen cannot detect the appearance of a frame.
 fn check_frames(machine: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), StudyError> {
-    let refused = |reason| {
-        let definition = pipeline.due_definition();
-        Err(StudyError::NoFrames { pipeline: pipeline.name(), reason, definition })
+    let refused = |reason: &str| {
+        let found = format_args!("{}: {reason}; {}", pipeline.name(), pipeline.due_definition());
+        Err(SettingError::value("", "a pipeline whose frames a photodiode can distinguish", found).into())
     };
     if pipeline.coverage() == Coverage::Surroundings {
         return refused("its display turns with the head, so the light changes before any frame is drawn");
@@ -233,11 +234,11 @@ impl Photodiode {
         Self { line, place_ps: 0, samples: Vec::new(), ring: Vec::new() }
     }
 
-    fn check(&self, display: &dyn Display) -> Result<(), StudyError> {
+    fn check(&self, display: &dyn Display) -> Result<(), SettingError> {
         let lines =
             display.surfaces().first().map_or(0, |surface| surface.height / display.rows_lit(PeriodNumber::FIRST).1);
-        let found = self.line;
-        if found < lines { Ok(()) } else { Err(StudyError::Photodiode { lines, found }) }
+        let expected = format_args!("a line from 0 to {}", lines.saturating_sub(1));
+        SettingError::require(self.line < lines, "line of the photodiode", expected, self.line)
     }
 
     /// Samples the photodiode in a period that has ended. `screen` keeps the picture of the period, so that several
@@ -339,6 +340,7 @@ mod tests {
             assert_eq!(format!("{alone:?}"), format!("{together:?}"), "line {line}");
         }
         let refused = rig.measure_lines(&machine, pipeline, [0, 240]);
-        assert!(matches!(refused, Err(StudyError::Photodiode { lines: 240, found: 240 })), "there are 240 lines");
+        let refused = refused.expect_err("there are 240 lines").to_string();
+        assert_eq!(refused, "line of the photodiode: expected a line from 0 to 239, found 240");
     }
 }

@@ -96,7 +96,7 @@ mod tests {
         let bench = || Bench::new(Level::Analytic).with_mig(1, 12).with_stop(stop.clone());
         let ended = readings::run(&bench(), 2, |_, _| stop.stop()).map(|_| ());
         assert!(matches!(ended, Err(ExperimentError::Stopped(_))), "{ended:?}");
-        assert!(run_all_with(&bench(), |_, _| {}).is_err_and(|error| error.reason.contains("stopped")));
+        assert!(run_all_with(&bench(), |_, _| {}).is_err_and(|error| error.to_string().contains("stopped")));
 
         let stop = StopFlag::default();
         let levels = LevelQuery { experiments: 2, speeds: false, stop: stop.clone() };

@@ -69,7 +69,7 @@ fn pipelines_without_frames_are_refused_with_the_reason() {
             panic!("{pipeline} is measured")
         };
         let said = refused.to_string();
-        assert!(matches!(refused, StudyError::NoFrames { .. }) && said.contains(reason), "{said}");
+        assert!(matches!(refused, StudyError::Setting(_)) && said.contains(reason), "{said}");
     }
 }
 

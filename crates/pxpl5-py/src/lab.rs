@@ -134,9 +134,8 @@ pub(crate) fn compare<'py>(
 }
 
 fn wrong_study(error: StudyError) -> PyErr {
-    use StudyError::{Damaged, File, OtherSettings, Unfinished};
     match error {
-        Damaged { .. } | File(_) | OtherSettings { .. } | Unfinished { .. } => failed_sweep(error),
+        StudyError::File(_) => failed_sweep(error),
         error => wrong_setting(error),
     }
 }

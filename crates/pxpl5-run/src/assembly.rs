@@ -23,7 +23,7 @@ use std::sync::Arc;
 impl Experiment {
     pub(crate) fn assemble(&self, preparation: Preparation) -> Result<Assembled, ExperimentError> {
         if !(FIELDS_RANGE.0..=FIELDS_RANGE.1).contains(&self.fields) {
-            return Err(ExperimentError::Fields { expected: FIELDS_RANGE, found: self.fields });
+            return Err(SettingError::limits("fields", FIELDS_RANGE, self.fields).into());
         }
         // Adapt the machine to the pipeline, the scene's background and the level of modelling.
         let mut adapted = self.pipeline.adapt(self.config.clone());
@@ -126,11 +126,23 @@ pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result
 
 /// Checks that a recorded head motion has poses for the whole run.
 fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
-    if let Some((from_ps, to_ps)) = head.motion.gap_ps(until.0) {
-        return Err(ExperimentError::RecordingGap { from: Time(from_ps), to: Time(to_ps), run: until });
-    }
-    match head.motion.ends_ps().filter(|ends_ps| *ends_ps < until.0) {
-        Some(ends_ps) => Err(ExperimentError::Recording { recording: Time(ends_ps), run: until }),
-        None => Ok(()),
-    }
+    let seconds = |ps: u64| ps as f64 * 1e-12;
+    let run = seconds(until.0);
+    let reason = if let Some((from_ps, to_ps)) = head.motion.gap_ps(until.0) {
+        format!(
+            "has no pose from {:.3} s to {:.3} s and the run takes {run:.3} s: simulate fewer fields, or let the head stand still there \
+             (head.end = \"hold\")",
+            seconds(from_ps),
+            seconds(to_ps)
+        )
+    } else if let Some(ends_ps) = head.motion.ends_ps().filter(|ends_ps| *ends_ps < until.0) {
+        format!(
+            "ends after {:.3} s and the run takes {run:.3} s: simulate fewer fields, or set the behaviour after its end \
+             (head.end = \"hold\" or \"loop\")",
+            seconds(ends_ps)
+        )
+    } else {
+        return Ok(());
+    };
+    Err(ExperimentError::Recording(format!("the recording of the head {reason}")))
 }

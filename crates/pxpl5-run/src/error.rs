@@ -3,7 +3,6 @@
 use crate::outcome::Outcome;
 use crate::picture_ends::WARM_UP_PICTURES;
 use pxpl5_machine::RunError;
-use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
 use thiserror::Error;
 
@@ -11,17 +10,10 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// The machine or one of its parameters is invalid, or the pipeline cannot run on the machine.
+    /// The machine or one of its parameters is invalid, or the pipeline cannot run on the machine, or the number of fields
+    /// is out of range.
     #[error(transparent)]
     Config(#[from] SettingError),
-    /// The number of fields is out of range.
-    #[error("fields must be {} to {}, found {found}", expected.0, expected.1)]
-    Fields {
-        /// Smallest and largest valid number of fields.
-        expected: (u64, u64),
-        /// Number of fields that was requested.
-        found: u64,
-    },
     /// Only pictures of the warm-up were shown. The observations of the run are kept.
     #[error(
         "only {} shown in {} and the first {WARM_UP_PICTURES} are discarded; {}",
@@ -42,35 +34,10 @@ pub enum ExperimentError {
         /// Outcome of the run, with all observations.
         partial: Box<Outcome>,
     },
-    /// The recording of the head's motion ends before the end of the run.
-    #[error(
-        "the recording of the head ends after {:.3} s and the run takes {:.3} s: simulate fewer fields, or set the behaviour after its end \
-         (head.end = \"hold\" or \"loop\")",
-        seconds(*recording),
-        seconds(*run)
-    )]
-    Recording {
-        /// Time at which the recording ends.
-        recording: Time,
-        /// Time at which the run ends.
-        run: Time,
-    },
-    /// The recording of the head's motion has a gap within the time of the run.
-    #[error(
-        "the recording of the head has no pose from {:.3} s to {:.3} s and the run takes {:.3} s: simulate fewer fields, or let the head \
-         stand still there (head.end = \"hold\")",
-        seconds(*from),
-        seconds(*to),
-        seconds(*run)
-    )]
-    RecordingGap {
-        /// Time of the last pose before the gap.
-        from: Time,
-        /// Time of the first pose after the gap.
-        to: Time,
-        /// Time at which the run ends.
-        run: Time,
-    },
+    /// The recording of the head's motion ends before the end of the run, or has a gap within the run. The text states
+    /// the times.
+    #[error("{0}")]
+    Recording(String),
     /// A run at the analytic level was requested. The analytic level has no simulated events, so there is nothing to
     /// run.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
@@ -90,10 +57,6 @@ pub enum ExperimentError {
         /// Outcome of the run until the error.
         partial: Box<Outcome>,
     },
-}
-
-fn seconds(at: Time) -> f64 {
-    at.since(Time::ZERO).as_ms() * 1e-3
 }
 
 fn count_of(count: u64, name: &str) -> String {

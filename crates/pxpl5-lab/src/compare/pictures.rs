@@ -82,13 +82,12 @@ pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictu
 
 /// Returns two pictures of a field: as the display scans the field, and as a turning eye sees the field.
 fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<(RgbImage, RgbImage), ExperimentError> {
-    let video = FrameBufferConfig::NTSC.video.video().map_err(|e| ExperimentError::Scene(e.to_string()))?;
+    let video = FrameBufferConfig::NTSC.video.video()?;
     // Start the pan so that the edge is in the middle of the screen in the middle of the field.
     let middle = video.when(320, 240 + FieldParity::of_field(FIELD).first_line(), FIELD).unwrap_or_default();
     let scene = edge_scene(-deg_per_s * middle.0 as f64 * 1e-12);
     let pan = Arc::new(Pan::at(deg_per_s));
-    let head = Head::new(pan, TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1)
-        .map_err(|e| ExperimentError::Scene(e.to_string()))?;
+    let head = Head::new(pan, TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1)?;
     let outcome = Experiment::new(config.clone(), Jitp::new(viewpoint, true), scene)
         .head(head)
         .fields(FIELD.after(2).since(PeriodNumber::FIRST))

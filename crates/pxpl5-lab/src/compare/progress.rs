@@ -3,7 +3,7 @@
 use crate::error::StudyError;
 use crate::{StopFlag, Workstation};
 use pxpl5_machine::PixelWorker;
-use pxpl5_run::Host;
+use pxpl5_run::{ExperimentError, Host};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Number of finished runs of a comparison, and number of all runs. The number of all runs grows when seeds are added.
@@ -31,7 +31,11 @@ impl<'a> Progress<'a> {
 
     /// Returns an error if another thread has stopped the comparison.
     pub(super) fn check_stopped(&self) -> Result<(), StudyError> {
-        if self.stop.is_stopped() { Err(StudyError::Stopped) } else { Ok(()) }
+        if self.stop.is_stopped() {
+            Err(ExperimentError::Stopped("the comparison was stopped".to_owned()).into())
+        } else {
+            Ok(())
+        }
     }
 
     /// Returns the flag by which another thread stops the comparison.

@@ -16,6 +16,7 @@ use crate::parallel;
 use pxpl5_measure::Showing;
 use pxpl5_run::{Experiment, Goal, Head, Pixels, Tunings, WARM_UP_PERIODS};
 use pxpl5_scene::{HmdConfig, Scene};
+use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::sync::Arc;
@@ -178,7 +179,7 @@ impl CompareQuery {
     ///
     /// # Errors
     ///
-    /// Fails in the same cases as [`CompareQuery::run_into`], and with [`StudyError::Stopped`].
+    /// Fails in the same cases as [`CompareQuery::run_into`], and with [`ExperimentError::Stopped`](pxpl5_run::ExperimentError::Stopped).
     pub fn run_stoppable(
         &self,
         store: Option<&CompareStore>,
@@ -277,8 +278,10 @@ impl CompareQuery {
     }
 
     fn plan_of_first(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
-        let seed = *self.seeds.first().ok_or(StudyError::NoSeed)?;
-        let first = compared_pipelines.first().ok_or(StudyError::NoPipeline)?;
+        let seed = *self.seeds.first().ok_or_else(|| SettingError::value("seeds", "at least one", "none"))?;
+        let first = compared_pipelines
+            .first()
+            .ok_or_else(|| SettingError::value("", "a registry with a pipeline that is compared", "none"))?;
         Ok(first.plan(&self.shared, seed)?)
     }
 
@@ -287,36 +290,40 @@ impl CompareQuery {
     fn any_plan(&self, compared_pipelines: &[ComparedPipeline]) -> Result<Plan, StudyError> {
         let plan = self.plan_of_first(compared_pipelines)?;
         if plan.head.is_none() {
-            return Err(StudyError::NoHead);
+            let found = "none: without a head there is no error to compare";
+            return Err(SettingError::value("", "a head.motion", found).into());
         }
         if self.until.is_some() && !self.shared.has_motion_for_each_seed()? {
-            return Err(StudyError::OneMotion);
+            return Err(SettingError::combination(
+                "this motion is the same for all seeds: its interval is a bootstrap over time, which more seeds do not make narrower; \
+                 use head.motion = synthetic or a longer recording, or compare without a precision",
+            )
+            .into());
         }
         self.check_seeds()?;
         // The run must be longer than the warm-up of every pipeline.
         let expected = (WARM_UP_PERIODS + 1, MOST_FIELDS);
-        if !(expected.0..=expected.1).contains(&plan.fields) {
-            return Err(StudyError::Fields { expected, found: plan.fields });
-        }
+        let holds = (expected.0..=expected.1).contains(&plan.fields);
+        SettingError::require(holds, "fields", format_args!("{} to {}", expected.0, expected.1), plan.fields)?;
         Ok(plan)
     }
 
     /// Checks three conditions: all seeds differ, experiment files can hold all seeds, and the maximum number of seeds
     /// is not below the number of seeds.
-    fn check_seeds(&self) -> Result<(), StudyError> {
+    fn check_seeds(&self) -> Result<(), SettingError> {
         let mut sorted = self.seeds.clone();
         sorted.sort_unstable();
         let twice = sorted.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0]);
         let max_seeds = self.until.map_or(0, |until| until.max_seeds);
         let greatest = i64::MAX as u64 - max_seeds as u64;
         match (twice, sorted.last()) {
-            (Some(seed), _) => Err(StudyError::Seeds { expected: "different seeds".to_owned(), found: seed }),
+            (Some(seed), _) => Err(SettingError::value("seeds", "different seeds", seed)),
             (None, Some(seed)) if *seed > greatest => {
-                Err(StudyError::Seeds { expected: format!("seeds of at most {greatest}"), found: *seed })
+                Err(SettingError::value("seeds", format_args!("seeds of at most {greatest}"), seed))
             }
             _ if self.until.is_some() && max_seeds < self.seeds.len() => {
-                let expected = format!("a maximum of at least {} seeds", self.seeds.len());
-                Err(StudyError::Seeds { expected, found: max_seeds as u64 })
+                let expected = format_args!("a maximum of at least {} seeds", self.seeds.len());
+                Err(SettingError::value("seeds", expected, max_seeds))
             }
             _ => Ok(()),
         }

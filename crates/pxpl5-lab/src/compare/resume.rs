@@ -76,7 +76,7 @@ mod tests {
         let stop_soon = |_, _| stop.stop();
         let store = query.open_store(&folder, true).expect("a folder");
         let stopped = query.run_stoppable(Some(&store), &stop, stop_soon, |row| panic!("{} ended", row.pipeline));
-        assert!(matches!(stopped, Err(StudyError::Stopped)), "{stopped:?}");
+        assert!(matches!(stopped, Err(StudyError::Experiment(pxpl5_run::ExperimentError::Stopped(_)))), "{stopped:?}");
         drop(store);
         let store = query.open_store(&folder, true).expect("a folder");
         assert_eq!(store.found(), 0);

@@ -14,7 +14,7 @@ use crate::error::StudyError;
 use crate::sweep::{ROWS_FILE, line_of, lock, opened};
 use image::RgbImage;
 use pxpl5_measure::FieldMisregistration;
-use pxpl5_sim::parameters::FileError;
+use pxpl5_sim::parameters::{FileError, FileErrorKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -98,7 +98,10 @@ impl CompareStore {
         } else {
             let (rows, of) = (lines.count(), before.map_or(0, |before| before.rows.len()));
             if rows > 0 && rows < of {
-                return Err(StudyError::Unfinished { path: path.display().to_string(), rows, of });
+                let reason = format_args!(
+                    "{rows} of {of} rows of an interrupted comparison are here; resume the comparison, or choose another folder"
+                );
+                return Err(FileError::because(FileErrorKind::Unfinished, reason).in_file(path.display()).into());
             }
             end = 0;
             Vec::new()
@@ -167,8 +170,9 @@ impl Header {
         ];
         match pairs.into_iter().chain(settings).chain(last).find(|(_, expected, found)| expected != found) {
             Some((key, expected, found)) => {
-                let path = path.display().to_string();
-                Err(StudyError::OtherSettings { path, key: key.to_owned(), expected, found })
+                let reason =
+                    format_args!("these rows are of another comparison: {key} was {found}, expected {expected}");
+                Err(FileError::because(FileErrorKind::Occupied, reason).in_file(path.display()).into())
             }
             None => Ok(()),
         }
@@ -204,8 +208,8 @@ fn whole_lines(path: &Path) -> Result<Vec<u8>, StudyError> {
 
 fn parsed<T: serde::de::DeserializeOwned>(path: &Path, line: usize, text: &[u8]) -> Result<T, StudyError> {
     serde_json::from_slice(text).map_err(|error| {
-        let path = path.display().to_string();
-        StudyError::Damaged { path, line, found: error.to_string() }
+        let file = format!("{}, line {line}", path.display());
+        FileError::new(FileErrorKind::Damaged, "a row of a comparison", error).in_file(file).into()
     })
 }
 

@@ -1,12 +1,12 @@
 //! Figures of papers about systems other than Pixel-Planes 5. In ACCURACY.md, these figures follow the figures of
 //! Pixel-Planes 5.
 
+use super::Bench;
 use super::measured::{Result, scene_named};
-use super::{Bench, FigureError};
+use crate::error::StudyError;
 use pxpl5_arp::figures::{Experiments, missed, row, rows, shape, table};
 use pxpl5_run::{
-    Experiment, ExperimentError, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl,
-    RotationLatency,
+    Experiment, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl, RotationLatency,
 };
 use pxpl5_sim::figures::{Basis, FigureRow};
 use serde::Serialize;
@@ -47,11 +47,10 @@ impl FigureFamily {
     ///
     /// # Errors
     ///
-    /// Returns a [`FigureError`] that names the experiment.
-    pub fn address_recalculation(bench: &Bench) -> std::result::Result<Self, FigureError> {
-        let failed = |reason: String| FigureError { id: "E1".to_owned(), reason };
-        let mut all = turning(bench).map_err(|error| failed(error.to_string()))?;
-        let experiments = Experiments::run().map_err(|error| failed(error.to_string()))?;
+    /// Returns a [`StudyError`] that names the experiment.
+    pub fn address_recalculation(bench: &Bench) -> std::result::Result<Self, StudyError> {
+        let mut all = turning(bench).map_err(StudyError::of_figure("E1"))?;
+        let experiments = Experiments::run().map_err(StudyError::of_figure("E1"))?;
         all.extend(rows(&experiments));
         Ok(Self {
             title: "Address recalculation and priority rendering",
@@ -121,8 +120,7 @@ fn turning(bench: &Bench) -> Result<Vec<FigureRow>> {
 
 /// Runs an experiment in which the head turns at 200 degrees per second.
 fn turned(experiment: Experiment) -> Result<Outcome> {
-    let head = Head::new(Arc::new(Pan::at(200.0)), TrackerConfig::ideal(), PredictorKind::None, 1);
-    let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    let head = Head::new(Arc::new(Pan::at(200.0)), TrackerConfig::ideal(), PredictorKind::None, 1)?;
     experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()
 }
 

@@ -3,7 +3,8 @@
 //! figures of groups.
 
 use super::measured::{FigureValue, Result};
-use super::{Basis, Bench, Figure, FigureError, FigureRow};
+use super::{Basis, Bench, Figure, FigureRow};
+use crate::error::StudyError;
 use crate::intervals::{photodiode_line, variations};
 use crate::parallel;
 use pxpl5_sim::figures::column::{DETAILS, ERROR, EXPERIMENT, INTERVAL, NUMBER, PUBLISHED, SIMULATED, STATEMENT};
@@ -53,7 +54,7 @@ const MARK: TableColumn<FigureRow> = ("", |row| if row.is_met { "met" } else { "
 const COLUMNS: [TableColumn<FigureRow>; 7] = [NUMBER, STATEMENT, PUBLISHED, SIMULATED, ERROR, INTERVAL, MARK];
 
 impl FigureGroup {
-    pub(super) fn of(topic: &Topic, bench: &Bench) -> std::result::Result<Self, FigureError> {
+    pub(super) fn of(topic: &Topic, bench: &Bench) -> std::result::Result<Self, StudyError> {
         let rows = parallel::map(&topic.measurements, |measurement| measurement.row(bench));
         let rows = rows.into_iter().collect::<std::result::Result<Vec<_>, _>>()?;
         Ok(Self { title: topic.title, about: topic.about, rows })
@@ -86,10 +87,8 @@ impl Measurement {
         (self.measure)(bench)
     }
 
-    fn row(&self, bench: &Bench) -> std::result::Result<FigureRow, FigureError> {
-        let id = self.figure.id;
-        let measured = self.measured(bench);
-        let measured = measured.map_err(|error| FigureError { id: id.to_owned(), reason: error.to_string() })?;
+    fn row(&self, bench: &Bench) -> std::result::Result<FigureRow, StudyError> {
+        let measured = self.measured(bench).map_err(StudyError::of_figure(self.figure.id))?;
         let interval = self.interval(bench, measured.value);
         Ok(FigureRow { interval, ..self.figure.row(measured) })
     }

@@ -131,8 +131,7 @@ pub(super) fn tracker_and_rendering(
     (reading, stop): (&Reading, &StopFlag),
 ) -> Result<FigureValue> {
     let motion = Arc::new(Synthetic::recorded_use(1));
-    let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1);
-    let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1)?;
     let experiment = Experiment::new(machine, pipeline, scene_named("full-screen:12")?);
     // One run gives all stages from head to light.
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).host(stop.clone()).run()?;

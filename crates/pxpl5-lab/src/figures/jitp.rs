@@ -86,8 +86,7 @@ pub(super) fn measurements() -> Vec<Measurement> {
 }
 
 fn head() -> Result<Head> {
-    let head = Head::new(Arc::new(Pan::at(PAN)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
-    head.map_err(|error| ExperimentError::Scene(error.to_string()))
+    Ok(Head::new(Arc::new(Pan::at(PAN)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1)?)
 }
 
 fn run(machine: MachineConfig, viewpoint: Viewpoint, aim: Aim, fields: u64) -> Result<Outcome> {

@@ -36,5 +36,5 @@ pub(super) fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
 }
 
 pub(super) fn scene_named(name: &str) -> Result<Arc<Scene>> {
-    builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
+    Ok(Arc::new(builtin(name)?))
 }

@@ -1,14 +1,15 @@
 //! The topics by which published figures are grouped.
 
 use super::group::Topic;
-use super::{Bench, FigureError, FigureGroup, jitp, rates, trackers};
+use super::{Bench, FigureGroup, jitp, rates, trackers};
+use crate::error::StudyError;
 
 /// Measures the figures of all topics.
 ///
 /// # Errors
 ///
-/// Returns the first [`FigureError`].
-pub fn figure_groups(bench: &Bench) -> Result<Vec<FigureGroup>, FigureError> {
+/// Returns the first [`StudyError`].
+pub fn figure_groups(bench: &Bench) -> Result<Vec<FigureGroup>, StudyError> {
     let topics = [
         Topic { title: rates::TITLE, about: rates::ABOUT, measurements: rates::measurements() },
         Topic { title: jitp::TITLE, about: jitp::ABOUT, measurements: jitp::measurements() },

@@ -47,7 +47,7 @@ pub(super) fn measurements() -> Vec<Measurement> {
 }
 
 fn model(config: TrackerConfig) -> Result<TrackerModel> {
-    TrackerModel::new(config).map_err(|error| ExperimentError::Scene(error.to_string()))
+    Ok(TrackerModel::new(config)?)
 }
 
 /// Number of seeds. The timer of the host's operating system has a different phase for each seed.
@@ -83,8 +83,7 @@ const FIELDS: u64 = 600;
 
 /// Returns the mean time in ms from the measurement of a head pose until TRANSFORM of the picture for this pose starts.
 fn pose_to_transform_ms(bench: &Bench, tracker: TrackerConfig) -> Result<f64> {
-    let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1);
-    let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    let head = Head::new(Arc::new(Still(Pose::IDENTITY)), tracker, PredictorKind::None, 1)?;
     let machine = bench.reading.on(bench.machine("small-hmd")?)?;
     let experiment = Experiment::new(machine, bench.reading.pipeline(), scene_named("full-screen:12")?);
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;

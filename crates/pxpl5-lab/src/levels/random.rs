@@ -33,11 +33,7 @@ fn stereo(random: &mut SplitMix64) -> Result<Experiment, ExperimentError> {
     let machine = machine("small-hmd", random, (4, 24))?;
     // One of three kinds of scenes: the aircraft, screen-filling triangles, small triangles.
     let scene = match random.between(0, 2) {
-        0 => {
-            let mig = builtin("mig").map_err(|error| ExperimentError::Scene(error.to_string()))?;
-            mig.decimated(random.between(100, 417) as usize)
-                .map_err(|error| ExperimentError::Scene(error.to_string()))?
-        }
+        0 => builtin("mig")?.decimated(random.between(100, 417) as usize)?,
         1 => test_scene(TestScene::FullScreen, random.between(1, 30) as u32),
         _ => test_scene(TestScene::Typical, random.between(20, 600) as u32),
     };
