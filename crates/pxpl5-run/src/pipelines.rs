@@ -81,7 +81,8 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Setti
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
 /// The setting `shading` of pipelines that support both Phong and Gouraud shading.
-const SHADING: Key = Key::new("shading", "method of shading", KeyValues::Names(&const { names(&SHADINGS) }));
+const SHADING: Key =
+    Key::new("shading", "method of shading", KeyValues::Names(&const { names(&SHADINGS) })).with_default("phong");
 
 fn shading_value(shading: Shading) -> KeyValue {
     KeyValue::Name(SHADINGS[usize::from(shading == SHADINGS[1].1)].0)

@@ -232,3 +232,22 @@ impl Registry {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tests the stated default of every key that a single value states.
+    #[test]
+    fn pipelines_have_the_stated_defaults_of_their_keys() {
+        for entry in Registry::of_papers().pipelines() {
+            let settings = (entry.build)(&PipelineSettings::default()).settings();
+            for key in entry.keys.iter().filter(|key| !key.default.contains(' ')) {
+                // A key that only applies with another value of a second key is absent.
+                if let Some((_, value)) = settings.iter().find(|(name, _)| *name == key.name) {
+                    assert_eq!((key.name, &*value.to_string()), (key.name, key.default), "{entry}");
+                }
+            }
+        }
+    }
+}

@@ -13,75 +13,65 @@ type Number = (Key, fn(&mut HmdConfig, f64), fn(&HmdConfig) -> f64);
 /// Keys of the head-mounted display's parameters. Infinite convergence stands for parallel axes.
 pub(super) const KEYS: [Number; 6] = [
     (
-        Key {
-            unit: "deg",
-            default: "60 (published in JITP's example, assumed here, sources: 30 to 100)",
-            ..Key::new(
-                "hmd.field_of_view",
-                "angle between the left and the right edge of an eye's picture",
-                KeyValues::Real(1.0, 170.0),
-            )
-        },
+        Key::new(
+            "hmd.field_of_view",
+            "angle between the left and the right edge of an eye's picture",
+            KeyValues::Real(1.0, 170.0),
+        )
+        .with_unit("deg")
+        .with_default("60 (published in JITP's example, assumed here, sources: 30 to 100)"),
         |config, value| config.horizontal_fov_deg = value,
         |config| config.horizontal_fov_deg,
     ),
     (
-        Key {
-            unit: "mm",
-            default: "64 (assumed, mean of adults, sources: 54 to 74)",
-            ..Key::new("hmd.eye_distance", "distance between the viewer's eyes", KeyValues::Real(0.0, 1000.0))
-        },
+        Key::new("hmd.eye_distance", "distance between the viewer's eyes", KeyValues::Real(0.0, 1000.0))
+            .with_unit("mm")
+            .with_default("64 (assumed, mean of adults, sources: 54 to 74)"),
         |config, value| config.eye_separation_m = value / 1e3,
         |config| config.eye_separation_m * 1e3,
     ),
     (
-        Key {
-            unit: "m",
-            default: "0.05 (assumed: nearer than a hand)",
-            ..Key::new(
-                NEAR,
-                "distance from the eye to the plane in front of which nothing is drawn",
-                KeyValues::Real(1e-6, 1e6),
-            )
-        },
+        Key::new(
+            NEAR,
+            "distance from the eye to the plane in front of which nothing is drawn",
+            KeyValues::Real(1e-6, 1e6),
+        )
+        .with_unit("m")
+        .with_default("0.05 (assumed: nearer than a hand)"),
         |config, value| config.near_m = value,
         |config| config.near_m,
     ),
     (
-        Key {
-            unit: "m",
-            default: "50 (assumed: 24 bits of depth then give steps of 1.2 um at 1 m)",
-            ..Key::new(
-                FAR,
-                "distance from the eye to the plane behind which nothing is drawn, above hmd.near",
-                KeyValues::Real(1e-6, 1e9),
-            )
-        },
+        Key::new(
+            FAR,
+            "distance from the eye to the plane behind which nothing is drawn, above hmd.near",
+            KeyValues::Real(1e-6, 1e9),
+        )
+        .with_unit("m")
+        .with_default("50 (assumed: 24 bits of depth then give steps of 1.2 um at 1 m)"),
         |config, value| config.far_m = value,
         |config| config.far_m,
     ),
     (
-        Key {
-            unit: "m",
-            default: "inf (assumed: the papers print no angle)",
-            ..Key::new(
-                CONVERGENCE,
-                "distance from the head to the point where the optical axes of both eyes meet, or inf for parallel axes",
-                KeyValues::Real(0.1, f64::INFINITY),
-            )
-        },
+        Key::new(
+            CONVERGENCE,
+            "distance from the head to the point where the optical axes of both eyes meet, or inf for parallel \
+                axes",
+            KeyValues::Real(0.1, f64::INFINITY),
+        )
+        .with_unit("m")
+        .with_default("inf (assumed: the papers print no angle)"),
         |config, value| config.convergence_m = Some(value).filter(|metres| *metres != f64::INFINITY),
         |config| config.convergence_m.unwrap_or(f64::INFINITY),
     ),
     (
-        Key {
-            default: "0 (assumed: the papers' pictures are not distorted)",
-            ..Key::new(
-                LENS,
-                "radial distortion of the lens before an eye's picture; only 0 is possible, because the model shows flat pictures without a lens",
-                KeyValues::NUMBER,
-            )
-        },
+        Key::new(
+            LENS,
+            "radial distortion of the lens before an eye's picture; only 0 is possible, because the model shows flat \
+                pictures without a lens",
+            KeyValues::NUMBER,
+        )
+        .with_default("0 (assumed: the papers' pictures are not distorted)"),
         |config, value| config.lens_distortion = value,
         |config| config.lens_distortion,
     ),

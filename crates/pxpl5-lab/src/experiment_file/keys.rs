@@ -40,48 +40,32 @@ const COMMON: &[Key] = &[
         "decimate the scene to at most this number of primitives, with a similar shape",
         KeyValues::Whole(1, u32::MAX as u64),
     ),
-    Key {
-        default: "true",
-        ..Key::new(
-            "fit",
-            "move and scale a model file so that both eyes see all of it; without, its coordinates are metres",
-            KeyValues::Flag,
-        )
-    },
-    Key {
-        default: "false",
-        ..Key::new(
-            "cull",
-            "drop triangles that face away from the eye, in all structures of the scene",
-            KeyValues::Flag,
-        )
-    },
-    Key {
-        default: "scene",
-        ..Key::new(
-            "head.path",
-            "motion in front of the scene, where scene is the scene's own",
-            KeyValues::Names(&const { names(&PathChoice::ALL) }),
-        )
-    },
-    Key {
-        default: "1 for look, that of the scene for scene, else 0",
-        ..Key::new("head.sway", "scale of the head's sway on this path", KeyValues::Real(0.0, 10.0))
-    },
-    Key {
-        unit: "m",
-        default: "the scene fills the view",
-        ..Key::new(
-            "head.distance",
-            "distance from the scene's centre, for still, look and orbit",
-            KeyValues::Real(1e-9, 1e9),
-        )
-    },
-    Key {
-        unit: "deg/s",
-        default: "the mean of recorded head motion",
-        ..Key::new("head.deg_per_s", "rate of turn, for pan and orbit", KeyValues::Real(-1e9, 1e9))
-    },
+    Key::new(
+        "fit",
+        "move and scale a model file so that both eyes see all of it; without, its coordinates are metres",
+        KeyValues::Flag,
+    )
+    .with_default("true"),
+    Key::new("cull", "drop triangles that face away from the eye, in all structures of the scene", KeyValues::Flag)
+        .with_default("false"),
+    Key::new(
+        "head.path",
+        "motion in front of the scene, where scene is the scene's own",
+        KeyValues::Names(&const { names(&PathChoice::ALL) }),
+    )
+    .with_default("scene"),
+    Key::new("head.sway", "scale of the head's sway on this path", KeyValues::Real(0.0, 10.0))
+        .with_default("1 for look, that of the scene for scene, else 0"),
+    Key::new(
+        "head.distance",
+        "distance from the scene's centre, for still, look and orbit",
+        KeyValues::Real(1e-9, 1e9),
+    )
+    .with_unit("m")
+    .with_default("the scene fills the view"),
+    Key::new("head.deg_per_s", "rate of turn, for pan and orbit", KeyValues::Real(-1e9, 1e9))
+        .with_unit("deg/s")
+        .with_default("the mean of recorded head motion"),
     Key::new(
         "head.motion",
         "scene (the motion of head.path), still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, \
@@ -94,10 +78,8 @@ const COMMON: &[Key] = &[
         "behaviour after the end of a recording: error (a longer run is refused), hold or loop",
         KeyValues::Names(&const { names(&End::NAMES) }),
     ),
-    Key {
-        default: "by the file format",
-        ..Key::new("head.axes", "axes of a recording", KeyValues::Names(&const { names(&Axes::NAMES) }))
-    },
+    Key::new("head.axes", "axes of a recording", KeyValues::Names(&const { names(&Axes::NAMES) }))
+        .with_default("by the file format"),
     Key::new("head.tracker", crate::head_names::TRACKERS, KeyValues::ANY),
     Key::new("head.predict", "none, velocity, acceleration or kalman", KeyValues::ANY),
     Key::new(
@@ -105,100 +87,82 @@ const COMMON: &[Key] = &[
         "instant for which a view is predicted, within the time in which it is shown",
         KeyValues::Names(&const { names(&Aim::ALL) }),
     ),
-    Key {
-        default: "scene",
-        ..Key::new(
-            "head.place",
-            "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins) or \
+    Key::new(
+        "head.place",
+        "what the poses of head.motion count from: scene (the motion begins where the scene's own motion begins) or \
              world (the poses are metres in the scene's coordinates)",
-            KeyValues::Names(&const { names(&HeadPlace::ALL) }),
-        )
-    },
+        KeyValues::Names(&const { names(&HeadPlace::ALL) }),
+    )
+    .with_default("scene"),
     Key::new(
         "head.filter",
         "numbers of the predictor: tuned (for the pipeline's prediction interval and the motion, with other noise than in \
          the run) or given (those of tracking.filter)",
         KeyValues::Names(&["tuned", "given"]),
     ),
-    Key {
-        unit: "m",
-        default: "the distance of the scene's content",
-        ..Key::new(
-            "head.evaluate_at",
-            "distance from the eye at which pixel errors are evaluated",
-            KeyValues::Real(0.001, 1e6),
-        )
-    },
+    Key::new(
+        "head.evaluate_at",
+        "distance from the eye at which pixel errors are evaluated",
+        KeyValues::Real(0.001, 1e6),
+    )
+    .with_unit("m")
+    .with_default("the distance of the scene's content"),
     Key::new(
         "head.raster",
         "plain, vdrt (the raster is shifted by the error of the pose), or a device that moves pictures to the newest pose \
          by shift, rotation (timewarp) or depth",
         KeyValues::Names(&["plain", "vdrt", "shift", "rotation", "depth"]),
     ),
-    Key {
-        default: "field",
-        ..Key::new(
-            super::reprojection::EVERY,
-            "how often a device takes the newest pose: field, strip of 128 lines, or line",
-            KeyValues::Names(&const { names(&Every::ALL) }),
-        )
-    },
-    Key {
-        unit: "us",
-        default: "2000 per field, 500 per strip, 100 per line",
-        ..Key::new(
-            super::reprojection::LATENCY,
-            "time from the pose to the first light of the pixels that it moves",
-            KeyValues::Whole(Reprojection::LATENCY_US.0, Reprojection::LATENCY_US.1),
-        )
-    },
-    Key {
-        default: "1",
-        ..Key::new(
-            "seed",
-            "seed of the head motion's sway, or of the tracker's noise",
-            KeyValues::Whole(0, super::plan::MAX_SEED),
-        )
-    },
-    Key {
-        default: "120",
-        ..Key::new(
-            "fields",
-            "periods of the display to simulate: NTSC fields",
-            KeyValues::Whole(FIELDS_RANGE.0, FIELDS_RANGE.1),
-        )
-    },
-    Key {
-        default: "lazy",
-        ..Key::new("pixels", "which pixels are computed", KeyValues::Names(&const { names(&Pixels::ALL) }))
-    },
-    Key {
-        default: "transaction",
-        ..Key::new(
-            "level",
-            "detail of the model of the processors: analytic (sweeps of pipelines with a closed form only), transaction or \
+    Key::new(
+        super::reprojection::EVERY,
+        "how often a device takes the newest pose: field, strip of 128 lines, or line",
+        KeyValues::Names(&const { names(&Every::ALL) }),
+    )
+    .with_default("field"),
+    Key::new(
+        super::reprojection::LATENCY,
+        "time from the pose to the first light of the pixels that it moves",
+        KeyValues::Whole(Reprojection::LATENCY_US.0, Reprojection::LATENCY_US.1),
+    )
+    .with_unit("us")
+    .with_default("2000 per field, 500 per strip, 100 per line"),
+    Key::new(
+        "seed",
+        "seed of the head motion's sway, or of the tracker's noise",
+        KeyValues::Whole(0, super::plan::MAX_SEED),
+    )
+    .with_default("1"),
+    Key::new(
+        "fields",
+        "periods of the display to simulate: NTSC fields",
+        KeyValues::Whole(FIELDS_RANGE.0, FIELDS_RANGE.1),
+    )
+    .with_default("120"),
+    Key::new("pixels", "which pixels are computed", KeyValues::Names(&const { names(&Pixels::ALL) }))
+        .with_default("lazy"),
+    Key::new(
+        "level",
+        "detail of the model of the processors: analytic (sweeps of pipelines with a closed form only), transaction or \
              cycle",
-            KeyValues::Names(&[Level::Analytic.name(), Level::Transaction.name(), Level::Cycle.name()]),
-        )
-    },
+        KeyValues::Names(&[Level::Analytic.name(), Level::Transaction.name(), Level::Cycle.name()]),
+    )
+    .with_default("transaction"),
     Key::new("machine.preset", "a preset of `pxpl5 machines`", KeyValues::ANY),
     Key::new(
         "machine.code",
         "i860 code that the processors run at the cycle level, or none (the table's times)",
         KeyValues::Names(&const { names(&super::plan::CODES) }),
     ),
-    Key {
-        default: "papers",
-        ..Key::new(
-            "machine.times",
-            "times of primitives in the table: papers (published or fitted), or code (those of the i860 code)",
-            KeyValues::Names(&const { names(&super::plan::TIMES) }),
-        )
-    },
+    Key::new(
+        "machine.times",
+        "times of primitives in the table: papers (published or fitted), or code (those of the i860 code)",
+        KeyValues::Names(&const { names(&super::plan::TIMES) }),
+    )
+    .with_default("papers"),
     Key::new("measure", "list of the quantities that go into tables and sweep rows", KeyValues::ANY),
-    Key { default: "true", ..Key::new("output.pictures", "write the last pictures as PNG", KeyValues::Flag) },
-    Key { default: "true", ..Key::new("output.timeline", "write a timeline as SVG", KeyValues::Flag) },
-    Key { default: "true", ..Key::new("output.csv", "write the measured quantities as CSV", KeyValues::Flag) },
+    Key::new("output.pictures", "write the last pictures as PNG", KeyValues::Flag).with_default("true"),
+    Key::new("output.timeline", "write a timeline as SVG", KeyValues::Flag).with_default("true"),
+    Key::new("output.csv", "write the measured quantities as CSV", KeyValues::Flag).with_default("true"),
     Key::new(
         "published.figure",
         "number of the published figure that the experiment reproduces",

@@ -302,7 +302,11 @@ fn every_key_has_one_description_and_its_values_are_in_it() {
     assert!(about("fields").ends_with("; 1 to 10000000; default 120"), "{}", about("fields"));
     assert!(about("hmd.near").contains("; 0.000001 to 1000000 m; default 0.05"), "{}", about("hmd.near"));
     assert!(about("display.hz").ends_with("; 1 to 1000 Hz"), "{}", about("display.hz"));
-    assert!(about("strip_rows").ends_with("; 1 to 128"), "{}", about("strip_rows"));
+    assert!(
+        about("strip_rows").ends_with("; 1 to 128 lines; default 8 for a field, 1 for lines"),
+        "{}",
+        about("strip_rows")
+    );
     assert!(about("level").contains("transaction or cycle; default transaction"), "{}", about("level"));
     let mut paths: Vec<&str> = keys.iter().map(|key| key.path.as_str()).collect();
     paths.sort_unstable();

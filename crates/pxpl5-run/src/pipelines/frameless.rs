@@ -221,13 +221,17 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     about: "blocks in random order, each with the newest view, shown at once (frameless rendering, 1994)",
     preset: "small-hmd",
     keys: &[
-        Key::new("block", "width and height of a block in pixels", KeyValues::Whole(4, 128)),
+        Key::new("block", "width and height of a block", KeyValues::Whole(4, 128))
+            .with_unit("pixels")
+            .with_default("16"),
         Key::new(
             "batch",
             "number of blocks drawn with one view; 0 keeps ring and processors equally busy",
             KeyValues::Whole(0, 65_535),
-        ),
-        Key::new("order_seed", "seed of the order of the blocks", KeyValues::Whole(0, i64::MAX as u64)),
+        )
+        .with_default("0"),
+        Key::new("order_seed", "seed of the order of the blocks", KeyValues::Whole(0, i64::MAX as u64))
+            .with_default("1"),
     ],
     build,
     limit: |_| LimitCriterion { goal: Goal::RateHz(30.0), scene: TestScene::FullScreen, fields: 24 },

@@ -280,7 +280,9 @@ pub fn region_at(grid: &RegionGrid, x: u32, row: u32) -> RegionId {
 
 pub(super) const TABLES: &[NamedTable] = &[("jitp", || Box::new(JitpTiming::PAPERS))];
 
-const KEYS: &[Key] = &[Key::new("strip_rows", "lines of a strip", KeyValues::Whole(1, 128))];
+const KEYS: &[Key] = &[Key::new("strip_rows", "height of a strip", KeyValues::Whole(1, 128))
+    .with_unit("lines")
+    .with_default("8 for a field, 1 for lines")];
 
 const fn entry(
     name: &'static str,

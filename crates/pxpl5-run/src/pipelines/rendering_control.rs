@@ -233,13 +233,15 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     about: "frames drawn region by region in three overlapping stages under PPHIGS (TR94)",
     preset: "small-hmd",
     keys: &[
-        Key::new("mono", "one picture instead of a stereo pair", KeyValues::Flag),
+        Key::new("mono", "one picture instead of a stereo pair", KeyValues::Flag).with_default("false"),
         SHADING,
         Key::new(
             "finished",
-            "rule for a finished region whose frame buffer is not available: wait in pixel memory, or store (the renderer continues with the next)",
+            "rule for a finished region whose frame buffer is not available: wait in pixel memory, or store (the \
+             renderer continues with the next)",
             KeyValues::Names(&[FinishedRegions::Wait.name(), FinishedRegions::Store.name()]),
-        ),
+        )
+        .with_default("wait"),
     ],
     build,
     limit: |_| LimitCriterion { goal: Goal::NoMissedRetrace, scene: TestScene::Typical, fields: 90 },

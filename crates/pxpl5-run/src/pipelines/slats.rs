@@ -372,17 +372,20 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
             "time of the copies of regions: whole (all before the retrace), split (the bottom regions after it) or \
                     backup (split, and the last complete field replaces a late field; beyond the prototype)",
             KeyValues::Names(&const { names(&CopySchedule::ALL) }),
-        ),
+        )
+        .with_default("split"),
         Key::new(
             "binning",
             "receivers of a clump: all regions, or the touched regions",
             KeyValues::Names(&const { names(&RegionBinning::ALL) }),
-        ),
+        )
+        .with_default("all"),
         Key::new(
             "lighting",
             "source of vertex colours: precomputed (no light on the GP), or gp (computed on the GP for each eye)",
             KeyValues::Names(&const { names(&SlatsLighting::ALL) }),
-        ),
+        )
+        .with_default("precomputed"),
         Key {
             sets: &["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"],
             ..Key::new(

@@ -75,7 +75,7 @@ impl fmt::Display for KeyValues {
 /// ```
 /// use pxpl5_sim::parameters::{Key, KeyValues};
 ///
-/// let near = Key { unit: "m", default: "0.05", ..Key::new("near", "nothing nearer is drawn", KeyValues::Real(0.0, 9.0)) };
+/// let near = Key::new("near", "nothing nearer is drawn", KeyValues::Real(0.0, 9.0)).with_unit("m").with_default("0.05");
 /// assert_eq!(near.help(), "nothing nearer is drawn; 0 to 9 m; default 0.05");
 /// assert_eq!(near.expected(), "a number from 0 to 9 m");
 /// ```
@@ -101,6 +101,18 @@ impl Key {
     #[must_use]
     pub const fn new(name: &'static str, about: &'static str, values: KeyValues) -> Self {
         Self { name, about, values, unit: "", default: "", sets: &[] }
+    }
+
+    /// Sets the unit of the number.
+    #[must_use]
+    pub const fn with_unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// Sets the text of the default.
+    #[must_use]
+    pub const fn with_default(self, default: &'static str) -> Self {
+        Self { default, ..self }
     }
 
     /// Returns the meaning, the allowed values, the unit and the default in one line. Names that the meaning explains

@@ -20,13 +20,15 @@ pub(super) const LENS: Key = Key::new(
     "lens",
     "lens before the eye; errors in pixels are those of a flat picture",
     KeyValues::Text(Lens::FORMS, |text| text.parse::<Lens>().map(drop)),
-);
+)
+.with_default("that of the display");
 
 pub(super) const POLICY: Key = Key::new(
     "policy",
     "policy that selects what is drawn when: full, objects, cells or cells-warp (segment and warp need cells)",
     KeyValues::Names(&const { names(&FacePolicy::ALL) }),
-);
+)
+.with_default("full");
 
 /// Names of the falloffs (rules for the decrease of warping with distance), in the order of [`Falloff`], without its
 /// first value, `None`.
@@ -36,10 +38,12 @@ pub(super) const SEGMENT: Key = Key::new(
     "segment",
     "cut structures at the borders of cells (an uncut structure is drawn as often as its nearest part)",
     KeyValues::Flag,
-);
+)
+.with_default("true");
 
 pub(super) const WARP: Key = Key::new(
     "warp",
     "decrease of the displacement of vertices from a border to a slower memory: linear, smoothstep or step",
     KeyValues::Names(&FALLOFFS),
-);
+)
+.with_default("linear");
