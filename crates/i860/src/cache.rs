@@ -125,7 +125,7 @@ mod tests {
     use super::{Chance, Tags};
 
     #[test]
-    fn two_ways_hold_two_lines_of_a_set_and_a_third_drives_one_out() {
+    fn a_third_line_of_a_set_replaces_one_of_its_two_lines() {
         let mut tags = Tags::<128, 2, 32>::new();
         let a = 0x1000;
         let b = 0x2000;
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dirty_line_that_leaves_gives_its_address_once() {
+    fn a_replaced_dirty_line_returns_its_address_once() {
         let mut tags = Tags::<1, 2, 32>::new();
         tags.fill(0x40, 0);
         assert!(tags.access(0x40, true) && !tags.access(0x60, true));

@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_fill_takes_the_first_access_and_three_more() {
+    fn a_line_fill_is_one_first_access_and_three_page_mode_accesses() {
         let t = quiet();
         let mut dram = Dram::new(t);
         let opening = dram.read(0, 0, 4);
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn overlapped_reads_of_the_open_row_arrive_one_after_another() {
+    fn overlapped_reads_of_the_open_row_arrive_in_sequence() {
         let t = quiet();
         let mut dram = Dram::new(t);
         let first = dram.read(0, 0, 1);
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_write_begins_when_the_data_of_a_read_have_passed() {
+    fn a_write_begins_after_the_data_of_the_previous_read() {
         let t = quiet();
         let mut dram = Dram::new(t);
         let line = dram.read(0, 0, 4);
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn another_row_is_opened_when_the_data_of_a_read_have_passed() {
+    fn another_row_is_opened_after_the_data_of_the_previous_read() {
         let t = quiet();
         let mut dram = Dram::new(t);
         let line = dram.read(0, 0, 4);
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn another_row_costs_the_opening_again() {
+    fn changing_the_row_costs_opening_it_again() {
         let t = quiet();
         let mut dram = Dram::new(t);
         dram.read(0, 0, 1);
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refresh_due_holds_a_request_and_one_due_a_clock_later_does_not() {
+    fn a_refresh_delays_a_request_only_if_it_is_due() {
         let t = DramTiming { refresh_interval: 100, refresh_clocks: 7, ..DramTiming::PAPERS };
         let mut due = Dram::new(t);
         assert_eq!(due.read(100, 0, 1).first, 100 + 7 + t.first_miss);
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn the_address_pipe_has_room_when_the_oldest_of_three_is_done() {
+    fn the_address_pipe_holds_three_requests() {
         let mut dram = Dram::new(quiet());
         let oldest = dram.read(0, 0, 1);
         dram.read(0, 8, 1);

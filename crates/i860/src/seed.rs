@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn the_seed_of_zero_is_infinite_and_of_a_negative_root_not_a_number() {
+    fn the_seed_of_zero_is_infinite_and_of_a_negative_root_is_nan() {
         let table = SeedTable::Truncated8;
         assert_eq!(table.reciprocal32(0), f32::INFINITY.to_bits());
         assert!(f32::from_bits(table.reciprocal_root32((-1.0f32).to_bits())).is_nan());

@@ -276,7 +276,7 @@ mod tests {
     use pxpl5_geometry::Culling;
 
     #[test]
-    fn shares_hold_every_primitive_once() {
+    fn shares_have_each_primitive_once() {
         let list = Arc::new(DisplayList { triangles: vec![[0; 3]; 417], ..DisplayList::default() });
         let shares: Vec<_> = (0..12).map(|i| Share::new(Arc::clone(&list), i, 12)).collect();
         for range in [0..417, 5..17, 100..101, 416..417, 3..3] {
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_in_order_leave_all_triangles_as_they_were() {
+    fn sorting_vertices_changes_no_triangle() {
         let structure =
             |triangles| DisplayStructure { triangles, spheres: 0..0, frame: ModelFrame::World, culling: Culling::None };
         // Vertex 0 is used last, vertices 3 and 4 are used by both structures, and vertex 5 is used by no structure.
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn clumps_hold_every_primitive_of_a_share_once_triangles_first() {
+    fn clumps_have_each_primitive_of_a_share_once_triangles_first() {
         let sphere = WorldSphere { centre: Vec3::ZERO, radius: 1.0, colour: [0; 3] };
         let list = DisplayList { triangles: vec![[0; 3]; 70], spheres: vec![sphere; 25], ..DisplayList::default() };
         let clumps: Vec<_> = Share::new(Arc::new(list), 0, 1).clumps(30).collect();

@@ -243,13 +243,13 @@ mod tests {
     }
 
     #[test]
-    fn ten_regions_take_five_when_both_ports_start_at_once() {
+    fn ten_regions_take_five_region_times_when_both_ports_start_together() {
         let [left, right]: [&[bool]; 2] = [&[false, true], &[true, false]];
         assert_eq!(times([left, right, left, right, left], 780.0).end_ns, 5.0 * 780.0);
     }
 
     #[test]
-    fn a_queue_has_its_copies_in_order_and_by_turns() {
+    fn copies_of_a_queue_are_in_order_and_alternate_between_the_ports() {
         let mut queue = Queue::default();
         [false, false, true].into_iter().for_each(|right| queue.push(right));
         assert_eq!((queue, queue.len()), (Queue(0b11_01_01), 3));

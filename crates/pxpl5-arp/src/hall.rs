@@ -92,7 +92,7 @@ mod tests {
     /// Tests the built-in gallery at half its size. The original is 40 m wide and 4 m high, and its path begins at
     /// (-16, -15). The heights must not change.
     #[test]
-    fn a_scaled_hall_keeps_its_height_and_its_eyes() {
+    fn a_scaled_hall_keeps_its_height_and_the_height_of_the_eyes() {
         let scene = builtin("gallery").expect("built in");
         let half = scaled(&scene, 0.5).expect("a scene");
         let reach = half.vertices().iter().fold(Vec3::ZERO, |reach, vertex| reach.max(vertex.position));

@@ -198,7 +198,7 @@ mod tests {
     const BUDGET: BudgetArgs = BudgetArgs { max_memory: 1_000, max_seconds: 100 };
 
     #[test]
-    fn a_run_goes_on_as_it_began_and_is_refused_with_what_it_would_take() {
+    fn a_run_that_would_take_too_long_is_refused_with_its_estimate() {
         let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken::default(), Taken { seconds, bytes }, 0.1);
         assert_eq!((refusal(10.0, 100e6), refusal(0.4, 49e6)), (None, None));
         assert!(refusal(10.1, 0.0).is_some_and(|reason| reason.contains("take 101 s, more than 100")));
@@ -206,14 +206,14 @@ mod tests {
     }
 
     #[test]
-    fn what_was_too_short_to_tell_is_no_reason() {
+    fn a_measurement_that_is_too_short_refuses_no_run() {
         let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken::default(), Taken { seconds, bytes }, 1e-6);
         assert_eq!(refusal(0.4, 49e6), None);
         assert!(refusal(0.6, 0.0).is_some());
     }
 
     #[test]
-    fn what_comes_before_a_run_counts_once_and_not_for_each_field() {
+    fn the_time_before_a_run_counts_once_and_not_for_each_field() {
         let refusal = |before: f64, seconds: f64| {
             BUDGET.refusal(Taken { seconds: before, bytes: 0.0 }, Taken { seconds, bytes: 0.0 }, 0.1)
         };
@@ -227,7 +227,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn memory_of_this_process_is_known() {
+    fn the_memory_of_this_process_can_be_measured() {
         let before = resident_bytes().expect("Linux tells");
         // `black_box` keeps the optimizer from removing the allocation, which no code reads.
         let held = std::hint::black_box(vec![1u8; 64 << 20]);

@@ -219,7 +219,7 @@ mod tests {
     /// does not use it. An estimate of time may be up to 12 times too high, because programs of the profile
     /// `dist` are faster.
     #[test]
-    fn estimates_hold_for_volumes_to_which_nothing_was_fitted() {
+    fn estimates_hold_for_volumes_outside_the_calibration() {
         for (work, megabytes, seconds) in HELD_OUT {
             let Estimate { bytes, seconds: estimated } = work.estimate();
             let bits = (work.slices * work.width * work.height) as f64 / 2e6;

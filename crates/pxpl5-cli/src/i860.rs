@@ -335,7 +335,7 @@ mod tests {
     const STORE: &str = "start: mov 7, r5\nmov table, r6\nst.l r5, 4(r6)\nend: nop\ntable: .long 1, 2, 3";
 
     #[test]
-    fn a_run_tells_registers_and_the_memory_that_it_changed_by_its_labels() {
+    fn a_run_prints_registers_and_changed_memory_by_label() {
         let program = load(&file("store.s", STORE), 0x1000).expect("correct");
         let table = program.symbol("table").expect("a label");
         let (text, result) = execute(&program, &options()).expect("fits");
@@ -363,7 +363,7 @@ mod tests {
 
     /// Tests the example program of the guide, which computes 1 + 4 + 9 + 16 = 30.
     #[test]
-    fn the_program_of_the_guide_runs_and_gives_what_it_says() {
+    fn the_program_of_the_guide_gives_the_results_in_the_guide() {
         let page = include_str!("../../../docs/guide/assembler.md");
         let source = page.split_once("```i860\n").and_then(|(_, rest)| rest.split_once("```")).expect("a program").0;
         let program = load(&file("guide.s", source), 0x1000).expect("correct");
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_label_is_refused_with_those_that_there_are() {
+    fn an_unknown_label_is_refused_with_the_known_labels() {
         let program = load(&file("labels.s", STORE), 0x1000).expect("correct");
         let wrong = RunOptions { stop: Some("ende".to_owned()), ..options() };
         let error = execute(&program, &wrong).expect_err("no label");
@@ -387,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn an_address_that_is_none_is_refused() {
+    fn an_invalid_address_is_refused() {
         assert_eq!(address("0x1F"), Ok(31));
         assert!(address("end").is_err() && address("0x1_0000_0000").is_err());
     }

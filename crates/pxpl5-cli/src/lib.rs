@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn every_command_of_the_help_texts_is_understood() {
+    fn every_command_in_the_help_texts_is_accepted() {
         let mut command = Cli::command();
         let mut found = parses(&command.render_long_help().to_string());
         for sub in command.get_subcommands_mut() {
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn every_command_of_the_documents_is_understood() {
+    fn every_command_in_the_documents_is_accepted() {
         for (page, least) in [
             (include_str!("../../../docs/sweeps.md"), 10),
             (include_str!("../../../docs/guide/head-to-light.md"), 5),

@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_committed_leaves_no_trace() {
+    fn an_uncommitted_output_leaves_no_file() {
         let path = place("dropped").join("inner");
         let mut folder = OutputFolder::open(&path, "--out").expect("the temporary directory can be written");
         folder.put("a.txt", b"half").expect("written");
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_committed_is_there_alone() {
+    fn a_committed_output_leaves_only_its_own_files() {
         let path = place("kept");
         let mut folder = OutputFolder::open(&path, "--out").expect("the temporary directory can be written");
         folder.put("a.txt", b"whole").expect("written");

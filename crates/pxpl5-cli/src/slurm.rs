@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn an_array_is_no_longer_than_slurm_takes_and_no_task_is_empty() {
+    fn an_array_fits_the_limit_of_slurm_and_no_task_is_empty() {
         let million = Sample { points: 1_000_000, mean_s: 10.0, ..SAMPLED };
         // 11,112 tasks were wanted; 999 is the greatest number below 1,000 without the factors 2 and 5.
         assert_eq!(Resources::of(million, None, 1).tasks, 999);
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn sampled_points_are_each_once_and_meet_every_value_of_every_axis_evenly() {
+    fn sampled_points_are_distinct_and_cover_every_axis_evenly() {
         for points in [1, 2, 7, 300, 301, 4_096, 1_000_000, 9_999_991] {
             let chosen: BTreeSet<u64> = spread(points, SAMPLE).collect();
             assert_eq!(chosen.len() as u64, points.min(SAMPLE), "{points}");
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn words_go_through_a_shell_as_they_are() {
+    fn arguments_pass_through_a_shell_unchanged() {
         assert_eq!(quoted("a/b-1.toml"), "a/b-1.toml");
         assert_eq!(quoted("it's $HOME"), "'it'\\''s $HOME'");
         assert_eq!(quoted(""), "''");

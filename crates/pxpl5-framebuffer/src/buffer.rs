@@ -232,7 +232,7 @@ mod tests {
     /// Tests that the buffer discards exactly those regions whose pixels later regions have all overwritten. The number
     /// of regions in the buffer must stay limited.
     #[test]
-    fn discarded_regions_are_exactly_those_that_later_regions_cover() {
+    fn exactly_the_regions_covered_by_later_regions_are_discarded() {
         let video = crate::FrameBufferConfig::NTSC.video.video().expect("valid");
         let mut buffer = Buffer::new();
         let mut frame = vec![0; (SIZE[0] * SIZE[1]) as usize];

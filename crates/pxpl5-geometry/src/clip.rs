@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_before_the_near_plane_leaves_a_quadrilateral() {
+    fn clipping_one_corner_at_the_near_plane_leaves_a_quadrilateral() {
         let polygon = GUARD.clip(&[
             vertex([0.0, 0.0, -1.0, 1.0], 0.0),
             vertex([1.0, 0.0, 1.0, 2.0], 2.0),

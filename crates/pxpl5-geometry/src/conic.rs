@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_greater_than_the_peak() {
+    fn no_value_of_a_conic_exceeds_its_peak() {
         let Ellipse { peak: [x, y], value, .. } = SHIFTED.ellipse();
         for (dx, dy) in [(0.1, 0.0), (-0.1, 0.05), (0.0, 0.1), (0.0, -0.1)] {
             assert!(SHIFTED.at(x + dx - 3.25, y + dy + 7.5) < value);

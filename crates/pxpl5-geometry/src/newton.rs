@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn roots_and_reciprocals_are_good_to_the_last_places() {
+    fn roots_and_reciprocals_are_accurate_to_the_last_places() {
         for n in -1000..1000 {
             let value = 1.7_f64.powf(f64::from(n) * 0.5);
             assert!((root(value) / value.sqrt() - 1.0).abs() < 1e-15, "root of {value}");
@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_are_the_nearest_and_even_between_two() {
+    fn rounding_is_to_the_nearest_integer_with_ties_to_even() {
         let values = [0.0, 0.5, 1.5, -0.5, -1.5, 2.4, -2.6, 1e15 + 0.25, -1e15];
         assert_eq!(values.map(whole), [0, 0, 2, 0, -2, 2, -3, 1_000_000_000_000_000, -1_000_000_000_000_000]);
     }

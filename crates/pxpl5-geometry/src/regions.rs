@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mask_iterates_its_regions_by_rising_number() {
+    fn a_mask_iterates_its_regions_in_ascending_order() {
         let mask = [0, 5, 127].into_iter().fold(RegionMask::EMPTY, |m, r| m.union(RegionMask::only(RegionId(r))));
         let found: Vec<u16> = mask.iter().map(|r| r.0).collect();
         assert_eq!((mask.len(), found), (3, vec![0, 5, 127]));

@@ -233,7 +233,7 @@ mod tests {
     use glam::Mat4;
 
     #[test]
-    fn vertices_side_by_side_are_those_of_one_after_the_other() {
+    fn vertices_computed_side_by_side_equal_vertices_computed_singly() {
         let view = ViewTransform {
             model_view: Mat4::from_rotation_y(0.3),
             projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.1, 50.0),
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_side_by_side_are_those_of_one_after_the_other() {
+    fn surfaces_computed_side_by_side_equal_surfaces_computed_singly() {
         let view = ViewTransform {
             model_view: Mat4::from_rotation_y(0.3),
             projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.1, 50.0),

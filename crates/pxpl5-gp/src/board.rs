@@ -445,7 +445,7 @@ mod tests {
     }
 
     #[test]
-    fn simultaneous_messages_are_taken_in_the_order_of_their_senders_whatever_the_tie() {
+    fn simultaneous_messages_are_taken_in_the_order_of_their_senders() {
         for seed in 0..20 {
             let mut board = board();
             let mut bench = TestBench::new();
@@ -459,7 +459,7 @@ mod tests {
     }
 
     #[test]
-    fn a_batch_waits_for_the_clump_buffer_and_not_for_the_ring() {
+    fn a_batch_waits_only_for_the_clump_buffer() {
         async fn two_clumps(gp: Gp) -> Result<(), Fault> {
             for clump in 0..2 {
                 gp.clump_buffer_free().await;
@@ -500,7 +500,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blocked_board_names_what_it_waits_for() {
+    fn a_blocked_board_names_the_cause_of_its_wait() {
         let mut board = board();
         let mut bench = TestBench::new();
         bench.feed(Time(0), Phase::Work, GpEvent::Poll);

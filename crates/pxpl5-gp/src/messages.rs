@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn by_code_a_message_takes_the_time_of_the_code_whatever_the_table_says() {
+    fn with_code_a_message_takes_the_time_of_the_code() {
         let lengths = [1, 2, 100, 3];
         let [one, other] = [1_000, 5_000].map(|message_ns| fed(&mut board(message_ns, true), &lengths));
         assert_eq!(one, other);

@@ -257,7 +257,7 @@ mod tests {
     /// triangles (1995). I3D95 expects a third of the time of 1994 for code that fits the instruction cache. Slats has
     /// no bins, so a bin entry takes no time.
     #[test]
-    fn slats_takes_what_its_published_limits_ask_for() {
+    fn the_times_of_slats_follow_from_its_published_limits() {
         let presets = [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED];
         let times = presets.map(|preset| [preset.triangle_ns, preset.sphere_ns, preset.bin_entry_ns]);
         assert_eq!(times, [30_000, 55_800, 10_000].map(|ns| [ns, ns, 0]));
@@ -266,7 +266,7 @@ mod tests {
     /// Tests the timing tables with times of i860 code. They must replace every time of the published table that i860
     /// code determines.
     #[test]
-    fn tables_of_code_leave_no_time_of_code_as_it_was() {
+    fn tables_of_code_replace_every_time_of_code() {
         let mut before = GpTiming::PAPERS;
         for entry in GpTiming::PAPERS.entries() {
             before.set(entry.info.name, 1.into()).expect("a number of nanoseconds or bytes");
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn the_applications_time_is_spread_around_its_mean_and_never_below_nothing() {
+    fn the_applications_time_varies_around_its_mean_and_is_never_negative() {
         let host = |application_ns, application_jitter_ns| HostTiming {
             application_ns,
             application_jitter_ns,
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_on_the_hosts_link_takes_four_bytes_of_its_rate() {
+    fn a_word_on_the_hosts_link_takes_the_time_of_four_bytes() {
         // 5 MB/s give 800 ns per word, and 3 bytes per second give 4/3 s.
         assert_eq!(HostTiming::PAPERS.link_span(7), Span::from_ns(5_600));
         let slow = HostTiming { link_bytes_per_s: 3, ..HostTiming::PAPERS };

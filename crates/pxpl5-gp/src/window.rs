@@ -21,7 +21,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_window_is_from_its_first_byte_to_the_end_of_the_softwares_memory() {
+    fn the_window_extends_to_the_end_of_the_ring_softwares_memory() {
         let addresses = [0, WINDOW - 1, WINDOW, RING_MEMORY.end - 1, RING_MEMORY.end, u32::MAX];
         assert_eq!(addresses.map(is_cacheable), [true, true, false, false, true, true]);
     }

@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn an_image_is_put_where_there_is_a_processor_and_does_not_fit_anywhere() {
+    fn an_image_needs_a_processor_and_enough_memory() {
         for (code, address, fault) in [
             (SCHEDULED, 0x2000, None),
             (SCHEDULED, 8 << 20, Some("graphics processor at node 5: no memory for 1 words at 0x00800000")),

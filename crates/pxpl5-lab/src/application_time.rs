@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_host_that_asks_at_once_gives_the_figures_as_they_are() {
+    fn a_host_without_application_time_gives_the_figures_unchanged() {
         let bench = Bench::new(Level::Analytic).with_mig(2, 60);
         let as_it_is = bench.measure("7").expect("the mig").value;
         let at_once = measure(&bench, 0, 0).expect("the scenes are there");

@@ -451,7 +451,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sphere_takes_what_its_entries_leave() {
+    fn the_time_of_a_sphere_excludes_its_bin_entries() {
         let times = CodeTimes {
             triangle_ns: 0.0,
             triangle_range_ns: [0.0; 2],

@@ -125,7 +125,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn settings_and_results_are_told_apart_and_host_times_left_out() {
+    fn settings_and_results_are_separated_and_host_times_are_ignored() {
         let a = json!({"pipeline": "slats", "shown": 4, "latency_ms": {"mean": 20.0, "n": 4}, "host_seconds": 1.0, "trace_hash": "x"});
         let b = json!({"pipeline": "frameless", "shown": 4, "latency_ms": {"mean": 25.0, "n": 4}, "host_seconds": 2.0, "trace_hash": "y"});
         let found = diff(&a, &b);

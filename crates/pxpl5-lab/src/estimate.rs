@@ -343,7 +343,7 @@ mod tests {
     ];
 
     #[test]
-    fn many_runs_take_the_sum_of_their_times_and_the_largest_memory_of_each_thread() {
+    fn many_runs_take_the_sum_of_times_and_the_largest_memory_of_each_thread() {
         let runs = [(3e9, 10.0), (5e9, 20.0), (4e9, 30.0)].map(|(bytes, seconds)| Estimate { bytes, seconds });
         assert_eq!(Estimate::of_all(runs.into_iter(), 2), Estimate { bytes: 10e9, seconds: 30.0 });
         assert_eq!(Estimate::of_all(std::iter::empty(), 0), Estimate { bytes: 0.0, seconds: 0.0 });
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn more_of_anything_takes_more() {
+    fn larger_inputs_have_larger_estimates() {
         let least = RunWork { block: 16, batch: 4, ..SMALL }.estimate();
         for more in [
             RunWork { fields: 1_201, block: 16, batch: 4, ..SMALL },
@@ -402,7 +402,7 @@ mod tests {
     ];
 
     #[test]
-    fn studies_take_what_is_estimated_within_a_third() {
+    fn the_time_of_studies_is_estimated_to_a_third() {
         for (study, seconds, megabytes) in STUDIES {
             let time = study.core_seconds() / seconds;
             let memory = study.bytes() / 1e6 / megabytes;

@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interval_stays_where_it_was_computed_however_far_off_the_simulated_value_is() {
+    fn an_interval_is_not_moved_to_the_simulated_value() {
         for simulated in [1.0, 21.0, 500.0] {
             let row = row_of_figure_2(simulated);
             assert_eq!((row.interval, row.analytic), (Some([20.0, 22.0]), Some(21.0)));
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_is_out_of_reach_beyond_the_interval_widened_by_the_distance_of_the_levels() {
+    fn a_figure_is_out_of_reach_outside_the_interval_widened_by_the_distance_of_the_levels() {
         // 31.2 ms minus the last printed digit, 0.312, is 8.888 above the upper bound of 22 ms.
         for (distance, out_of_reach) in [(0.0, true), (8.8, true), (-8.8, true), (8.9, false), (-8.9, false)] {
             let row = row_of_figure_2(21.0 + distance);

@@ -48,7 +48,7 @@ mod tests {
     use super::deviation_percent;
 
     #[test]
-    fn what_one_level_has_and_the_other_has_not_counts_a_hundred_percent() {
+    fn a_value_that_only_one_level_has_counts_as_a_hundred_percent() {
         assert!((deviation_percent(103.0, 100.0) - 3.0).abs() < 1e-9);
         assert_eq!([deviation_percent(0.0, 0.0), deviation_percent(f64::NAN, f64::NAN)], [0.0; 2]);
         let one_sided = [(59.94, 0.0), (0.0, 59.94), (1.0, f64::NAN), (f64::NAN, 1.0)];

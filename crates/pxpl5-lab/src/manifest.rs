@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn a_manifest_is_read_as_it_was_written_and_tells_what_has_changed() {
+    fn a_manifest_is_read_as_written_and_finds_changed_files() {
         let folder = folder("round");
         assert_eq!(Manifest::read(&folder).expect("no file is no error"), None);
         let mut manifest = Manifest::new("run");
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_written_again_goes_unless_its_user_has_changed_it() {
+    fn files_not_written_again_are_removed_unless_the_user_changed_them() {
         let folder = folder("gone");
         let mut before = Manifest::new("run");
         for name in ["kept", "changed", "gone", "absent"] {

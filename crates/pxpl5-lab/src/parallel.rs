@@ -36,7 +36,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_within_runs_come_to_an_end_and_keep_their_order() {
+    fn nested_parallel_runs_finish_and_keep_their_order() {
         let tens: Vec<u64> = (0..40).collect();
         let of_tens = |ten: &u64| map(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], |one| 10 * ten + one);
         let (all, last) = both(|| map(&tens, of_tens), || of_tens(&40));

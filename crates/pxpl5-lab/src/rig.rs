@@ -328,7 +328,7 @@ mod tests {
 
     /// Tests that one run with three photodiodes gives the same results as three runs with one photodiode each.
     #[test]
-    fn photodiodes_of_one_run_measure_what_each_measures_alone() {
+    fn photodiodes_in_one_run_measure_the_same_as_alone() {
         let rig = Rig { passes: 4, ..Rig::assumed(TrackerConfig::optical_ceiling()) };
         let (machine, pipeline) = (MachineConfig::small_hmd(), Arc::new(RenderingControl::stereo()));
         let lines = [0, 100, 239];

@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_of_another_run_is_told_apart() {
+    fn a_checkpoint_of_another_machine_is_refused() {
         let (plan, snapshot, _) = saved();
         let other = Plan { seed: 6, ..plan.clone() };
         let result = other.experiment(plan.load_scene().expect("built in")).run_stopping(
@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn every_changed_byte_and_every_cut_is_noticed() {
+    fn every_changed_byte_and_every_truncation_is_detected() {
         let (_, snapshot, _) = saved();
         let text = snapshot.to_text();
         for at in 0..text.len() - 2 {

@@ -77,7 +77,7 @@ mod tests {
     /// Tests that the first instant of a run and the simulation of a whole field find the same missing resources. Some
     /// of the machines lack boards or memory.
     #[test]
-    fn the_begin_of_a_run_says_what_a_whole_field_says() {
+    fn starting_a_run_finds_the_same_faults_as_running_a_field() {
         let small = |n_gps, n_renderers, memory_bytes| {
             let machine = MachineConfig { n_gps, n_renderers, ..MachineConfig::small_hmd() };
             let gp = pxpl5_gp::GpTiming { memory_bytes, ..machine.gp };
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_says_what_it_lacks() {
+    fn an_unsuitable_machine_is_refused_with_the_missing_part() {
         // Rendering Control needs a master and at least one slave. Slats binds 20 regions, four to a renderer.
         let few = MachineConfig { n_gps: 1, n_renderers: 4, ..MachineConfig::small_hmd() };
         let lacking = lacking(&few);

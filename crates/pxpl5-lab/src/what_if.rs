@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn more_is_a_tenth_and_at_least_one_step() {
+    fn an_increase_is_a_tenth_and_at_least_one_step() {
         let config = MachineConfig::preset("large").expect("a preset");
         let tried: Vec<(u64, u64)> =
             KNOBS.iter().filter_map(|knob| knob.more(&config)).map(|(from, to, _)| (from, to)).collect();

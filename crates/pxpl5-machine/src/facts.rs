@@ -45,13 +45,13 @@ mod tests {
     use pxpl5_wire::{CommandList, NodeId, PictureNumber};
 
     #[test]
-    fn a_message_is_told_by_its_ports_and_its_length() {
+    fn a_message_is_described_by_its_ports_and_length() {
         let message = Message { source: NodeId(3), destination: NodeId(70), words: 9, body: Body::Words([7].into()) };
         assert_eq!(facts(2, &message), [2, 3, 70, 9]);
     }
 
     #[test]
-    fn what_a_line_brings_is_told_by_its_port_and_its_words() {
+    fn a_message_of_a_line_is_described_by_its_port_and_words() {
         assert_eq!(host_line_facts(6, &Body::Words([5, 4].into())), [8, 6, 5, 4]);
         let list = CommandList { runs: Vec::new(), context: 0, copies: Vec::new(), content: None };
         assert_eq!(host_line_facts(6, &Body::Commands(list)), [10, 6]);
@@ -60,7 +60,7 @@ mod tests {
     /// Tests the number of a surface in the trace hash. Published hashes depend on these numbers: 0 and 1 for the first
     /// two surfaces, 2 for no surface, then 3 and up.
     #[test]
-    fn marks_are_told_with_their_surfaces_as_ever() {
+    fn marks_keep_their_surfaces() {
         let surfaces = [Some(0), Some(1), None, Some(2), Some(3)];
         for (number, surface) in (0..).zip(surfaces) {
             let mark = Mark {

@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_stays_known_however_long_ago_it_was_swapped_in() {
+    fn the_displayed_frame_is_kept_however_old_it_is() {
         let mut observation = stereo();
         observation.discard_before(Time(1_000_000), tick);
         let left: Vec<(SurfaceId, u64)> = observation.swaps.iter().map(|swap| (swap.surface, swap.number)).collect();
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_at_the_instant_stays_and_room_for_as_much_again() {
+    fn discarding_keeps_the_records_at_the_instant() {
         let mut observation = stereo();
         observation.marks = (0..1_000).map(|n| mark(n, n, StageEdge::Begin)).collect();
         observation.arrivals = (0..1_000).map(|n| arrival(0, n / 2, n, n)).collect();

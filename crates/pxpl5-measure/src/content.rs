@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_meets_what_every_triangle_one_by_one_says() {
+    fn a_ray_meets_the_same_triangle_as_a_test_of_every_triangle() {
         let (contents, scene) = contents("mig");
         let (centre, radius) = scene.bounding_sphere();
         let eye = centre.as_dvec3() + DVec3::Z * 3.0 * f64::from(radius);
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn of_some_structures_only_those_are_met() {
+    fn a_ray_meets_only_the_selected_structures() {
         let (contents, scene) = contents("mig");
         let (centre, radius) = scene.bounding_sphere();
         let eye = centre.as_dvec3() + DVec3::Z * 3.0 * f64::from(radius);
@@ -261,7 +261,7 @@ mod tests {
     /// Tests the distance of a line from a sphere's centre against the smallest distance among 20,001 points of the
     /// line.
     #[test]
-    fn a_line_passes_a_centre_at_its_least_distance_and_enters_a_sphere_on_its_surface() {
+    fn a_line_has_a_least_distance_to_a_centre_and_enters_a_sphere_on_its_surface() {
         let centre = DVec3::new(0.5, -1.0, -6.0);
         for i in -10..=10 {
             for j in -10..=10 {
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_fixed_to_the_head_is_no_content() {
+    fn objects_fixed_to_the_head_are_not_content() {
         let (contents, _) = contents("full-screen:4");
         assert_eq!(contents.met(DVec3::ZERO, DVec3::NEG_Z, Time::ZERO), None);
     }

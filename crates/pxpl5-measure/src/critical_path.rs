@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn no_board_is_named_where_several_share_the_part() {
+    fn no_board_is_named_if_several_share_the_part() {
         let half = |number, from, to| step(Resource::Renderers, Some(Board::Renderer(number)), from, to);
         let path = CriticalPath::of_chains(&[vec![half(0, 50, 100), half(1, 0, 50)]]).expect("a picture");
         assert_eq!(path.limited_by, "execution of commands in the renderers, 100 % of the latency");
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_said_of_no_picture() {
+    fn without_a_picture_there_is_no_critical_path() {
         assert_eq!(CriticalPath::of_chains(&[]), None);
     }
 }

@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_whole_number_lies_at_or_after_a_position_within_the_limits() {
+    fn the_next_integer_is_at_or_after_a_position_within_the_limits() {
         for (position, expected) in
             [(3.0, 3), (3.001, 4), (-7.5, 2), (2.0, 2), (9.5, 9), (1e30, 9), (f32::NEG_INFINITY, 2), (f32::NAN, 2)]
         {
@@ -422,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_depths_and_views_of_different_sizes_are_not_moved() {
+    fn pictures_depths_and_views_must_have_equal_sizes() {
         let depths = DepthPicture::from_fn(640, 479, |_, _| 1.0);
         let [pose, view] = [Pose::IDENTITY, Pose::IDENTITY];
         assert!(reproject_with_depth(&places(), &depths, &Hmd::unc(), &pose, &view).is_none());
@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_move_every_pixel_stays_whatever_its_depth() {
+    fn without_movement_every_pixel_stays_at_any_depth() {
         let (picture, empty) = moved(|x, y| 0.5 + (x * 7 + y * 13) as f32 % 10.0, &Pose::IDENTITY);
         assert_eq!(empty, 0);
         assert_eq!(picture, places());
@@ -440,7 +440,7 @@ mod tests {
     /// Tests that a rotation of the head moves a picture as the homography does, for any depth. Pixels may differ by
     /// one column or row.
     #[test]
-    fn a_turn_gives_the_picture_of_the_homography() {
+    fn a_rotation_gives_the_picture_of_the_homography() {
         let now = Pose::facing(rotation::from_yaw_pitch_roll(0.05, -0.02, 0.01));
         let (expected, beyond) =
             reproject(&places(), &Hmd::unc(), Warp::Rotation, &Pose::IDENTITY, &now).expect("the size");
@@ -461,7 +461,7 @@ mod tests {
     /// is the focal length in pixels. To the right of a near plane, f t (1 / near - 1 / far) columns stay empty. The
     /// near plane hid this part of the far plane.
     #[test]
-    fn a_step_moves_planes_by_f_t_by_z_and_opens_the_difference() {
+    fn a_translation_moves_planes_by_f_t_by_z_and_opens_gaps_between_them() {
         let focal = Hmd::unc().focal_px();
         let (near, far) = (1.0_f32, 4.0_f32);
         for step in [0.004_f64, 0.01, 0.03] {
@@ -496,7 +496,7 @@ mod tests {
 
     /// Tests that strips with equal poses together give the same picture as one move of the whole picture.
     #[test]
-    fn strips_of_one_pose_make_the_whole_picture_of_this_pose_in_frames_and_fields() {
+    fn strips_of_one_pose_make_the_whole_picture_in_frames_and_fields() {
         let now = Pose {
             position: DVec3::new(0.02, -0.03, -0.04),
             orientation: rotation::from_yaw_pitch_roll(0.03, 0.04, -0.05),

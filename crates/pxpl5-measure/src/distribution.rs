@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn up_to_the_limit_percentiles_are_those_of_the_numbers_bit_for_bit() {
+    fn up_to_the_limit_percentiles_are_exact() {
         let mut all = Distribution::keeping(1_000);
         numbers(1_000).for_each(|value| all.push(value));
         assert_eq!(all.percentiles(), Percentiles::of(numbers(1_000)));
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_it_they_are_a_2048th_beside_them_at_most() {
+    fn beyond_the_limit_percentiles_are_off_by_at_most_a_2048th() {
         for limit in [0, 1, 999] {
             let mut counted = Distribution::keeping(limit);
             numbers(1_000).for_each(|value| counted.push(value));
@@ -118,7 +118,7 @@ mod tests {
     /// Tests that the percentiles of a histogram are middles of bins. The bins are 1/1024 wide between 1 and 2, and
     /// 4/1024 wide between 4 and 8.
     #[test]
-    fn a_bin_stands_for_its_middle() {
+    fn a_bin_represents_its_middle() {
         for (value, middle) in [(1.0, 1.0 + 1.0 / 2_048.0), (1.000_9, 1.0 + 1.0 / 2_048.0), (6.0, 6.0 + 4.0 / 2_048.0)]
         {
             let mut counted = Distribution::keeping(0);
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn of_nothing_there_is_no_number() {
+    fn an_empty_distribution_has_no_statistics() {
         assert_eq!(Distribution::keeping(0).percentiles().n, 0);
         assert!(Distribution::keeping(5).percentiles().mean.is_nan());
     }

@@ -71,7 +71,7 @@ mod tests {
     use glam::DQuat;
 
     #[test]
-    fn what_is_drawn_between_two_moments_is_drawn_for_its_part_of_the_time_between_them() {
+    fn a_pixel_between_two_poses_is_drawn_for_the_interpolated_pose() {
         let moment = |at: u64| Moment { pose: Pose::facing(DQuat::IDENTITY), objects_at: Time(at), measured_at: None };
         let light = Time(9_000);
         for (part, expected) in [(0.0, 1_000), (0.25, 1_500), (0.5, 2_000), (1.0, 3_000)] {

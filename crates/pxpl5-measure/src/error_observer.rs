@@ -462,7 +462,7 @@ mod tests {
 
     /// Tests that the number of views in memory does not grow during a run that discards records.
     #[test]
-    fn what_is_held_of_a_run_does_not_grow_with_it() {
+    fn the_memory_of_the_observer_does_not_grow_with_the_run() {
         for (name, scene, fields) in [
             ("slats", "sphere:10", 1_000),
             ("rendering-control", "sphere:10", 1_000),
@@ -484,7 +484,7 @@ mod tests {
     /// Tests an observer that stores three fields one by one and counts five. In field n, the middle pixel has an error
     /// of n pixels and n/8 degrees.
     #[test]
-    fn so_many_fields_are_kept_one_by_one_and_all_of_them_counted() {
+    fn a_limited_number_of_fields_is_kept_and_all_are_counted() {
         let mut collected = Collected::keeping(3, EyeSum::keeping(3, false, None));
         for field in 1..=5 {
             let error = Misregistration { offset_px: DVec2::ZERO, pixels: field as f64, degrees: field as f64 / 8.0 };

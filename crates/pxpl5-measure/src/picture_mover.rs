@@ -211,7 +211,7 @@ mod tests {
     /// Tests a picture that is moved with its depths against rays into the scene. The two pictures may differ at the
     /// edges of objects, and elsewhere by one pixel because of rounding.
     #[test]
-    fn a_mesh_with_depth_shows_what_rays_from_both_poses_find() {
+    fn a_moved_mesh_with_depth_agrees_with_rays_from_both_poses() {
         let registry = Registry::of_papers();
         let pipeline = (registry.pipeline("jitp-field").expect("listed").build)(&PipelineSettings::default());
         let motion = Arc::new(SlidingTurn);

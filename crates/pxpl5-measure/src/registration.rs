@@ -238,12 +238,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_middle_of_a_pixel_is_half_a_pixel_beyond_its_corner() {
+    fn the_centre_of_a_pixel_is_half_a_pixel_beyond_its_corner() {
         assert_eq!(middle(0, 7), DVec2::new(0.5, 7.5));
     }
 
     #[test]
-    fn between_two_moments_objects_and_head_are_the_same_part_of_the_way() {
+    fn between_two_times_objects_and_head_are_interpolated_equally() {
         let moment = |at: u64| Moment { pose: Pose::at(DVec3::X * at as f64), objects_at: Time(at), measured_at: None };
         for (part, expected) in [(0.0, 1_000), (0.25, 1_500), (1.0, 3_000)] {
             let Moment { pose, objects_at, .. } = between(&moment(1_000), &moment(3_000), part);

@@ -331,7 +331,7 @@ mod tests {
 
     /// Tests a program that asks a display with the buffers 0 and 1 for buffer 2, `asks` times.
     #[test]
-    fn displays_say_what_they_could_not_use_and_nothing_else() {
+    fn displays_report_only_their_faults() {
         for asks in [0, 1, 3] {
             let mut machine = Machine::new(&MachineConfig::small_hmd(), 1, Layout::slats()).expect("a preset");
             let (processor, display) = (machine.ports().gps[0], machine.ports().display()[0]);
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_in_pieces_is_hashed_as_one_record() {
+    fn a_text_written_in_parts_is_hashed_as_one_record() {
         let text = "latency 33.4, pictures 12";
         let mut record = TraceHash::default();
         record.record(Time::ZERO, &[9].into_iter().chain(text.bytes().map(u64::from)).collect::<Vec<u64>>());

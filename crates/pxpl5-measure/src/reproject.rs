@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_move_every_pixel_stays_and_none_is_empty() {
+    fn without_movement_every_pixel_stays_and_none_is_empty() {
         let picture = places(640, 480);
         for by in [Warp::Shift, Warp::Rotation] {
             let pose = Pose::facing(rotation::from_yaw_pitch_roll(0.4, -0.2, 0.1));
@@ -152,7 +152,7 @@ mod tests {
     /// Tests a head that turns to the left by the angle a. Column x then shows the old column f tan(atan(x / f) - a).
     /// Columns are counted from the middle, and f is the focal length in pixels.
     #[test]
-    fn under_a_turn_columns_come_from_where_the_tangents_say() {
+    fn a_rotation_moves_columns_by_their_tangents() {
         let view = Hmd::unc();
         let (f, angle) = (view.focal_px(), 0.05_f64);
         let now = Pose::facing(rotation::about_y(angle));

@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pixel_shows_the_newest_picture_of_its_region_that_has_arrived() {
+    fn a_pixel_shows_the_newest_arrived_picture_of_its_region() {
         let targets = [7, 8, 9].map(|picture| target(Lines::Frame, picture));
         let screen = screen([10, 20, 30].into_iter().zip(targets));
         let shown = |x, y, at| screen.shown(x, y, PeriodNumber(0), Time(at));
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn every_swap_shows_the_other_buffer_beginning_with_the_second() {
+    fn every_swap_shows_the_other_buffer_starting_with_the_second_buffer() {
         let [first, second] = [0, 1].map(|buffer| CopyTarget { buffer, ..target(Lines::Frame, buffer.into()) });
         let mut screen = screen([(10, first), (10, second)]);
         screen.swaps = vec![(PeriodNumber(3), 0), (PeriodNumber(5), 1), (PeriodNumber(6), 2)];
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn covered_regions_are_discarded_and_no_others() {
+    fn only_covered_regions_are_discarded() {
         let targets = [7, 8, 9, 10].map(|picture| target(Lines::Frame, picture));
         let mut screen = screen([10, 20, 30, 40].into_iter().zip(targets));
         for (instant, left) in [(9, 0), (19, 0), (20, 1), (35, 2), (99, 3)] {

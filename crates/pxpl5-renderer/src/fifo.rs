@@ -554,7 +554,7 @@ mod tests {
     }
 
     #[test]
-    fn behind_a_copy_words_enter_until_the_fifo_is_full_and_no_further() {
+    fn words_behind_a_copy_enter_until_the_fifo_is_full() {
         let mut fifo = InputFifo::new(100, WORD);
         let copy = CommandBatch { words_each: 10, count: 1, span_each: None };
         let triangle = CommandBatch { words_each: 30, count: 1, span_each: Some(Span::from_ns(6_675)) };
@@ -570,7 +570,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_clump_behind_a_copy_what_has_no_room_comes_in_behind_it() {
+    fn the_rest_of_a_clump_enters_the_fifo_after_the_copy() {
         let mut fifo = InputFifo::new(100, WORD);
         let copy = CommandBatch { words_each: 10, count: 1, span_each: None };
         let clump = CommandBatch { words_each: 30, count: 5, span_each: Some(Span::from_ns(6_675)) };
@@ -585,7 +585,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_no_commands_is_none() {
+    fn an_empty_run_of_commands_is_none() {
         let run = |count, ns| CommandBatch { words_each: 29, count, span_each: Some(Span::from_ns(ns)) };
         let accepted = |runs: &[CommandBatch]| {
             let mut fifo = InputFifo::new(100, WORD);
@@ -596,7 +596,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thirty_triangle_clump_stalls_its_sender_by_what_the_fifo_cannot_hold() {
+    fn a_clump_of_thirty_triangles_stalls_its_sender_for_the_words_beyond_the_fifo() {
         // 30 commands have 29 words and take 6.675 us each. The first command starts when its 29 words have entered
         // (1.45 us). Word k >= 448 waits for the start of the command with word k - 448. The last word (869) therefore
         // waits for the start of command floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us. This start makes room

@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_region_is_drawn_once_whatever_picture_it_is_for_and_again_for_another_colour() {
+    fn an_empty_region_is_drawn_once_for_each_background_colour() {
         let pool = ArrayPool::new(Layout::rendering_control_phong());
         let [first, second, other] = [(0x10_20_30, 4), (0x10_20_30, 5), (0x10_20_31, 6)]
             .map(|(colour, picture)| cleared(&pool, colour, picture));

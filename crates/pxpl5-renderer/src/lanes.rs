@@ -227,7 +227,7 @@ mod tests {
     ];
 
     #[test]
-    fn every_command_that_draws_is_recognised_as_a_whole() {
+    fn every_drawing_command_is_executed_as_a_whole() {
         for layout in [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()] {
             let mut lanes = Lanes::new(&layout);
             for kind in WHOLE {
@@ -373,13 +373,13 @@ mod tests {
     }
 
     #[test]
-    fn triangles_without_words_leave_the_pixels_of_their_commands() {
+    fn triangles_without_words_draw_the_pixels_of_their_commands() {
         let covered = covered_alike(40, SomeTriangles::random);
         assert!(covered > 10_000, "{covered}");
     }
 
     #[test]
-    fn slim_triangles_without_words_leave_the_pixels_of_their_commands() {
+    fn slim_triangles_without_words_draw_the_pixels_of_their_commands() {
         let covered = covered_alike(200, SomeTriangles::slim);
         assert!(covered > 1_000, "{covered}");
     }

@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_overlap_where_they_have_a_bit_in_common() {
+    fn bit_ranges_overlap_if_they_share_a_bit() {
         let bits = |range: &FieldRange| range.first..range.first + range.width;
         let all: Vec<_> = (0..9).flat_map(|first| (1..5).map(move |width| range(first, width))).collect();
         for a in &all {
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drawing_has_a_mark_for_each_four_bits_of_which_a_field_has_one() {
+    fn a_drawing_of_a_layout_has_a_mark_for_every_four_bits_in_use() {
         let ranges = [range(0, 4), range(5, 2), range(7, 6), range(200, 8)];
         let drawn = draw(&ranges, &[const { None }; 4]);
         for (range, line) in ranges.iter().zip(drawn.lines()) {
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn contexts_take_their_bits_each_and_there_is_one() {
+    fn each_context_needs_its_own_bits_and_there_is_at_least_one() {
         let whole = |contexts, context_bits| {
             let plan = ContextPlan { contexts, context_bits, ..SLATS };
             conflicts(&plan, &[range(0, 4)])[0].clone()

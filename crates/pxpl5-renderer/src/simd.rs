@@ -486,7 +486,7 @@ mod tests {
     }
 
     #[test]
-    fn every_unit_does_what_numbers_do_one_by_one() {
+    fn every_vector_unit_equals_scalar_arithmetic() {
         let mut random = crate::conformance::Random::new(40);
         for round in 0..200 {
             // Some numbers are equal or small.
@@ -505,7 +505,7 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_that_is_absent_is_the_portable_one_and_the_best_is_the_last_that_is_allowed() {
+    fn an_absent_vector_unit_is_replaced_by_portable_code_and_the_best_allowed_unit_is_chosen() {
         let available = Vectors::available();
         assert_eq!(available.first(), Some(&Vectors::Portable));
         assert!(cfg!(target_arch = "wasm32") || !available.contains(&Vectors::Simd128));

@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_agrees_with_the_published_vectors_of_fnv_1a() {
+    fn the_hash_agrees_with_the_published_vectors_of_fnv_1a() {
         // These values are test vectors of the reference program for 128 bits: "" and "a".
         assert_eq!(Fingerprint::of(b"").to_string(), "6c62272e07bb014262b821756295c58d");
         assert_eq!(Fingerprint::of(b"a").to_string(), "d228cb696f1a8caf78912b704e4a8964");

@@ -119,7 +119,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_number_has_its_instant_and_no_other_has_one(
+        fn every_stored_number_has_its_instant(
             steps in proptest::collection::vec((1u64..5, any::<u64>(), 0u32..64), 0..900),
         ) {
             let mut instants = Instants::default();
@@ -138,7 +138,7 @@ mod tests {
 
     /// Tests the memory for instants that are two or three fields apart, in turn: at most three bytes for each instant.
     #[test]
-    fn even_steps_take_three_bytes_at_most() {
+    fn equal_steps_take_at_most_three_bytes() {
         let field_ps = |n: u64| n * 1_001_000_000_000 / 60;
         let mut instants = Instants::default();
         (0..10_000).for_each(|n| instants.push(n, Time(field_ps(2 * n + n / 2))));

@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_that_the_training_avoids_alike_share_a_tuning() {
+    fn seeds_not_used_for_training_share_a_tuning() {
         let tunings = Tunings::default();
         let tracker = TrackerModel::new(TrackerConfig::optical_ceiling()).expect("a preset");
         let base = PredictorConfig::for_tracker(PredictorKind::ConstantVelocity, tracker.config());

@@ -90,7 +90,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_gives_what_the_library_s_heap_gives(pushes in proptest::collection::vec((0u64..50, 0usize..3), 0..300)) {
+        fn the_heap_equals_the_heap_of_the_standard_library(pushes in proptest::collection::vec((0u64..50, 0usize..3), 0..300)) {
             let mut heap = QuadHeap::default();
             let mut expected = BinaryHeap::new();
             for (item, pops) in pushes {

@@ -173,7 +173,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn up_to_the_limit_statistics_are_those_of_the_numbers_bit_for_bit() {
+    fn up_to_the_limit_statistics_are_exact() {
         let values: Vec<f64> = (0..100).map(|i| f64::from(i * 7919 % 101) * 0.1).collect();
         let mut samples = Samples::keeping(100);
         samples.extend(values.iter().copied());
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn ten_million_equal_numbers_have_their_own_value_as_mean_and_no_deviation() {
+    fn ten_million_equal_numbers_have_an_exact_mean_and_zero_deviation() {
         let mut samples = Samples::keeping(16);
         (0..10_000_000).for_each(|_| samples.push(16.683_333_333));
         let Statistics { n, mean, sd, min, max } = samples.statistics();
@@ -192,7 +192,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn beyond_the_limit_they_differ_in_the_last_digits_at_most(
+        fn beyond_the_limit_statistics_differ_only_in_the_last_digits(
             values in proptest::collection::vec(0.0f64..200.0, 3..400), limit in 0usize..300,
         ) {
             let mut samples = Samples::keeping(limit);

@@ -111,14 +111,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn statistics_of_a_known_sample() {
+    fn statistics_of_a_known_sample_are_exact() {
         let s = Statistics::of([2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter());
         assert_eq!((s.n, s.mean, s.min, s.max), (8, 5.0, 2.0, 9.0));
         assert!((s.sd - (32.0f64 / 7.0).sqrt()).abs() < 1e-12);
     }
 
     #[test]
-    fn of_nothing_there_is_no_number() {
+    fn an_empty_sample_has_no_statistics() {
         let Statistics { n, mean, sd, min, max } = Statistics::of(std::iter::empty());
         assert_eq!(n, 0);
         assert!([mean, sd, min, max].iter().all(|number| number.is_nan()));
@@ -127,7 +127,7 @@ mod tests {
     /// Tests equal numbers, whose deviation must be exactly 0. With rounding errors, three times 0.1 would have the
     /// deviation 1.7e-17.
     #[test]
-    fn what_does_not_vary_is_told_without_deviation() {
+    fn a_constant_is_printed_without_deviation() {
         for values in [[0.1; 3], [30.949_033_339, 30.949_033_340, 30.949_033_340]] {
             let all = Statistics::of(values.into_iter());
             let told = all.told();

@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_document_is_a_line_of_text_at_least() {
+    fn a_document_has_at_least_one_line_of_text() {
         assert_eq!(finished(&document()), "<svg xmlns=\"http://www.w3.org/2000/svg\"/>\n");
     }
 }

@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn heat_goes_from_black_over_red_and_yellow_to_white() {
+    fn the_heat_scale_goes_from_black_over_red_and_yellow_to_white() {
         assert_eq!(heat(0), [0, 0, 0]);
         assert_eq!(heat(85), [255, 0, 0]);
         assert_eq!(heat(170), [255, 255, 0]);

@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_go_to_the_buffer_that_is_not_shown_beginning_with_the_second() {
+    fn frames_go_to_the_hidden_buffer_starting_with_the_second_buffer() {
         let buffers = [0, 1, 2, 3].map(|frame| buffer_of(PictureNumber(frame)));
         assert_eq!(buffers, [1, 0, 1, 0]);
     }

@@ -450,7 +450,7 @@ mod tests {
 
     /// Tests both orders of two messages: the arrival of the last region, and the acceptance of its commands.
     #[test]
-    fn a_drawing_is_over_when_its_regions_have_arrived_and_its_commands_were_accepted() {
+    fn a_drawing_ends_when_its_regions_arrived_and_its_commands_were_accepted() {
         for accepted_first in [true, false] {
             let board = GpBoard::new(NodeId(1), GpTiming::PAPERS, Span(25_000));
             let mut master = RegionMaster::new(board.handle_for(Priority::Foreground), config());

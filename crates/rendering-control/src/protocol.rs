@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn every_order_survives_its_words() {
+    fn every_order_is_decoded_from_its_words() {
         let drawing = Drawing(1 << 33);
         let token =
             Token { drawing, region: RegionId(95), renderer: 4, slaves_left: 12, of: 96, end: RegionEnd::Stored };
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_words_are_a_fault_that_shows_them() {
+    fn unknown_words_are_a_fault_with_these_words() {
         let received = Received { arrived: Time::ZERO, source: NodeId(7), body: Body::Words([0xBAD].into()) };
         let fault = StageOrder::<FrameView>::read(&received, NodeId(3)).expect_err("not an order");
         assert_eq!(fault.to_string(), "node 3: unexpected message [bad] from node 7");

@@ -64,7 +64,7 @@ mod tests {
         }
 
         #[test]
-        fn it_is_the_sine_and_the_cosine(n in -5000i64..5000, whole in 1u32..2000) {
+        fn the_functions_approximate_sine_and_cosine(n in -5000i64..5000, whole in 1u32..2000) {
             let (s, c) = sin_cos_of_turn(n, whole);
             let angle = std::f64::consts::TAU * n as f64 / f64::from(whole);
             prop_assert!((s - angle.sin()).abs() < 1e-11 && (c - angle.cos()).abs() < 1e-11);

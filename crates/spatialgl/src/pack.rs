@@ -73,14 +73,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn dense_words_give_back_their_pixels(pixels in prop::collection::vec(0u8..8, 0..64)) {
+        fn dense_words_are_unpacked_to_their_pixels(pixels in prop::collection::vec(0u8..8, 0..64)) {
             let words = pack_dense(&pixels);
             prop_assert_eq!(words.len(), pixels.len().div_ceil(10));
             prop_assert_eq!(unpack_dense(&words, pixels.len()), pixels);
         }
 
         #[test]
-        fn a_word_gives_back_its_pixels(pixels: [u8; 8]) {
+        fn a_word_is_unpacked_to_its_pixels(pixels: [u8; 8]) {
             let byte = |channel: u32| (0..8).fold(0, |byte, i| byte << 1 | (pixels[i] >> channel & 1));
             let word = packed_word(byte(0), byte(1), byte(2));
             for i in 0..8 {

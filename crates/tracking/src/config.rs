@@ -339,7 +339,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_value_lies_in_its_range() {
+    fn every_value_is_in_range() {
         for (name, table) in Tables::PAPERS.all().into_iter().chain(FACTS) {
             assert_eq!(table.out_of_range(), [], "{name}");
         }

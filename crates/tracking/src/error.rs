@@ -17,7 +17,7 @@ mod tests {
     use super::check;
 
     #[test]
-    fn the_message_says_what_was_expected_and_found() {
+    fn the_message_states_the_expected_and_found_values() {
         let error = check("line rate", f64::NAN, 300.0, 115_200.0).unwrap_err();
         assert_eq!(error.to_string(), "line rate: expected 300 to 115200, found NaN");
     }

@@ -142,7 +142,7 @@ mod tests {
     use super::{Symbols, evaluate};
 
     #[test]
-    fn precedence_is_that_of_c() {
+    fn operators_have_the_precedence_of_c() {
         let none = Symbols::new();
         assert_eq!(evaluate("1 + 2 * 3 << 1 | 1", &none), Ok(15));
         assert_eq!(evaluate("-(4 - 6) * 0x10 & ~0", &none), Ok(32));
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn the_adjusted_high_half_and_the_signed_low_half_add_up() {
+    fn the_adjusted_high_half_plus_the_signed_low_half_is_the_value() {
         let symbols = Symbols::from([("x".to_owned(), 0x0001_8004)]);
         assert_eq!(evaluate("h%x", &symbols), Ok(1));
         assert_eq!(evaluate("ha%x", &symbols), Ok(2));
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_are_named() {
+    fn errors_name_the_expression() {
         let none = Symbols::new();
         for (text, reason) in [
             ("", "missing"),

@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_command_is_refused_with_what_was_expected_and_found() {
+    fn an_unknown_command_is_refused_with_expected_and_found() {
         for (text, words) in [
             ("jump", ["expected a command (run,", "found `jump`"]),
             ("run backwards", ["expected run or run to TIME", "found `run backwards`"]),

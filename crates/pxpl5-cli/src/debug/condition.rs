@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn comparisons_hold_at_their_bounds_as_they_say() {
+    fn comparisons_are_exact_at_their_bounds() {
         for (relation, holds) in [
             ("<", [true, false, false]),
             ("<=", [true, true, false]),
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_condition_is_refused() {
+    fn an_invalid_condition_is_refused() {
         for wrong in
             ["", "fifo", "fifo 0", "fifo 0 ~ 3", "channels >= x", "waits gp 1", "waits gp 1 for", "inbox 3 > 1"]
         {

@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_is_done_and_every_pane_shows_the_machine() {
+    fn typed_commands_are_executed_and_every_pane_shows_the_machine() {
         let mut session = session();
         let mut talk = ScreenState::default();
         type_in(&mut session, &mut talk, "run to field 4");
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_not_understood_is_said_and_ends_nothing() {
+    fn an_unknown_command_prints_an_error_and_the_session_continues() {
         let mut session = session();
         let mut talk = ScreenState::default();
         type_in(&mut session, &mut talk, "jump");

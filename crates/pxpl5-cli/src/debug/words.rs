@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_time_is_refused() {
+    fn an_invalid_time_is_refused() {
         for wrong in ["", "5", "ms", "-1ms", "1.5ps", "1e3us", "1.2.3ms", "99999999999999999999s", "5 ms", "0.0001ns"] {
             assert!(time(wrong, Time::ZERO).is_err(), "{wrong}");
         }

@@ -221,7 +221,7 @@ mod tests {
     /// the bootstrap cuts a series into blocks and loses the correlation between blocks. Here they are 6 % too small
     /// for phi = 0.3, and 12 % too small for phi = 0.8.
     #[test]
-    fn the_variance_of_the_mean_of_an_ar1_series_is_that_of_the_closed_form() {
+    fn the_variance_of_the_mean_of_an_ar1_series_equals_the_closed_form() {
         const N: usize = 2_000;
         const SERIES: u64 = 60;
         for phi in [0.0, 0.3, 0.8] {
@@ -235,7 +235,7 @@ mod tests {
     /// Tests the 95 % intervals of 200 correlated series (phi = 0.8). Intervals for independent values would be 3 times
     /// too narrow.
     #[test]
-    fn intervals_of_correlated_series_cover_the_true_mean_about_as_often_as_they_claim() {
+    fn intervals_of_correlated_series_cover_the_true_mean_at_their_confidence() {
         const SERIES: u64 = 200;
         let true_mean = 20.0;
         // None for a series that seems to have fewer than ten blocks.

@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_interval_of_five_means_is_that_of_the_tables() {
+    fn the_interval_of_five_means_follows_the_t_table() {
         // Mean 3, sample sd sqrt(2.5); t with 4 degrees of freedom is 2.776 (any table).
         let interval = MeanInterval::of_signed(&[1.0, 2.0, 3.0, 4.0, 5.0], CONFIDENCE);
         let half = 2.776_445 * 2.5f64.sqrt() / 5f64.sqrt();
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interval_of_a_quantity_that_was_zero_once_has_no_negative_end() {
+    fn an_interval_of_a_quantity_with_a_zero_has_no_negative_end() {
         let interval = MeanInterval::of(&[0.0, 10.0, 0.1], CONFIDENCE);
         assert!(interval.low == 0.0 && interval.high > 10.0, "{interval:?}");
     }

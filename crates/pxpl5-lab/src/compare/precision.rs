@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_width_is_that_of_the_whole_interval() {
+    fn the_width_covers_the_whole_interval() {
         assert!(TENTH.is_reached(&error(0.5)) && !TENTH.is_reached(&error(0.51)));
         let pixels = UntilPrecise { width: Precision::Pixels(0.2), max_seeds: 50 };
         assert!(pixels.is_reached(&error(0.0999)) && !pixels.is_reached(&error(0.11)));

@@ -321,7 +321,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hundredths_of_a_thousand_numbers_are_every_tenth() {
+    fn percentiles_of_a_thousand_numbers_are_every_tenth_number() {
         let sorted: Vec<f64> = (1..=1_000).map(f64::from).collect();
         let hundredths = hundredths(&sorted);
         assert_eq!((hundredths.len(), hundredths[0], hundredths[50], hundredths[100]), (101, 1.0, 500.0, 1_000.0));

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_with_units_become_the_unit_of_the_key() {
+    fn numbers_with_units_are_converted_to_the_unit_of_the_key() {
         for (key, text, expected) in [
             ("machine.gp.triangle_ns", "20us", Value::Integer(20_000)),
             ("machine.gp.triangle_ns", "16.7ms", Value::Integer(16_700_000)),
@@ -114,13 +114,13 @@ mod tests {
     }
 
     #[test]
-    fn another_kind_of_unit_is_refused_with_those_that_fit() {
+    fn a_unit_of_another_quantity_is_refused_with_the_possible_units() {
         let error = read("machine.gp.triangle_ns", "20mm").expect_err("a length is no time");
         assert_eq!(error, "a number in ns, or one with a unit: ps, ns, us, ms, s");
     }
 
     #[test]
-    fn texts_and_keys_without_a_unit_stay_as_they_are() {
+    fn texts_and_keys_without_a_unit_are_unchanged() {
         for (key, text) in
             [("scene", "3cubes.ply"), ("head.motion", "pan:200"), ("title", "20us"), ("machine.gp.triangle_ns", "fast")]
         {

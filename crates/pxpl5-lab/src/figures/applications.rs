@@ -179,7 +179,7 @@ mod tests {
     /// Tests that a run whose backing stores were never full has the same trace as each run with larger stores. Runs
     /// with a full store must differ in more than five cases, or the test would prove nothing.
     #[test]
-    fn a_run_that_met_no_full_store_is_the_run_with_every_larger_store() {
+    fn a_run_without_a_full_store_equals_the_run_with_any_larger_store() {
         let (mut shared, mut differing) = (0, 0);
         for scene in ["full-screen:12", "full-screen:60"] {
             for finished in FinishedRegions::ALL {
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_result_serves_larger_stores_alone_and_only_if_no_store_was_full() {
+    fn a_result_is_reused_only_for_larger_stores_and_if_no_store_was_full() {
         let cache = ByCapacity::<&str, u64>::default();
         let get = |capacity, met_full_store| {
             *cache.get("key", capacity, || Ok((capacity, met_full_store))).expect("no run fails")

@@ -497,7 +497,7 @@ mod tests {
 
     /// Tests which changes of parameters require new machines. A change to the preset's own value requires none.
     #[test]
-    fn only_changes_that_reach_a_machine_or_the_photodiode_make_other_machines() {
+    fn only_changes_of_the_machine_or_the_photodiode_need_another_run() {
         let bench = Bench::new(Level::Transaction);
         let with = |path: &str, value| Bench { changes: vec![(path.to_owned(), value)], ..bench.clone() };
         let words = MachineConfig::small_hmd().renderer.fifo_words;
@@ -513,7 +513,7 @@ mod tests {
     }
 
     #[test]
-    fn triangles_of_18_pixels_touch_as_many_regions_as_the_formula_of_their_legs_says() {
+    fn triangles_of_18_pixels_touch_as_many_regions_as_their_formula() {
         let found = touched(&Arc::new(test_scene(TestScene::Typical, 4_000)), 1).expect("it has triangles");
         let expected = expected(TYPICAL_LEG_PX);
         // The 4,000 positions sample the average to a few thousandths.

@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_is_read_as_it_was_written_with_what_is_missing() {
+    fn a_record_is_read_as_written_including_missing_values() {
         let report = LevelReport {
             level: Level::Cycle,
             times_of_code: true,

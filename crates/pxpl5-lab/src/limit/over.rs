@@ -364,7 +364,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whole_numbers_are_written_without_a_point() {
+    fn whole_numbers_are_printed_without_a_decimal_point() {
         let values = Values::whole(2, 50).expect("a range");
         assert_eq!((values.count, values.text(values.value(3))), (49, "5".to_owned()));
         assert_eq!(Values::whole(5, 5), None);

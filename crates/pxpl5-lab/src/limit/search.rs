@@ -288,7 +288,7 @@ mod tests {
         /// Tests that a search with any hints finds the limit, if all sizes up to the limit reach the goal and no
         /// larger size does.
         #[test]
-        fn hints_change_the_number_of_trials_alone(
+        fn hints_change_only_the_number_of_trials(
             limit in 0u32..5_000,
             near in 1u32..6_000,
             doubtful in proptest::collection::vec(1u32..6_000, 0..5),

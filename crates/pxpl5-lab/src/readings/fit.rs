@@ -161,7 +161,7 @@ mod tests {
     };
 
     #[test]
-    fn what_is_printed_is_the_likeliest_and_a_deviation_of_nothing_is_no_explanation() {
+    fn the_printed_fit_is_the_likeliest_and_a_zero_deviation_explains_nothing() {
         assert_eq!(EXACT.log_likelihood(), 0.0);
         let off = FigureFit { simulated: 4.2, error_percent: 5.0, ..EXACT };
         // 0.2 in units of the three parts: 0.5 / sqrt(87), a fiftieth of 4, and half of a hundredth.
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_left_out_does_not_count() {
+    fn an_omitted_figure_does_not_count() {
         let figures = [EXACT, FigureFit { id: "3", error_percent: -20.0, ..EXACT }];
         assert_eq!((mean_without(&figures, None), mean_without(&figures, Some("3"))), (10.0, 0.0));
     }

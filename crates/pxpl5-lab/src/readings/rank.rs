@@ -118,7 +118,7 @@ mod tests {
 
     /// Tests that the fit of an interpretation is the same with a shared cache of runs and with an empty cache.
     #[test]
-    fn runs_that_readings_share_change_no_fit() {
+    fn sharing_runs_among_interpretations_changes_no_fit() {
         let shared = Bench::new(Level::Analytic).with_mig(1, 12);
         for reading in Reading::all().into_iter().step_by(67) {
             let alone = Bench::new(Level::Analytic).with_mig(1, 12);

@@ -239,7 +239,7 @@ mod tests {
 
     /// Tests the frequencies of the commands in random lists.
     #[test]
-    fn commands_come_in_the_shares_that_are_meant() {
+    fn random_commands_occur_in_the_intended_shares() {
         let layout = Layout::rendering_control_phong();
         let mut random = Random::new(1);
         let mut counts = BTreeMap::new();
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_have_commands_that_come_again_instructions_and_now_and_then_a_wrong_word() {
+    fn random_lists_have_repeated_commands_instructions_and_wrong_words() {
         let layout = Layout::slats();
         let mut random = Random::new(2);
         let mut wrong = 0;
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_repainted_is_the_same_shape_in_another_colour() {
+    fn repainting_keeps_the_shape_and_changes_the_colour() {
         let layout = Layout::rendering_control_phong();
         let mut random = Random::new(3);
         for _ in 0..200 {
@@ -328,7 +328,7 @@ mod tests {
     /// Tests the share of random edges that form a triangle. The sum of a triangle's three edge expressions has no
     /// slope.
     #[test]
-    fn most_edges_are_those_of_a_triangle_of_any_size() {
+    fn most_random_edges_belong_to_triangles_of_any_size() {
         let mut random = Random::new(5);
         let mut sizes = BTreeMap::new();
         for _ in 0..4000 {
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_from_all_over_their_ranges() {
+    fn random_numbers_cover_their_ranges() {
         let layout = Layout::slats();
         let mut random = Random::new(7);
         let mut places = BTreeSet::new();

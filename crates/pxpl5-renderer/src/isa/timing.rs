@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_product_takes_one_addition_a_bit() {
+    fn a_full_product_takes_one_addition_per_bit() {
         assert_eq!(multiply_clocks(24, 12, 12), 12 * 13);
         assert_eq!(multiply_clocks(8, 12, 3), 8 + 7 + 6);
         assert_eq!(multiply_clocks(18, 8, 9), 9 * 9 + 1);

@@ -317,13 +317,13 @@ mod tests {
     }
 
     #[test]
-    fn no_pixel_inside_all_edges_is_outside_of_the_bounds() {
+    fn every_pixel_inside_all_edges_is_within_the_bounds() {
         let inside = pixels_lie_within(2000, random_edge);
         assert!(inside > 100_000, "{inside}");
     }
 
     #[test]
-    fn edges_that_wrap_leave_no_pixel_out() {
+    fn edges_that_overflow_exclude_no_pixel() {
         let inside = pixels_lie_within(2000, any_edge);
         assert!(inside > 100_000, "{inside}");
     }
@@ -348,7 +348,7 @@ mod tests {
     /// Tests that the bounds of a triangle contain no pixel outside the triangle. The bounds normally include a small
     /// margin. The corners are integers, so the margin contains no pixel.
     #[test]
-    fn bounds_end_where_the_triangle_does() {
+    fn bounds_end_at_the_triangle() {
         let mut random = Random::new(6);
         let mut rows_of_their_own = 0;
         for (corners, edges) in (0..3000).filter_map(|_| triangle(&mut random)) {

@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_across_columns_comes_back() {
+    fn a_bit_field_across_columns_is_read_back() {
         let mut columns = PixelColumns::new(&Layout::slats());
         let field = FieldBits { first: 20, width: 30, signed: true };
         let values: Vec<u64> = (0..PIXELS as u64).map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15)).collect();

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn no_pixel_inside_is_outside_of_the_bounds() {
+    fn every_pixel_inside_is_within_the_bounds() {
         let mut random = Random::new(9);
         let mut inside = 0;
         for _ in 0..1000 {
@@ -121,7 +121,7 @@ mod tests {
 
     /// Tests ellipses with such large coefficients that values exceed the 48 bits of the array and wrap around.
     #[test]
-    fn quadratics_that_wrap_leave_no_pixel_out() {
+    fn quadratics_that_overflow_exclude_no_pixel() {
         let mut random = Random::new(12);
         let mut inside = 0;
         for _ in 0..2000 {
@@ -146,7 +146,7 @@ mod tests {
     /// Tests circles with radii of 0 to 4 pixels and coefficients so large that their squares are rounded. At the first
     /// and last row, the test subtracts nearly equal squares, where rounding has the greatest effect.
     #[test]
-    fn small_circles_reach_their_last_row_however_numbers_round() {
+    fn small_circles_reach_their_last_row_despite_rounding() {
         let mut random = Random::new(13);
         for _ in 0..1000 {
             let [x, y] = [(); 2].map(|()| random.between(10, 118));
@@ -165,7 +165,7 @@ mod tests {
     /// Tests that the columns of an ellipse contain no pixel outside the ellipse. The coefficients are small integers,
     /// so the margin around the ellipse contains no pixel.
     #[test]
-    fn columns_end_where_the_ellipse_does() {
+    fn the_bounds_of_columns_end_at_the_ellipse() {
         let mut random = Random::new(10);
         for _ in 0..1000 {
             let [x, y] = [(); 2].map(|()| random.between(-40, 170));
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_end_where_the_circle_does() {
+    fn the_bounds_of_rows_end_at_the_circle() {
         let mut random = Random::new(11);
         for _ in 0..1000 {
             let [x, y] = [(); 2].map(|()| random.between(-40, 170));

@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn what_arrives_at_one_instant_counts_in_any_order() {
+    fn simultaneous_arrivals_count_in_any_order() {
         let [a, b, c] = [block(20, 7, 90), block(20, 9, 100), block(21, 4, 100)];
         for order in [[a, b, c], [a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]] {
             let last = last_blocks(&order);

@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_has_every_region_once_on_a_renderer_that_exists() {
+    fn a_policy_must_assign_every_region_once_to_an_existing_renderer() {
         let answer = |pairs: &[(u16, usize)]| -> Vec<RegionAssignment> {
             pairs.iter().map(|(region, renderer)| (RegionId(*region), *renderer)).collect()
         };

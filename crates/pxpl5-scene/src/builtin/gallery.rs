@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn the_path_is_one_metre_from_every_partition_and_never_nearer_to_anything_upright() {
+    fn the_path_keeps_one_metre_from_every_upright_surface() {
         let legs: Vec<Leg> = (0..CORNERS.len()).map(leg).collect();
         for wall in 0..CORNERS.len() {
             let beside = &legs[wall];
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_lies_in_the_hall_and_its_six_sides_face_inwards() {
+    fn all_objects_are_inside_the_hall_whose_six_sides_face_inwards() {
         let gallery = scene(true);
         for vertex in gallery.vertices() {
             let place = vertex.position.as_dvec3();

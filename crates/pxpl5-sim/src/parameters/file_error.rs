@@ -137,7 +137,7 @@ mod tests {
     use super::text_of;
 
     #[test]
-    fn a_byte_that_is_no_text_is_told_by_line_and_byte() {
+    fn a_byte_that_is_not_text_is_reported_with_line_and_byte() {
         assert_eq!(text_of("a\né".as_bytes()), Ok("a\né"));
         // The e with an acute of Latin-1, and a character of UTF-8 that ends early.
         for (bytes, place, byte) in [

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn every_value_is_in_a_bar() {
+    fn every_value_belongs_to_a_bar() {
         let values: Vec<f64> = (0..1_000).map(|i| 50.0 + f64::from(i) * 0.05).collect();
         let counts = histogram(&values);
         let counted: usize =

@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn the_front_joins_what_nothing_beats() {
+    fn the_front_joins_the_points_that_no_other_point_dominates() {
         let at = |speed, error| SpeedAndError {
             name: String::new(),
             fields_per_host_second: speed,
@@ -84,7 +84,7 @@ mod tests {
     /// Tests the position of a point in a chart with a logarithmic axis. A factor of 10 is a third of the distance from
     /// 100 to 100,000.
     #[test]
-    fn a_tenth_of_the_speed_stands_a_power_further_left() {
+    fn a_tenth_of_the_speed_is_one_decade_further_left() {
         let place = |speed: f64| {
             let svg = level_chart(&[level("a", speed), level("b < c", 100.0), level("d", 1e5)]);
             assert!(svg.contains("b &lt; c, 2.0 %"));

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_of_tables_is_well_formed_and_its_text_is_text() {
+    fn a_page_of_tables_is_well_formed_with_escaped_text() {
         let of = PageTable {
             name: "<sweep>".to_owned(),
             about: vec!["a & b".to_owned()],

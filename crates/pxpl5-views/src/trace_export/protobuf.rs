@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_examples_of_the_published_encoding_come_out() {
+    fn the_examples_of_the_published_encoding_are_encoded() {
         // The expected bytes are examples of the wire format's description: field 1 = 150, and field 2 = "testing".
         assert_eq!(Message::default().number(1, 150).0, [0x08, 0x96, 0x01]);
         let testing = [0x12, 0x07, 0x74, 0x65, 0x73, 0x74, 0x69, 0x6e, 0x67];

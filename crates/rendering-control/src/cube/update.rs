@@ -105,7 +105,7 @@ mod tests {
     use pxpl5_wire::ViewNumber;
 
     #[test]
-    fn every_update_survives_its_words() {
+    fn every_update_is_decoded_from_its_words() {
         let view = FrameView { number: ViewNumber(3), eyes: Vec::new(), edits: Vec::new() };
         let structures = (0..70).map(|i| i % 3 == 0).collect();
         let number = PictureNumber(1 << 33);

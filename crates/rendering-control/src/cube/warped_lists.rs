@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_and_stands_in_the_room_is_moved_and_nothing_else() {
+    fn only_cached_vertices_of_static_objects_are_moved() {
         let list = list();
         let update = update(7);
         let warp = update.warp.expect("said");

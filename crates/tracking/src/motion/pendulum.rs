@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn energy_after_an_hour_is_the_energy_of_the_release() {
+    fn energy_is_conserved_for_an_hour() {
         let pendulum = Pendulum::rig();
         let (angle, rate) = pendulum.angle(3600 * PS_PER_S);
         let energy = 0.5 * (0.5 * rate).powi(2) - 9.80665 * 0.5 * angle.cos();
@@ -208,12 +208,12 @@ mod tests {
     }
 
     #[test]
-    fn the_rates_are_those_of_the_poses() {
+    fn the_rates_are_the_derivatives_of_the_poses() {
         (1..20).for_each(|i| assert_rates_agree_with_poses(&Pendulum::rig(), i * 77_777_777_777, 1e-6));
     }
 
     #[test]
-    fn a_low_point_past_the_end_of_time_is_the_end_of_time() {
+    fn a_low_point_beyond_the_end_of_time_is_the_end_of_time() {
         assert_eq!(Pendulum::rig().low_point_ps(u64::MAX), u64::MAX);
     }
 

@@ -134,13 +134,13 @@ mod tests {
     }
 
     #[test]
-    fn second_order_is_exact_for_a_turn_that_speeds_up_about_one_axis() {
+    fn second_order_is_exact_for_an_accelerated_rotation_about_one_axis() {
         let filter = fed(Order::Second, 2, faster_and_faster);
         assert!(rotation::angle_deg(filter.extrapolate(0.1), faster_and_faster(0.133)) < 1e-10);
     }
 
     #[test]
-    fn with_few_reports_the_order_falls() {
+    fn with_few_reports_the_order_is_reduced() {
         let mut filter = Extrapolation::new(Order::Second, 4, DVec3::ZERO);
         filter.restart(0, DVec3::X);
         assert_eq!(filter.extrapolate(1.0), DVec3::X);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sign_change_of_the_quaternion_is_no_turn() {
+    fn a_sign_change_of_the_quaternion_is_not_a_rotation() {
         let mut filter = Extrapolation::new(Order::First, 1, DQuat::IDENTITY);
         filter.restart(0, DQuat::IDENTITY);
         filter.update(PS_PER_MS, -DQuat::IDENTITY);

@@ -72,7 +72,7 @@ mod tests {
     ];
 
     #[test]
-    fn relative_errors_are_those_published_to_their_last_digit() {
+    fn relative_errors_equal_the_published_digits() {
         for (hz, p, published) in PUBLISHED {
             let digit = if published[0] < 1.0 { 5.1e-4 } else { 5.1e-3 };
             for (gain, expected) in [none, constant_velocity, constant_acceleration].into_iter().zip(published) {
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gain_is_what_x_plus_vp_plus_ap2_over_2_does_to_a_sinusoid() {
+    fn the_gain_equals_extrapolating_a_sinusoid_to_second_order() {
         let w = TAU * 1.3;
         let p = 0.07;
         let gain = constant_acceleration(w * p);

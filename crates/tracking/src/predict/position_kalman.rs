@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn without_noise_a_parabola_is_followed_to_its_end() {
+    fn without_noise_a_parabola_is_followed_exactly() {
         let mut filter = PositionKalman::new(NoiseModel { measurement: 1e-12, ..BELIEF });
         for i in 0..240u64 {
             filter.update(i * PS_PER_S / 120 + 1, parabola(i as f64 / 120.0));

@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn roll_remains_and_turns_the_edge_by_its_sine() {
+    fn roll_remains_and_rotates_the_edge_by_its_sine() {
         let predicted = Pose::IDENTITY;
         let actual = wrong_by(0.05, 0.02, 0.03, &predicted);
         let offset = RasterOffset::between(&predicted, &actual, 0);
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_raster_is_right_in_the_middle_and_wrong_at_the_edge() {
+    fn a_flat_raster_is_correct_in_the_middle_and_wrong_at_the_edge() {
         let view = Hmd::unc();
         let pan = Pan::at(200.0);
         let predicted = pan.pose(0);

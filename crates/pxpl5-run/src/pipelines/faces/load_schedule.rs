@@ -172,7 +172,7 @@ mod tests {
     /// Tests the number of register loads. A message of nine words takes 7.2 us, so the 63.56 us of a line have room
     /// for 8 loads.
     #[test]
-    fn a_line_has_one_load_and_with_pixels_as_many_as_the_line_carries() {
+    fn a_line_has_one_orientation_or_as_many_as_the_host_line_carries() {
         for (latch, link_ns, expected) in [
             (Latch::Line, 7_200, 2 * 240),
             (Latch::Pixel, 7_200, 2 * 240 * 8),
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pixels_load_is_there_when_it_is_latched_and_no_later_one_is() {
+    fn the_last_orientation_before_a_latch_is_the_one_for_its_pixel() {
         for latch in [Latch::Line, Latch::Pixel] {
             let schedule = schedule(latch, 7_200);
             for (x, y, field) in

@@ -84,7 +84,7 @@ mod tests {
     ];
 
     #[test]
-    fn right_up_and_ahead_stay_what_they_are() {
+    fn right_up_and_ahead_keep_their_meaning() {
         let any = DQuat::from_xyzw(0.1, -0.7, 0.3, 0.5).normalize();
         for (axes, [right, up, ahead], world_up) in MEANING {
             let recorded = Pose { position: world_up * 3.0, orientation: any };

@@ -140,7 +140,7 @@ mod tests {
 "#;
 
     #[test]
-    fn both_kinds_of_a_log_are_the_same_motion_whose_time_counts_from_its_first_line() {
+    fn both_formats_of_a_log_give_the_same_motion_with_time_from_the_first_line() {
         for text in [CSV, JSON] {
             let recording = read(text).expect("a pose log");
             assert_eq!(recording.span_ps(), (0, 1_000_000_000_000));
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_without_a_column_lists_what_is_missing_and_what_it_has() {
+    fn a_log_without_a_column_is_refused_with_the_missing_and_existing_columns() {
         let error = read("predictedDisplayTime,position_x,position_y,roll\n0,0,0,0\n").expect_err("no pose");
         assert_eq!(
             error.to_string(),
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_that_are_no_numbers_or_no_json_are_named() {
+    fn lines_without_numbers_or_json_are_refused_by_line() {
         let error = read(&JSON.replace("1.5, 0]", "\"up\", 0]")).expect_err("a word").to_string();
         assert!(error.starts_with("line 3, position_y: expected a finite number"), "{error}");
         let error = read(&JSON.replace("[2, 1.5, 0]", "[2, 1.5")).expect_err("an open list").to_string();
