@@ -157,7 +157,7 @@ fn the_number_of_passes_is_as_published() {
 /// Checks the number of generated fragments. Clip variants with one pass generate every fragment between the near and
 /// far planes. Clip planes generate only accepted fragments.
 #[test]
-fn clips_differ_in_the_fragments_that_they_reject() {
+fn plane_clips_accept_all_generated_fragments() {
     let stats = |clip| volume(&swept(clip, ORTHOGRAPHIC), &recording(&[T1]), &half(VolumeConfig::plain())).stats;
     let prism = stats(SliceClip::Prism);
     assert_eq!(prism.fragments_generated, prism.fragments_accepted);
