@@ -51,7 +51,6 @@ fn push(mesh: &mut Mesh, depth: f64, colour: [u8; 3]) {
     mesh.fan(&corners);
 }
 
-/// Returns the colour of a triangle: one of six hues in turn, a shade darker after every six triangles.
 fn colour(index: u32) -> [u8; 3] {
     let hues = [[1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 1, 1], [0, 0, 1], [1, 0, 1]];
     let bright = 255 - (index / 6 % 8) as u8 * 24;

@@ -42,7 +42,6 @@ pub(super) fn scene() -> Scene {
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }
 
-/// Samples the surface of the head: the pole at the crown, the parallels from crown to neck, and the lower pole.
 fn grid() -> Mesh {
     let mut mesh = Mesh::default();
     let crown = push_hit(&mut mesh, Ray::new(0.0, 0.0));
@@ -66,7 +65,7 @@ fn grid_index(parallel: usize, meridian: usize) -> u32 {
     (1 + parallel * MERIDIANS + meridian % MERIDIANS) as u32
 }
 
-/// Adds the vertices of one parallel: first the half from the back of the head to the face, then its mirror image.
+/// Adds the vertices of one parallel: first from the back of the head to the face, then the mirror images.
 fn push_parallel(mesh: &mut Mesh, down: f64) {
     const HALF: usize = MERIDIANS / 2;
     let first = mesh.positions.len();
@@ -95,9 +94,9 @@ struct Ray {
     direction: DVec3,
 }
 
-/// Origins and inclinations of rays from crown to base. Each row has three numbers. The first number is the position
-/// from crown (0) to base (1). The second number is the height of the origin in centimetres, and the third number is
-/// the downward angle of the ray in degrees.
+/// Origins and inclinations of rays from the crown to the lower end of the neck, one ray in each row. The three numbers
+/// of a row are the position from crown (0) to lower end (1), the height of the origin in centimetres, and the downward
+/// angle in degrees.
 const SPINE: [(f64, f64, f64); 8] = [
     (0.0, 2.5, -90.0),
     (0.24, 2.5, -24.0),
@@ -110,8 +109,9 @@ const SPINE: [(f64, f64, f64); 8] = [
 ];
 
 impl Ray {
-    /// Creates a ray. `down` runs from 0 at the crown to 1 at the base. `round` is the angle around the vertical axis,
-    /// as a fraction of a turn from the back of the head. Rays are denser at the face.
+    /// Creates a ray. `down` runs from 0 at the crown to 1 at the lower end of the neck. `round` is the angle around
+    /// the vertical axis, as a fraction of a turn from the back of the head. Equal steps of `round` give denser rays at
+    /// the face.
     fn new(down: f64, round: f64) -> Self {
         // Interpolate origin and inclination between two rows of the spine.
         let above = SPINE.windows(2).find(|pair| down <= pair[1].0);
@@ -158,7 +158,6 @@ impl Ray {
     }
 }
 
-/// Returns `a` for `t` = 0, `b` for `t` = 1, and interpolates linearly in between.
 fn between(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }

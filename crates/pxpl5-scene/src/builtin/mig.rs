@@ -48,7 +48,6 @@ pub(super) fn scene() -> Scene {
     finish(solid)
 }
 
-/// Moves the aircraft and its hinges to the origin, scales them to [`RADIUS_M`], and makes a scene.
 fn finish(mut solid: Solid) -> Scene {
     // Hinges move and scale together with the vertices.
     let balls = solid.mesh.positions.iter().map(|&p| (p, 0.0));
@@ -126,7 +125,6 @@ fn fuselage(solid: &mut Solid) {
     solid.cone(&deep_intake, DVec3::new(0.0, -0.07, 5.35), DARK);
 }
 
-/// Returns `section` with its points in reverse order, as seen from the other side of the cross-section.
 fn reversed(mut section: Vec<DVec3>) -> Vec<DVec3> {
     section.reverse();
     section
@@ -155,14 +153,12 @@ impl Cut {
         vec![self.leading, middle + self.thickness, self.trailing, middle - self.thickness]
     }
 
-    /// Returns the corners of a cross-section that ends in a flat (blunt) trailing edge.
     fn blunt(&self) -> Vec<DVec3> {
         let middle = self.thickest();
         let edge = self.thickness * 0.3;
         vec![self.leading, middle + self.thickness, self.trailing + edge, self.trailing - edge, middle - self.thickness]
     }
 
-    /// Returns a wedge of length `chord` that begins at the blunt trailing edge and continues the cross-section.
     fn wedge_behind(&self, chord: f64) -> Vec<DVec3> {
         let edge = self.thickness * 0.3;
         vec![self.trailing + edge, self.trailing - DVec3::Z * chord, self.trailing - edge]

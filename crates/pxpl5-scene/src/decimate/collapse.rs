@@ -10,7 +10,6 @@ use super::surface::{Surface, is_degenerate};
 /// Assumed, 45 to 90 degrees.
 const LEAST_COSINE: f64 = 0.2;
 
-/// The rules for the collapses of edges in one pass over a surface.
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
     /// True if a collapse may turn triangles over.
@@ -104,7 +103,6 @@ impl FirstPass {
         self.decimator.pass(&mut self.queue, pause, wanted, FIRST);
     }
 
-    /// Executes all passes until at most `wanted` triangles remain or no edge can be collapsed. Returns the surface.
     pub(super) fn end(mut self, wanted: usize) -> Surface {
         let whole = self.decimator.surface.triangles.len();
         if self.left() > wanted {
@@ -158,7 +156,6 @@ impl Decimator {
         }
     }
 
-    /// Returns the possible collapses of all edges, the cheapest first.
     fn queue(&self) -> BinaryHeap<Candidate> {
         let mut queue = BinaryHeap::new();
         for point in 0..self.surface.places.len() as u32 {
@@ -167,7 +164,6 @@ impl Decimator {
         queue
     }
 
-    /// Collapses edges from the queue until at most `pause` triangles remain.
     fn pass(&mut self, queue: &mut BinaryHeap<Candidate>, pause: usize, wanted: usize, rules: Rules) {
         while self.surface.left > pause {
             let Some(candidate) = queue.pop() else { return };
@@ -190,7 +186,6 @@ impl Decimator {
         }
     }
 
-    /// Adds to the queue the collapses of all edges at a point.
     fn enter(&self, point: u32, queue: &mut BinaryHeap<Candidate>) {
         queue.extend(self.surface.neighbours(point).into_iter().map(|onto| self.candidate(point, onto)));
     }

@@ -1,4 +1,5 @@
-//! A surface whose edges can be collapsed. Its triangles connect points. All vertices at one position share one point.
+//! A surface whose edges can be collapsed. Its triangles connect points. A point stands for all vertices at one
+//! position.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -18,7 +19,6 @@ pub(super) struct Surface {
     vertices_on: Vec<Vec<u32>>,
     /// Indices of the three vertices of each triangle, or `None` for a removed triangle.
     pub(super) triangles: Vec<Option<[u32; 3]>>,
-    /// Indices of the remaining triangles around each point.
     around: Vec<Vec<u32>>,
     /// Number of triangles that have not been removed.
     pub(super) left: usize,
@@ -76,7 +76,6 @@ impl Surface {
         points.iter().for_each(|point| self.around[*point as usize].push(triangle));
     }
 
-    /// Returns the three points of a triangle, or `None` if the triangle was removed.
     pub(super) fn points(&self, triangle: u32) -> Option<[u32; 3]> {
         let corners = self.triangles[triangle as usize]?;
         Some(corners.map(|vertex| self.point_of[vertex as usize]))
@@ -172,7 +171,6 @@ impl Surface {
     }
 }
 
-/// Returns true if two corners of a triangle are the same point.
 pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }

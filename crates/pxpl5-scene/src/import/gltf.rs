@@ -325,7 +325,6 @@ impl<'a> Reader<'a> {
 /// Number of bytes of a point with its normal and its colour.
 const BYTES_OF_POINT: usize = 2 * size_of::<glam::Vec3>() + 3;
 
-/// Returns the indices of all nodes without a parent.
 fn roots_of(nodes: &[Node]) -> Vec<usize> {
     let mut is_child = vec![false; nodes.len()];
     for child in nodes.iter().flat_map(|node| node.children.iter().flatten()) {

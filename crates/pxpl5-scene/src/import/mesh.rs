@@ -143,7 +143,6 @@ impl Fit {
         Self { centre, scale }
     }
 
-    /// Returns a transformation that leaves the model unchanged.
     pub(crate) const fn none() -> Self {
         Self { centre: DVec3::ZERO, scale: 1.0 }
     }

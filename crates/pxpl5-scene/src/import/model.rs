@@ -77,7 +77,7 @@ impl Places {
 /// bytes, because a file can have many times more corners than points.
 pub(super) type Corner = (u32, u32);
 
-/// The meaning of the second number of a [`Corner`]: a normal or a colour.
+/// The two meanings that the second number of a [`Corner`] can have.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Detail {
     /// The index of a normal, counted from 1: a normal of the file, or the computed normal of a flat face. A corner
@@ -206,7 +206,6 @@ impl Model {
         triangle.map(|vertex| self.places.at(self.point(vertex as usize)))
     }
 
-    /// Returns an error if no triangle has a visible area.
     fn check_areas(&self, name: &str) -> Result<(), FileError> {
         let least = self.places.least_height();
         if self.triangles.iter().any(|&t| has_area(self.corner_places(t), least)) {
@@ -248,7 +247,6 @@ impl Model {
         if self.corners.is_empty() { self.places.len() } else { self.corners.len() }
     }
 
-    /// Returns the index of the point at which a vertex lies.
     fn point(&self, vertex: usize) -> usize {
         self.corners.get(vertex).map_or(vertex, |corner| corner.0 as usize)
     }
@@ -369,7 +367,7 @@ fn packed_colour(packed: u32) -> [u8; 3] {
     [red, green, blue]
 }
 
-/// Returns a text with a number and its noun, in singular or plural.
+/// Returns a number with its noun in singular or plural, for example "3 normals".
 pub(super) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }

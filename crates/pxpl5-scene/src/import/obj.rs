@@ -104,7 +104,6 @@ fn code(line: &[u8]) -> &[u8] {
     &line[..(0..line.len()).find(is_comment).unwrap_or(line.len())]
 }
 
-/// Returns the words of a statement, without its comment and without the `\` between its lines.
 fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     code(line)
         .split(u8::is_ascii_whitespace)
@@ -177,7 +176,6 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Reads a face with any number of corners and cuts it into triangles.
     fn face<'w>(&mut self, at: FilePlace, line: &[u8], words: impl Iterator<Item = &'w [u8]>) -> Result<(), FileError> {
         let first = self.model.triangles.len();
         // The normal of a flat face is computed after its corners are read. The normal will then get this index.

@@ -73,7 +73,6 @@ pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, F
 }
 
 impl Atom {
-    /// Returns the atom as a sphere with its centre at `position` (Ångström), transformed by `fit`.
     pub(crate) fn sphere(&self, position: DVec3, fit: &Fit) -> Sphere {
         Sphere {
             centre: fit.place(position).as_vec3(),

@@ -209,7 +209,6 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Finds the next line that is not blank.
     fn next_line(&mut self, element: &ElementDef) -> Result<(), FileError> {
         loop {
             // The line extends to the next line end, or to the end of the file.
@@ -277,7 +276,6 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Reads the faces of an element and cuts them into triangles.
     fn faces(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), FileError> {
         let has_colours = has_colours(element);
         self.has_both_colours |= has_colours && !mesh.colours.is_empty();
@@ -442,7 +440,6 @@ fn check_header(source: &Source<'_>, header: &str) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Parses a word as a number of a scalar type.
 fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
     Some(match kind {
         ScalarType::Char => Property::Char(word.parse().ok()?),
@@ -458,7 +455,6 @@ fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
     })
 }
 
-/// Parses `length` words as a list of numbers of a scalar type.
 fn list<'w>(kind: &ScalarType, words: &mut impl Iterator<Item = &'w str>, length: usize) -> Option<Property> {
     Some(match kind {
         ScalarType::Char => Property::ListChar(numbers(words, length)?),

@@ -12,7 +12,6 @@ pub(super) const MOST_CORNERS: usize = 1 << 15;
 /// 1e-4. In single precision, points of a straight line deviate by up to 6e-8.
 const STRAIGHT: f64 = 1e-6;
 
-/// The result of cutting a polygon into triangles.
 pub(super) enum Cut {
     /// The polygon is convex. The triangles that all share its first corner cover exactly the polygon.
     Fan,

@@ -80,7 +80,6 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// Returns the first characters of a uri in quotation marks.
 fn excerpt(uri: &str) -> String {
     crate::import::source::excerpt(uri)
 }

@@ -13,7 +13,6 @@ const HEADER: usize = 12;
 /// Number of bytes of a chunk before its content: 4 bytes for the length and 4 for the type.
 const CHUNK: usize = 8;
 
-/// The JSON of a file, the position of the JSON in the file, and the binary chunk.
 pub(super) struct Chunks<'a> {
     pub(super) json: &'a [u8],
     pub(super) binary: Option<&'a [u8]>,

@@ -32,7 +32,7 @@ impl Items<'_> {
     }
 }
 
-/// Numbers of an accessor. All positions in buffers are checked.
+/// Numbers of an accessor, whose positions in buffers have been checked.
 pub(super) struct Numbers<'a> {
     /// Numbers before the sparse replacements. `None` stands for zeros.
     base: Option<Items<'a>>,
