@@ -32,8 +32,7 @@ pub fn perfect(wp: f64) -> Gain {
     Gain { re, im }
 }
 
-/// Returns the gain without prediction. This gain is 1 for every w p, because the last reported pose is shown
-/// unchanged.
+/// Returns the gain without prediction. This gain is 1, because the last reported pose is shown unchanged.
 pub fn none(_wp: f64) -> Gain {
     Gain { re: 1.0, im: 0.0 }
 }

@@ -24,8 +24,7 @@ pub struct ReportCounts {
     pub restarts: u64,
 }
 
-/// The decision about a tracker report: to reject the report, to use the report, or to restart the filters with the
-/// report.
+/// The decision about a report: to reject it, to update the filters with it, or to restart the filters with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Reject,
@@ -33,7 +32,8 @@ pub(super) enum Verdict {
     Restart,
 }
 
-/// A check that rejects impossible reports before they reach the prediction filters, and that counts every decision.
+/// A check that rejects impossible reports before the reports reach the prediction filters. The check counts every
+/// decision.
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     limits: table::Gate,

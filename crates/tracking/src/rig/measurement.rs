@@ -35,7 +35,6 @@ pub struct OutsidePass {
     pub light_ps: u64,
 }
 
-/// Returns the statistics of a latency over all passes of the pendulum, in seconds.
 fn over<P>(passes: &[P], span: impl Fn(&P) -> (u64, u64)) -> Statistics {
     Statistics::of(passes.iter().map(span).map(|(from, to)| span_s(from, to)))
 }

@@ -65,7 +65,6 @@ impl Axes {
     }
 }
 
-/// Returns the rotation that maps the x, y and z axes to the vectors `x`, `y` and `z`.
 fn from_images(x: DVec3, y: DVec3, z: DVec3) -> DQuat {
     DQuat::from_mat3(&DMat3::from_cols(x, y, z))
 }
