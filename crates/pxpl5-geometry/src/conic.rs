@@ -12,8 +12,8 @@ pub(crate) const ROOT_BITS: i32 = 12;
 /// Largest number of low bits that the renderer's square root can ignore.
 const MAX_ROOT_SHIFT: i32 = 24;
 
-/// Largest number of bits by which the renderer can shift a square root to the left before it subtracts the root from a
-/// depth.
+/// Largest number of bits by which the renderer can shift a square root to the left. The renderer subtracts the shifted
+/// root from a depth.
 const MAX_DEPTH_SHIFT: i32 = 20;
 
 /// The quadratic `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`, where (dx, dy) is the distance from `origin`
@@ -30,7 +30,7 @@ pub(crate) struct Conic {
     pub(crate) yy: f64,
 }
 
-/// A conic in fixed point, with the shifts by which the renderer computes a depth from its square root.
+/// A conic in fixed point. The two shifts are for the renderer, which computes a depth from the conic's square root.
 ///
 /// The value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the depth by which the sphere's surface is
 /// nearer than the plane through its silhouette.
@@ -54,14 +54,13 @@ fn exponent_above(value: f64) -> i32 {
 /// Position, greatest value and size of a conic that is positive inside an ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ellipse {
-    /// The pixel position of the greatest value.
+    /// Position of the greatest value, in pixels.
     pub(crate) peak: [f64; 2],
     pub(crate) value: f64,
     half_squares: [f64; 2],
 }
 
 impl Ellipse {
-    /// Returns 1 / (half the width) and 1 / (half the height) of the ellipse.
     pub(crate) fn per_half_size(&self) -> [f64; 2] {
         self.half_squares.map(reciprocal_root)
     }

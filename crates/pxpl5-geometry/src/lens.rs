@@ -4,9 +4,9 @@ use crate::newton::reciprocal_double;
 use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
 use crate::view::Columns;
 
-/// The projection of eye coordinates to pixels and depths, for spheres.
+/// A projection from eye coordinates to pixels and depths, for spheres.
 ///
-/// A depth from 0 to 1 is `constant + slope u`. Let t be the distance from the eye along -Z. Then u is 1/t with
+/// Let t be the distance from the eye along -Z. A depth from 0 to 1 is `constant + slope u`. Here u is 1/t with
 /// perspective, and -t with a parallel projection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {

@@ -110,7 +110,7 @@ pub(crate) fn normal_and_facing(rows: &NormalRows, position: Vec3, normal: Vec3)
     (rows.apply(n), rows.towards_eye(position, n))
 }
 
-/// Returns the normals of three corners, reversed if they face away from the eye on average.
+/// Returns the normals of three corners. The normals are reversed if they face away from the eye on average.
 #[inline(always)]
 pub(crate) fn turned([a, b, c]: [[f32; 3]; 3], facing: [f32; 3]) -> [[f32; 3]; 3] {
     let away = (facing[0] + facing[1]) + facing[2] < 0.0;

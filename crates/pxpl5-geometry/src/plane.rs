@@ -50,7 +50,7 @@ fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
 /// The values that all planes of one triangle share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
-    /// Distances from corner 0 to corners 1 and 2 along x, in subpixels.
+    /// Differences in x from corner 0 to corners 1 and 2, in subpixels.
     x: [f64; 2],
     y: [f64; 2],
     /// Factor from cross products to slopes per pixel: 16 divided by twice the area.

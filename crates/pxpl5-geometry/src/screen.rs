@@ -140,7 +140,7 @@ impl Outline {
         PhongTriangle { edges: self.picture_edges(viewport), z, normal: [nx, ny, nz], colour }
     }
 
-    /// Returns the edge expressions over the columns and rows of the picture.
+    /// Returns the expressions of the three edges over the columns and rows of the picture.
     #[inline(always)]
     fn picture_edges(&self, viewport: &Viewport) -> [Linear; 3] {
         let [a, b, c] = self.edges();
@@ -194,7 +194,7 @@ pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
 }
 
 impl<A> ScreenTriangle<A> {
-    /// Returns the edge expressions over the columns and rows of the picture.
+    /// Returns the expressions of the three edges over the columns and rows of the picture.
     #[must_use]
     pub fn edges(&self, viewport: &Viewport) -> [Linear; 3] {
         self.outline.picture_edges(viewport)
@@ -223,7 +223,8 @@ impl ScreenTriangle<SurfaceNormals> {
     }
 }
 
-/// Applies `value` to three numbers by three calls, because compilers do not always inline a closure over an array.
+/// Applies `value` to three numbers. The function makes three calls, because compilers do not always inline a closure
+/// that maps an array.
 #[inline(always)]
 fn values<T: Copy>([a, b, c]: &[T; 3], value: impl Fn(T) -> f32) -> [f32; 3] {
     [value(*a), value(*b), value(*c)]
