@@ -30,7 +30,6 @@ pub(crate) struct Contents {
 
 #[derive(Debug)]
 struct Body {
-    /// Index of the structure in the scene.
     structure: usize,
     hinge: Option<Hinge>,
     patches: Vec<Patch>,
@@ -46,7 +45,6 @@ struct Patch {
     triangles: Vec<[DVec3; 3]>,
 }
 
-/// Number of triangles in a [`Patch`].
 const PATCH: usize = 32;
 
 /// A ray with the points `origin + t * direction`, where `t` is the depth in metres.
@@ -71,8 +69,7 @@ impl Contents {
         self.nearest(origin, direction, objects_at, |_| true).map(|(_, content)| content)
     }
 
-    /// Returns the nearest hit, and its depth, among some structures of the scene. A structure takes part if its entry
-    /// in `structures` is true.
+    /// Returns the nearest hit, and its depth, among the structures whose entry in `structures` is true.
     pub(crate) fn hit_among(
         &self,
         origin: DVec3,
@@ -129,7 +126,8 @@ impl Body {
         self.hinge.map_or(DMat4::IDENTITY, |hinge| hinge.model(at.0).as_dmat4())
     }
 
-    /// Returns the smallest depth, between `near` and `far`, at which a ray hits the structure.
+    /// Returns the smallest depth, between `near` and `far`, at which a ray hits the structure. All depths are in
+    /// metres.
     fn met(&self, ray: &Ray, (near, far): (f64, f64)) -> Option<f64> {
         let patches = self.patches.iter().filter(|patch| ray.passes(patch.centre, patch.radius));
         let of_triangles =

@@ -1,5 +1,3 @@
-//! The pose and the time for which a pixel was drawn.
-
 use glam::DVec2;
 use pxpl5_sim::Time;
 use std::sync::Arc;
@@ -16,7 +14,6 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    /// Returns true if two views with the poses and times `self` and `other` give the same picture.
     pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
         self.pose == other.pose && self.objects_at == other.objects_at
     }

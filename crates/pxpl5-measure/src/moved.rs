@@ -1,5 +1,3 @@
-//! Content of the screen's pixels after a device has moved pictures.
-
 use crate::content::Content;
 use crate::drawn::Drawn;
 use crate::registration::{Evaluator, Warped, middle};
@@ -26,8 +24,8 @@ pub(crate) enum Moved {
     Hidden,
 }
 
-/// Largest number of iterations in the search for the picture position that a pixel shows. An iteration is needed
-/// because the pose depends on the position if parts of a picture have different poses.
+/// Largest number of iterations in the search for the picture position that a pixel shows. The search is iterative
+/// because parts of a picture can have different poses, so the pose depends on the position.
 const STEPS: usize = 4;
 
 /// Returns the content of a pixel that is lit from the time `at` on, after the picture has been moved to the pose

@@ -1,5 +1,5 @@
-//! Raster offset of VDRT: the display shifts the picture during scan-out. The shift corrects the error of the head pose
-//! for which the picture was drawn.
+//! Raster offset of Breglia's display VDRT: the display shifts the picture during scan-out. The shift corrects the
+//! error of the head pose for which the picture was drawn.
 
 use crate::picture_mover::PictureMover;
 use crate::rows::Rows;
@@ -77,7 +77,6 @@ pub struct RasterOffsets<'a> {
 
 #[derive(Clone, Debug)]
 enum MovedBy<'a> {
-    /// The raster offset of every field, or `None` for a field without an offset.
     Offsets(Vec<Option<RasterOffset>>),
     Device(Rc<PictureMover<'a>>),
 }

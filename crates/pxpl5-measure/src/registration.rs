@@ -1,4 +1,5 @@
-//! Pixel error: the distance between a pixel and the correct position of its content at the time when the pixel is lit.
+//! The evaluation of pixel errors: rays into the scene give the content of a pixel, and a projection gives its right
+//! place.
 
 use crate::content::{Content, Contents};
 use crate::reproject::direction;
@@ -61,7 +62,6 @@ impl Evaluator {
         })
     }
 
-    /// Returns the point of the scene that the pixel at the position `place` shows.
     pub(crate) fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
@@ -159,8 +159,8 @@ impl Evaluator {
         (way.is_finite() && way > 0.0).then(|| Content::fixed(now.position + ahead * way))
     }
 
-    /// Returns the pose and time for which a pixel was drawn. A pixel that is interpolated between two views gets an
-    /// interpolated pose and time.
+    /// Returns the pose and time for which a pixel was drawn. A pixel that is interpolated between two views gets a
+    /// pose and a time between theirs.
     pub(crate) fn moment(&self, drawn: &Drawn) -> Moment {
         match drawn {
             Drawn::View(moment) | Drawn::ShiftedRaster(moment, _) => *moment,
@@ -228,7 +228,6 @@ impl<'a> Registration<'a> {
     }
 }
 
-/// Returns the position of a pixel's middle in the picture, in pixels.
 pub(crate) fn middle(x: u32, y: u32) -> DVec2 {
     DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
 }

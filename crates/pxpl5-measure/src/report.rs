@@ -274,9 +274,8 @@ impl Report {
         report
     }
 
-    /// Adds the statistics of this report to the trace hash.
-    ///
-    /// The trace hash alone does not cover the order of summation, which changes floating-point sums.
+    /// Adds the statistics of this report to the trace hash. Otherwise the hash would not depend on the order of
+    /// summation, which changes floating-point sums.
     fn hash_statistics(&mut self, mut hash: TraceHash) {
         let latencies = (&self.latency_fields, &self.latency_ms, &self.latency_parts_ms, &self.latency_by_eye_ms);
         let pictures =
@@ -296,8 +295,8 @@ impl Report {
     }
 }
 
-/// Computes the hash of a text in the same way as the trace hash of one event. The event has the time zero, the number
-/// 9 as its kind, and the bytes of the text.
+/// Computes the hash of a text in the same way as the trace hash of one event with time zero, kind 9 and the text's
+/// bytes.
 ///
 /// The text is not stored, because the text of a long run would be large.
 struct HashedText(u64);

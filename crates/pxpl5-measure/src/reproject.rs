@@ -46,7 +46,7 @@ impl Move {
     }
 }
 
-/// Writes some pixels of a row. Each pixel is copied from the position in the source picture that `place` returns.
+/// Writes some pixels of a row. Each pixel is copied from the position that `place` returns, in the source picture.
 ///
 /// Pixels without a source become black. Returns the number of these pixels.
 pub(crate) fn fill_row(
@@ -77,7 +77,6 @@ pub(crate) fn fill_row(
     empty
 }
 
-/// Writes the pixels `xs` of the row `y` of a moved picture. Returns the number of pixels without a source.
 pub(crate) fn move_row(
     source: &RgbImage,
     rows: Rows,

@@ -5,7 +5,7 @@ use pxpl5_run::{FinalResults, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// Arrivals of regions on a run's first surface. These arrivals give the region that a pixel shows at any time.
+/// Arrivals of regions on a run's first surface, from which the region that a pixel shows at any time is found.
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
@@ -18,8 +18,8 @@ pub(crate) struct Screen {
 /// and time.
 #[derive(Debug)]
 struct Cut {
-    /// Copy target of the first arrival, which identifies the buffer and the division of the screen. The region and the
-    /// picture in this target are ignored.
+    /// Copy target of the first arrival. Its buffer and its division of the screen hold for all arrivals. The region
+    /// and the picture in this target are ignored.
     of: CopyTarget,
     regions: Vec<Vec<(Time, PictureNumber)>>,
 }
@@ -73,7 +73,6 @@ impl Screen {
         }
     }
 
-    /// Returns the copy targets (buffer, region and picture) of all arrivals that have not been discarded.
     pub(crate) fn targets(&self) -> impl Iterator<Item = CopyTarget> {
         self.cuts.iter().flat_map(|cut| {
             let regions = (0..).map(RegionId).zip(&cut.regions);

@@ -11,7 +11,7 @@ use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The picture at a pixel, classified for the evaluation of pixel errors.
+/// The kind of picture at a pixel, which decides if the pixel error is evaluated.
 #[derive(Clone, Debug)]
 pub(crate) enum Seen {
     /// The pixel shows nothing yet, or its source is unknown.
@@ -24,7 +24,7 @@ pub(crate) enum Seen {
     Complete(Drawn),
 }
 
-/// The views of a run and the contents of its screen, updated during the run.
+/// The views of a run and the contents of its screen, updated as the run proceeds.
 #[derive(Debug)]
 pub(crate) struct Shown {
     screen: Screen,
@@ -40,7 +40,6 @@ pub(crate) struct Shown {
     /// covers them.
     window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
-    /// State of the display memories. `None` if the display is not an address recalculation display.
     faces: Option<LatchedFaces>,
 }
 
@@ -53,7 +52,7 @@ struct Viewed {
 }
 
 impl Shown {
-    /// Creates the state for a run from which no records were added yet.
+    /// Creates a state without any records of the run.
     pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         Self {
             screen: Screen::default(),
@@ -66,7 +65,6 @@ impl Shown {
         }
     }
 
-    /// Creates the state from all records of a run that remain in memory.
     pub(crate) fn of_run(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         let mut shown = Self::begin(run, head);
         shown.take(run, head);
@@ -179,7 +177,7 @@ impl Shown {
         run.pipeline.source(run.record, target, &self.views, run.aim)
     }
 
-    /// Returns the view or views from which the pixel (`x`, `y`) was drawn. The pixel is lit at the instant `at`.
+    /// Returns the view or views for which the pixel (`x`, `y`) was drawn. The pixel is lit at the instant `at`.
     /// Returns `None` before the first region has arrived.
     pub(crate) fn drawn(
         &self,

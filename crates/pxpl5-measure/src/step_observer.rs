@@ -18,7 +18,6 @@ pub(crate) struct StepSum {
     memories: Vec<OfMemory>,
 }
 
-/// Latencies of the content of one display memory, in milliseconds.
 #[derive(Debug, Default)]
 struct OfMemory {
     /// The display period that first shows the display memory's newest update, and the instant at which the latency of
@@ -97,7 +96,6 @@ impl OfMemory {
     }
 }
 
-/// Returns the instant at which the pose for a display memory's picture was measured. `None` without a tracked head.
 fn measured_at(run: &FinalResults<'_>, shown: &ShownUpdate) -> Option<Time> {
     let sampled = run.head?.sampled();
     sampled.iter().find(|sampled| sampled.number == shown.note.view)?.measured_at

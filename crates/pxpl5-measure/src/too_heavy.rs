@@ -50,7 +50,6 @@ fn advice(pipeline: &str, triangles_in_time: Option<u64>) -> String {
     }
 }
 
-/// Returns `s` for counts that need a plural noun, and an empty text for 1.
 const fn ending(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }

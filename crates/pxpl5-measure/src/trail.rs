@@ -36,17 +36,17 @@ struct StageWork {
     end: Time,
 }
 
-/// Times that differ by less than this span count as one instant (assumed). A signal or a hop of the ring takes a few
-/// cycles. A region's transfer takes 780 us (TR94).
+/// Times that differ by less than this duration count as one instant (assumed). A signal or a hop of the ring takes a
+/// few cycles. A region's transfer takes 780 us (TR94).
 const NEAR: Span = Span::from_us(20);
 
-/// A display port counts as busy if it was free for less than 1/`SLACK` of the time that a region's transfer takes
-/// (assumed). Without this rule, the token would count as the cause whenever port and token become free at nearly the
+/// A display port counts as busy if it was free for less than 1/`SLACK` of the time of a region's transfer (assumed).
+/// Without this rule, the token would count as the cause of a wait whenever port and token become free at nearly the
 /// same time.
 const SLACK: u64 = 4;
 
-/// Largest number of earlier arrivals of regions in which the search for the cause of a wait looks (assumed). This
-/// number covers several pictures of 40 regions.
+/// Largest number of earlier arrivals of regions among which the cause of a wait is searched (assumed). This number
+/// covers several pictures of 40 regions.
 const ARRIVALS_SEARCHED: usize = 512;
 
 /// Largest number of steps that are followed for one picture. The part of the latency before these steps is assigned to
@@ -65,7 +65,6 @@ pub(crate) struct Trail<'a> {
     of_target: HashMap<CopyTarget, Vec<usize>>,
     of_renderer: BTreeMap<usize, Vec<usize>>,
     surface_of_port: BTreeMap<NodeId, SurfaceId>,
-    /// EDIT, TRANSFORM and SEND stages on each board.
     stages: Vec<StageWork>,
     /// Earliest start of RENDER on any renderer, for each picture and surface.
     render_begins: BTreeMap<(PictureNumber, Option<SurfaceId>), Time>,
@@ -73,8 +72,8 @@ pub(crate) struct Trail<'a> {
     swaps: Vec<Time>,
 }
 
-/// Current position while the events that led to a picture are followed backwards. The number in a variant is an index
-/// in the list `arrivals`, `drawn` or `stages`.
+/// Current position while a picture is followed backwards through the events before it. The number in a variant is an
+/// index in the list `arrivals`, `drawn` or `stages`.
 #[derive(Clone, Copy, Debug)]
 enum At {
     /// The position is the start of a region's transfer to a display.
@@ -87,8 +86,8 @@ enum At {
     Begin,
 }
 
-/// Steps found so far, from the end of the latency backwards. Each step ends at the instant at which the step before it
-/// in the list begins.
+/// Steps found so far, from the end of the latency backwards. Each step ends where the preceding step of the list
+/// begins.
 struct Way {
     steps: Vec<Step>,
     cursor: Time,
@@ -116,7 +115,6 @@ impl Way {
 }
 
 impl<'a> Trail<'a> {
-    /// Collects the records of a run from the instant `earliest` on.
     pub(crate) fn of(record: &'a Record, earliest: Time) -> Self {
         let observation = record.observation();
         let mut arrivals: Vec<&Arrival> = observation.arrivals.iter().filter(|a| a.last_part_at >= earliest).collect();
@@ -223,7 +221,6 @@ impl<'a> Trail<'a> {
         way.charge(Resource::Retrace, Some(Board::Display(0)), from, || "retrace".to_owned());
     }
 
-    /// Returns the number of regions that had arrived at displays by the instant `at`.
     fn arrivals_by(&self, at: Time) -> usize {
         self.arrivals.partition_point(|arrival| arrival.last_part_at <= at)
     }
@@ -265,7 +262,8 @@ impl<'a> Trail<'a> {
         self.before_late_copy(way, place, place_drawn)
     }
 
-    /// Finds the reason for a late copy command: no frame buffer was free, or another eye was copied first.
+    /// Finds the reason for a late copy command. Either no frame buffer was free, or the picture of another eye was
+    /// copied first.
     fn before_late_copy(&self, way: &mut Way, place: usize, place_drawn: usize) -> At {
         let (_, region) = self.drawn[place_drawn];
         let arrived = self.arrival_before(place, region.copy_at, |_| true);
@@ -453,7 +451,6 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Returns the region whose commands ended last in a RENDER stage.
     fn last_drawn(&self, (end, picture, surface): (Time, PictureNumber, Option<SurfaceId>)) -> At {
         let is_of = |region: &DrawnRegion| {
             let own = self.surface_of_port.get(&region.target.frame_buffer).copied();

@@ -19,8 +19,8 @@ pub(crate) struct LatchedFaces {
     turns: RefCell<Turns>,
 }
 
-/// Predicted orientations of the head. The key of an orientation has two times. The first is the time up to which the
-/// host used tracker reports. The second is the instant for which the host predicted.
+/// Predicted orientations of the head, in the map `known`. The key of an orientation has two times: the time up to
+/// which the host used tracker reports, and the instant for which the host predicted.
 struct Turns {
     estimator: Estimator,
     /// Time of the last report passed to the estimator, which accepts reports only in ascending order.
@@ -43,7 +43,7 @@ impl LatchedFaces {
         Some(Self { history, latched, head: Arc::clone(head), without: None, turns })
     }
 
-    /// Replaces the history by the display updates that the run still has in memory.
+    /// Replaces the list of display updates by the updates that the run still has in memory.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>) {
         self.history = FaceHistory::held(run.record).unwrap_or_default();
     }
