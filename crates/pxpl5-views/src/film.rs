@@ -73,7 +73,6 @@ impl Film {
         self.each_of(&mut machine, &surfaces, |period, picture| Ok(take(period, picture)))
     }
 
-    /// Checks the number of periods, and builds the machine that runs the experiment.
     fn begin(&self) -> Result<Machine, PictureError> {
         if !(FILM_PERIODS.0..=FILM_PERIODS.1).contains(&self.periods) {
             let (low, high) = FILM_PERIODS;

@@ -93,9 +93,8 @@ pub struct Chart {
 struct Measures {
     width: u32,
     height: u32,
-    /// Height of text, in drawing units.
     em: u32,
-    /// Width, height and their unit, as written in the SVG file.
+    /// Width and height of the chart, and the unit of both in the SVG file.
     outer: (f64, f64, &'static str),
     names_below: bool,
 }
@@ -220,7 +219,7 @@ struct Placed {
     is_hollow: bool,
 }
 
-/// Splits the points of a series into sequences, so that a line has a gap at each point without a position (NaN).
+/// Splits the points of a series at each point without a position (NaN), where a line has a gap.
 fn runs(points: &[ChartPoint], axes: (&Axis, &Axis)) -> Vec<Vec<Placed>> {
     let placed = |point: &ChartPoint| {
         let at = (axes.0.place(point.at.0), axes.1.place(point.at.1));
@@ -276,7 +275,6 @@ fn draw_series<'a>(
     Ok(())
 }
 
-/// Draws the legend entry of a series: a sample of its style, and the name.
 fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32, i32)) -> Result<(), Fault<'a>> {
     // The sample consists of a mark, of a line, or of both, as in the chart.
     let em = look.em as i32;

@@ -14,7 +14,8 @@ pub struct SpeedAndError {
     pub mean_error_percent: f64,
 }
 
-/// Returns an SVG chart of simulated fields per host second, on a logarithmic axis, against the mean error.
+/// Returns an SVG chart of speed against mean error. The speed is the number of simulated fields per second of
+/// computing time, on a logarithmic axis.
 ///
 /// The error covers the published figures that were not used to fit parameters. A line joins the best levels of
 /// modelling: no other level is both faster and more accurate.

@@ -1,5 +1,3 @@
-//! Formatting of report values for a page.
-
 use crate::markup::Element;
 use serde_json::Value;
 use std::fmt::Display;
@@ -19,7 +17,7 @@ pub(super) fn known(value: &Value) -> String {
     if value.is_null() { "-".to_owned() } else { plain(value) }
 }
 
-/// Returns a value as text. Strings are returned without quotes.
+/// Returns a value as text, and a string without its quotes.
 pub(super) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
@@ -41,7 +39,6 @@ pub(super) fn cell(text: impl Display) -> Element {
     Element::new("td").text(text)
 }
 
-/// Returns a table cell with a number, aligned to the right.
 pub(super) fn number_cell(text: impl Display) -> Element {
     Element::new("td").with("class", "n").text(text)
 }

@@ -1,5 +1,3 @@
-//! Builds a timeline from the observations of a run.
-
 use super::arrows::arrows;
 use super::model::{Timeline, TimelineRow, TimelineScan};
 use super::options::{MAX_FIELDS, TimelineOptions};
@@ -74,7 +72,6 @@ fn chosen(pictures: &[PictureTimes], wanted: Option<PictureNumber>) -> Option<&P
     }
 }
 
-/// Returns the time at which the host began the SEND with the number `update`. Returns `None` if the host has no row.
 fn sent_at(rows: &[TimelineRow], update: Option<PictureNumber>) -> Option<Time> {
     let bar = rows.first()?.bars.iter().find(|bar| Some(bar.picture) == update)?;
     (bar.stage == Stage::Send).then_some(bar.begin)

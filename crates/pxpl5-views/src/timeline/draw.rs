@@ -1,5 +1,3 @@
-//! Draws a timeline as SVG.
-
 use super::legend::legend;
 use super::model::{Arrow, Bar, DrawingPlace, Timeline, TimelineRow, TimelineScan};
 use super::style::{class_of, definitions, letters, pattern, style};
@@ -7,7 +5,6 @@ use crate::markup::Element;
 use crate::svg::{self, Units, caption, hint, rectangle, segment};
 use pxpl5_sim::{Span, Time};
 
-/// Width of the document, in SVG units.
 const WIDTH: i64 = 960;
 const LEFT: i64 = 172;
 const RIGHT: i64 = 14;
@@ -22,10 +19,10 @@ const FOOT: i64 = 84;
 const STRIP: i64 = 6;
 const SHOWN: i64 = 18;
 
-/// Smallest number of drawn retraces for which the axis omits the word `field`, because space is short.
+/// Number of drawn retraces from which the axis omits the word `field`, because space is short.
 const CROWDED: usize = 10;
 
-/// A timeline that is being drawn, with the vertical positions of its rows.
+/// A timeline while it is drawn, with the vertical positions of its rows.
 struct Drawing<'a> {
     timeline: &'a Timeline,
     out: Element,
@@ -35,7 +32,6 @@ struct Drawing<'a> {
     beam: i64,
 }
 
-/// Texts around a timeline: the title, and the origin of the drawing.
 pub(super) struct Words {
     pub(super) title: String,
     pub(super) subtitle: String,
@@ -302,7 +298,6 @@ fn about(bar: &Bar, timeline: &Timeline) -> String {
     format!("{letters} of {}: {begin} to {end} ms ({span} ms)", bar.picture)
 }
 
-/// Returns a time in milliseconds with three decimals.
 fn milliseconds(time: Time) -> String {
     format!("{}.{:03}", time.0 / 1_000_000_000, time.0 / 1_000_000 % 1_000)
 }

@@ -10,7 +10,8 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
-/// Returns all rows of a run from top to bottom: the host's row first, and the row of the last surface at the end.
+/// Returns all rows of a run from top to bottom: host, graphics processors, renderers, surfaces, and ports that swap
+/// independently.
 pub(super) fn rows(run: &SoFar<'_>, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
     let mut rows = Vec::new();
     if !options.without_host {
@@ -60,7 +61,7 @@ fn has_many_surfaces(record: &Record) -> bool {
     record.surfaces().nth(1).is_some()
 }
 
-/// COPY bars of a row. The key of a bar has the number of its picture and the number of the part of this picture.
+/// COPY bars of a row. The key of a bar has the number of its picture and the index of its part of this picture.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
 /// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two
