@@ -88,8 +88,8 @@ impl Binner {
         self.columns
     }
 
-    /// Returns the pixel rows of the picture that lie on the lines `lines` of the video frame. A field has only every
-    /// second line of its video frame.
+    /// Returns the rows of the picture that lie on the lines `lines` of the video frame. A field has only every second
+    /// line of its video frame.
     #[inline(always)]
     pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
@@ -99,7 +99,6 @@ impl Binner {
         }
     }
 
-    /// Returns the regions with pixels in the columns `x` and on the lines `lines` of the video frame.
     pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
         let x = x.within(self.width);
         let y = self.rows_of_lines(lines).within(self.height);

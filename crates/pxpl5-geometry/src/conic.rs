@@ -9,7 +9,7 @@ const VALUE_BITS: i32 = 46;
 
 pub(crate) const ROOT_BITS: i32 = 12;
 
-/// Largest number of low bits that the renderer's square root can ignore.
+/// Largest number of low bits of the quadratic that the renderer's square root can ignore.
 const MAX_ROOT_SHIFT: i32 = 24;
 
 /// Largest number of bits by which the renderer can shift a square root to the left. The renderer subtracts the shifted

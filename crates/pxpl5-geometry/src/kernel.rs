@@ -137,7 +137,6 @@ const BINS: &str = include_str!("../kernels/bins.s");
 const VERTICES: &str = include_str!("../kernels/vertices.s");
 const VERTICES_END: &str = include_str!("../kernels/vertices_end.s");
 
-/// Sources of the compiled kernel, with the functions that compute colours or normals first.
 const COMPILED: [&str; 5] = [NEWTON, SCALAR, include_str!("../kernels/compiled.s"), SCALAR_FUNCTIONS, BINS];
 
 const DUAL: [&str; 7] = [

@@ -219,7 +219,6 @@ const fn last_subpixel(pixels: u32) -> i32 {
     pixels as i32 * SUBPIXELS - 1
 }
 
-/// The rows of a picture: row r is line `first_line + r * line_step` of the video frame.
 #[derive(Clone, Copy)]
 struct PictureRows {
     line_step: i32,
@@ -318,7 +317,6 @@ fn with_area(twice_area: &EachLane<f64>) -> EachLane<i32> {
     out
 }
 
-/// Returns all ones for each triangle whose corners run counterclockwise, otherwise 0.
 #[inline(always)]
 fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
@@ -343,7 +341,6 @@ fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLa
     [*p, second, third]
 }
 
-/// Returns the edge expression between two corners of each triangle, as in [`crate::Outline`].
 #[inline(always)]
 fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> LinearLanes {
     let mut out = LinearLanes::default();
@@ -461,7 +458,6 @@ fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     out
 }
 
-/// Returns the distance from the corner `from` to the centre of `pixel` along one axis, in pixels.
 #[inline(always)]
 fn pixels(from: &EachLane<i32>, pixel: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];

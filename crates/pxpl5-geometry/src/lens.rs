@@ -32,7 +32,6 @@ pub(crate) struct Lens {
     pub(crate) reach: f64,
 }
 
-/// Distance from the near to the far plane, in the fixed-point units of depth.
 pub(crate) const DEPTH_RANGE: f64 = (DEPTH_FAR - DEPTH_NEAR) as f64;
 
 /// Returns the centre of pixel (0, 0) in normalized device coordinates.
@@ -82,7 +81,6 @@ impl Lens {
         (scale.iter().all(|scale| *scale > 0.0) && slope < 0.0).then_some(lens)
     }
 
-    /// Returns true if a point at distance t along -Z is nearer than the near plane, or behind the eye.
     pub(crate) fn is_before_near(&self, t: f64) -> bool {
         t <= self.least || self.near[0] * t + self.near[1] < 0.0
     }
@@ -91,7 +89,6 @@ impl Lens {
         self.far[0] * t + self.far[1] > 0.0
     }
 
-    /// Returns the fixed-point depth at distance t along -Z.
     pub(crate) fn depth(&self, t: f64) -> f64 {
         let u = if self.parallel { -t } else { reciprocal_double(t) };
         self.base + self.reach * u

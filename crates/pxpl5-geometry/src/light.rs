@@ -30,7 +30,6 @@ impl NormalRows {
         Self { rows: [x, y, z].map(|row| row.map(|v| (v * scale) as f32)), origin: to_eye.origin() }
     }
 
-    /// Rotates a direction from eye to world coordinates.
     pub(crate) fn to_world(self, direction: [f32; 3]) -> [f32; 3] {
         let rows = self.rows.map(|row| row.map(f64::from));
         let [x, y, z] = direction.map(f64::from);
@@ -96,8 +95,6 @@ impl<'a> ModelLight<'a> {
     }
 }
 
-/// Returns the normals at the corners in eye coordinates. If the surface faces away from the eye, the normals are
-/// reversed.
 pub(crate) fn facing_normals(rows: &NormalRows, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
     let [a, b, c] = [0, 1, 2].map(|i| normal_and_facing(rows, positions[i], normals[i]));
     turned([a.0, b.0, c.0], [a.1, b.1, c.1])

@@ -41,13 +41,11 @@ pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
-/// Returns the distance from a corner to the centre of a pixel along one axis, in pixels. `corner` is in subpixels.
 #[inline(always)]
 fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
     f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
 }
 
-/// The values that all planes of one triangle share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
     /// Differences in x from corner 0 to corners 1 and 2, in subpixels.

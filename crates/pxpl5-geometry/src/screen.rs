@@ -51,7 +51,6 @@ pub(crate) fn normal_fixed(component: f32) -> i16 {
     rounded(component * f32::from(NORMAL_UNIT)) as i16
 }
 
-/// Factor from depths between 0 and 1 to fixed point.
 pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
 
 /// Converts a depth to fixed point. `beyond_near` is the distance from the near plane in fixed-point units.
@@ -140,14 +139,13 @@ impl Outline {
         PhongTriangle { edges: self.picture_edges(viewport), z, normal: [nx, ny, nz], colour }
     }
 
-    /// Returns the expressions of the three edges over the columns and rows of the picture.
     #[inline(always)]
     fn picture_edges(&self, viewport: &Viewport) -> [Linear; 3] {
         let [a, b, c] = self.edges();
         [for_rows(a, viewport), for_rows(b, viewport), for_rows(c, viewport)]
     }
 
-    /// Returns the planes through the depths and through three components of the colours or normals.
+    /// Returns the planes of the triangle: first depth, then three components of the colours or normals.
     #[inline(always)]
     fn planes(&self, corners: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
         let planes = Planes::for_outline(self, self.middle(viewport));
@@ -174,7 +172,6 @@ fn component([a, b, c]: &[[f32; 3]; 3], number: usize) -> [f64; 3] {
     [f64::from(a[number]), f64::from(b[number]), f64::from(c[number])]
 }
 
-/// Returns the middle pixel of the triangle's visible part along one axis, in a picture of `size` pixels.
 #[inline(always)]
 fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {
     let [low, high] = extent(corners);

@@ -128,7 +128,6 @@ impl Lens {
         if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
     }
 
-    /// Returns the sphere's image as a conic, and the plane of depth through the silhouette.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
         let [cx, cy, cz] = sphere.centre;
         let r = sphere.radius;

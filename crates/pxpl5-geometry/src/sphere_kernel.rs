@@ -105,7 +105,6 @@ impl SphereKernel {
         Some(words)
     }
 
-    /// Returns the numeric constants of the kernel. Some of them depend on the picture.
     fn constants(&self, viewport: &Viewport) -> [f64; 27] {
         let [width, lines] = [viewport.grid().width, viewport.frame_lines()];
         let half = lens::half_frame(width, lines);

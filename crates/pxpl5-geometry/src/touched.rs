@@ -104,7 +104,6 @@ impl Transform {
         all.codes.extend_from_slice(&found.codes[..len]);
     }
 
-    /// Tests the edges of a triangle whose bounding box meets more than one region.
     fn touch_several(&self, corners: &CornerLanes, found: &LaneTouches, lane: usize) -> Touch {
         let [x, y] = corners.clockwise(lane);
         Touch::from_mask(self.binner.test_edges(x, y, range_in(lane, &found.x), range_in(lane, &found.y)))
@@ -115,7 +114,6 @@ fn range_in(lane: usize, [first, last]: &[EachLane<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
-/// x and y of the corners of several triangles, indexed by corner and then by triangle.
 #[derive(Debug)]
 struct CornerLanes([EachLane<[i32; 2]>; 3]);
 

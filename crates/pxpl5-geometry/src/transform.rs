@@ -174,7 +174,6 @@ impl Assembled {
         (twice_area != 0).then_some(Self { outline, swapped })
     }
 
-    /// Rearranges the values of three corners in the same way as the corners.
     #[inline(always)]
     pub(crate) fn order<T>(&self, [p, q, r]: [T; 3]) -> [T; 3] {
         if self.swapped { [p, r, q] } else { [p, q, r] }
@@ -331,7 +330,6 @@ impl Transform {
         Some(TriangleEnds { from: self.snap_unclipped(positions)?, to: end.snap_unclipped(positions)? })
     }
 
-    /// Returns the corners of a triangle on the screen, or `None` if a corner is outside the guard band.
     fn snap_unclipped(&self, positions: &[Vec3; 3]) -> Option<[Snapped; 3]> {
         let clip = positions.map(|p| self.to_clip.point(p));
         clip.iter().all(|c| self.guard.contains(*c)).then(|| clip.map(|c| self.to_screen.snap(c)))

@@ -100,7 +100,6 @@ impl Contents {
         nearest.1.map(|content| (nearest.0, content))
     }
 
-    /// Returns the position of a scene point in world coordinates at a time.
     pub(crate) fn place(&self, content: &Content, at: Time) -> DVec3 {
         let body = content.body.and_then(|body| self.bodies.get(body));
         body.map_or(content.point, |body| body.model(at).transform_point3(content.point))
@@ -121,7 +120,6 @@ impl Body {
         }
     }
 
-    /// Returns the matrix from the structure's coordinates to world coordinates at a time.
     fn model(&self, at: Time) -> DMat4 {
         self.hinge.map_or(DMat4::IDENTITY, |hinge| hinge.model(at.0).as_dmat4())
     }
@@ -174,7 +172,6 @@ impl Ray {
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| ac.dot(across) / determinant)
     }
 
-    /// Returns the depth at which the ray enters a sphere.
     fn meets_sphere(&self, centre: DVec3, radius: f64) -> Option<f64> {
         let way = centre - self.origin;
         let squared = self.direction.length_squared();

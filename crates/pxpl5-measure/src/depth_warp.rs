@@ -17,7 +17,7 @@ use tracking::view::Hmd;
 pub struct DepthPicture {
     width: u32,
     height: u32,
-    /// Depth along the axis of the view in metres, row after row.
+    /// Depth of each pixel along the axis of the view, in metres, row after row.
     depths: Vec<f32>,
     /// Smallest and largest depth of the picture's pixels in metres, except depths of 0 (rows that do not belong to the
     /// field).
@@ -146,7 +146,6 @@ impl Drawing<'_> {
         &self.depths.depths[begin..begin + self.picture.width() as usize]
     }
 
-    /// Computes the positions at which the pixels of a row of the field are seen from the new pose `now`.
     fn see_row(&self, now: &Pose, row: u32, target: &Target, out: &mut SeenRow) {
         let to_new = now.orientation.conjugate();
         let turn = to_new * self.drawn_for.orientation;
@@ -239,7 +238,6 @@ impl Target {
         Self { width, rows, depths: vec![f32::INFINITY; size], sources: vec![NOTHING; size] }
     }
 
-    /// Draws the cells of the mesh between row `upper_row` of the picture and the row below it.
     fn draw_cells(&mut self, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
         let count = pairs.near.len();
         let first = upper_row * self.width;
@@ -319,7 +317,7 @@ impl Target {
         }
     }
 
-    /// Copies the colour of each pixel's source to the moved picture. Returns the number of pixels without a source.
+    /// Copies the colour of each pixel's source to the moved picture. Returns the number of pixels that have no source.
     fn copy(&self, drawing: &Drawing<'_>, out: &mut RgbImage) -> u64 {
         let width = self.width as usize;
         let pixels = drawing.picture.as_raw();

@@ -3,7 +3,6 @@ use pxpl5_sim::Time;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// The pose for which a view was drawn, and the time for which moving objects were placed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
@@ -19,7 +18,6 @@ impl Moment {
     }
 }
 
-/// The pose or the poses for which a displayed pixel was drawn.
 #[derive(Clone, Debug)]
 pub(crate) enum Drawn {
     View(Moment),

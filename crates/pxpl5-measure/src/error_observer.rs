@@ -89,9 +89,7 @@ enum Content {
     /// current field, if the field has an offset.
     ShiftedRaster(Estimator, Option<RasterOffset>),
     Ideal(Estimator),
-    /// A device moves pictures to the newest pose of the head.
     Reprojected(Reprojector),
-    /// A video of the real world is delayed with the pictures. Video and pictures show the measured pose of the head.
     DelayedVideo,
 }
 
@@ -304,7 +302,6 @@ impl Evaluation {
         error
     }
 
-    /// Adds the distance that the content of a pixel moves across the screen while the pixel is lit.
     fn smear(&self, seen: &Seen, pixel: Pixel, light: &PixelLight, eye: &mut EyeSum) {
         let Seen::Complete(drawn) = seen else { return };
         if !light.is_instant() {
@@ -419,7 +416,6 @@ impl Collected {
     }
 }
 
-/// Adds an error in pixels to the first distribution, and in degrees to the second.
 fn push([pixels, degrees]: &mut [Distribution; 2], error: &Misregistration) {
     pixels.push(error.pixels);
     degrees.push(error.degrees);

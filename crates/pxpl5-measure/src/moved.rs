@@ -11,7 +11,6 @@ use pxpl5_wire::PeriodNumber;
 use tracking::Pose;
 use tracking::view::Hmd;
 
-/// Content of a pixel of the screen after a device has moved the picture.
 #[derive(Clone, Debug)]
 pub(crate) enum Moved {
     /// The pixel shows content of a picture, with the pose for which the picture was drawn.

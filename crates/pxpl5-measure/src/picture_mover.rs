@@ -46,7 +46,6 @@ impl<'a> PictureMover<'a> {
         }
     }
 
-    /// Returns the newest pose of the head for each part of a field. All pixels of a part are moved to the same pose.
     fn reprojector(&self, screen: &RgbImage, field: PeriodNumber) -> Reprojector {
         let display = self.run.record.display();
         let mut reprojector = Reprojector::new(&self.head, self.setting, None);

@@ -301,8 +301,6 @@ impl Results {
     }
 }
 
-/// Returns the mean time of a latency stage over the pictures in the result window. `None` if no picture has this
-/// stage.
 fn stage_ms(outcome: &Outcome, stage: Stage) -> Option<f64> {
     let (_, samples) = outcome.tally().stage_ms.iter().find(|(of, _)| *of == stage)?;
     Some(samples.statistics().mean)

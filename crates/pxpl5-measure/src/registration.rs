@@ -31,7 +31,6 @@ impl Evaluator {
         Self { view, head: Arc::clone(head), contents, distance_m: head.distance_m() }
     }
 
-    /// Returns the direction of a picture position in head coordinates, scaled to a depth of 1 m.
     fn direction(&self, place: DVec2) -> DVec3 {
         direction(&self.view, place)
     }
@@ -114,10 +113,8 @@ impl Evaluator {
     }
 }
 
-/// Content at a screen position, after a picture with depth was moved to another pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Warped {
-    /// The visible content, with its position in the picture.
     Seen(Content, DVec2),
     /// No content, because the content lies beyond the edge of the drawn picture.
     Beyond,

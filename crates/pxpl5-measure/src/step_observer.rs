@@ -33,7 +33,6 @@ pub(crate) struct Steps {
     /// Latency over all display periods since the display memory's first update, in milliseconds. `None` before the
     /// first update.
     pub(crate) latency_ms: Option<Statistics>,
-    /// Means of the parts of the latency, in milliseconds.
     pub(crate) parts_ms: Vec<(&'static str, f64)>,
 }
 

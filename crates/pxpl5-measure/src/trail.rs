@@ -9,14 +9,12 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, NodeId, PictureNumber, SurfaceId};
 use std::collections::{BTreeMap, HashMap};
 
-/// A part of a latency, during which the picture waited for one resource.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Step {
     pub(crate) resource: Resource,
     pub(crate) board: Option<Board>,
     pub(crate) from: Time,
     pub(crate) to: Time,
-    /// Description of the work that the picture waited for, as text.
     pub(crate) what: String,
 }
 
@@ -72,17 +70,17 @@ pub(crate) struct Trail<'a> {
     swaps: Vec<Time>,
 }
 
-/// Current position while a picture is followed backwards through the events before it. The number in a variant is an
-/// index in the list `arrivals`, `drawn` or `stages`.
+/// Current position while a picture is followed backwards through the events before it. The number in a variant is
+/// called `index` below.
 #[derive(Clone, Copy, Debug)]
 enum At {
-    /// The position is the start of a region's transfer to a display.
+    /// Start of the transfer of the region `arrivals[index]` to a display.
     Arrival(usize),
-    /// The position is the end of the commands of the region `drawn[index]` on a renderer.
+    /// End of the commands of the region `drawn[index]` on a renderer.
     Drawn(usize),
-    /// The position is the end of a stage on a board, or an instant within the stage.
+    /// End of the stage `stages[index]` on a board, or an instant within the stage.
     Stage(usize),
-    /// The position is the start of the latency, where the path ends.
+    /// Start of the latency, where the path ends.
     Begin,
 }
 
@@ -225,7 +223,8 @@ impl<'a> Trail<'a> {
         self.arrivals.partition_point(|arrival| arrival.last_part_at <= at)
     }
 
-    /// Assigns the time of a region's transfer to resources. Returns the earlier work whose end let the transfer begin.
+    /// Assigns the time of a region's transfer to resources. Returns the earlier work whose end allowed the transfer to
+    /// begin.
     fn before_arrival(&self, way: &mut Way, place: usize) -> At {
         let arrival = self.arrivals[place];
         let begin = arrival.begins_at(self.message);
@@ -316,8 +315,8 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Returns the index in the list `drawn` of the region that was drawn last for `target`. Only regions whose copy
-    /// command had started by the instant `by` are considered.
+    /// Returns the index, in the list `drawn`, of the region that was drawn last for `target`. A region counts only if
+    /// its copy command had started by the instant `by`.
     fn drawn_for(&self, target: &CopyTarget, by: Time) -> Option<usize> {
         self.of_target.get(target)?.iter().copied().rfind(|place| self.drawn[*place].1.copy_at <= by)
     }
@@ -421,7 +420,7 @@ impl<'a> Trail<'a> {
         At::Stage(found)
     }
 
-    /// Assigns the time of a stage to resources. Returns the earlier work whose end let the stage begin.
+    /// Assigns the time of a stage to resources. Returns the earlier work whose end allowed the stage to begin.
     fn before_stage(&self, way: &mut Way, place: usize) -> At {
         let work = self.stages[place];
         let board = self.record.ports().board(work.node);

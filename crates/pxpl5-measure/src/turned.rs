@@ -35,7 +35,6 @@ impl fmt::Debug for LatchedFaces {
 }
 
 impl LatchedFaces {
-    /// Creates the state for a run, or returns `None` if the run's display is not an address recalculation display.
     pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Option<Self> {
         let history = FaceHistory::held(run.record)?;
         let latched = OrientationTiming::of_run(run)?;
@@ -48,7 +47,6 @@ impl LatchedFaces {
         self.history = FaceHistory::held(run.record).unwrap_or_default();
     }
 
-    /// Discards orientations that were predicted from tracker reports before an instant.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         self.turns.get_mut().known.retain(|(report, _), _| *report >= instant);
     }
@@ -64,7 +62,6 @@ impl LatchedFaces {
         self.turns = RefCell::new(Turns::new(&self.head, self.without));
     }
 
-    /// Returns the views that the display memories show in a field.
     pub(crate) fn views_at(&self, field: PeriodNumber) -> Vec<ViewNumber> {
         self.history.at(field).map(|shown| shown.note.view).collect()
     }

@@ -139,7 +139,6 @@ fn drop_pieces(surface: &mut Surface, wanted: usize) {
     }
 }
 
-/// Removes the smallest triangles until `wanted` remain.
 fn drop_triangles(surface: &mut Surface, wanted: usize) {
     let left: Vec<u32> = surface.all().map(|(triangle, _)| triangle).collect();
     let areas: Vec<f64> = left.iter().map(|&triangle| area(surface, triangle)).collect();
@@ -173,7 +172,6 @@ struct Kept {
 }
 
 impl Kept {
-    /// Returns the parts of the scene that remain, without unused vertices and empty structures.
     fn of(self, mut parts: SceneParts) -> SceneParts {
         // Count how many items remain before each index: these are the new indices.
         let mut used = vec![false; parts.vertices.len()];

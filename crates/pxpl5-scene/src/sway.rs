@@ -46,7 +46,6 @@ const GAZE_PITCH: [Sine; 3] = [(0.31, 2.7), (0.97, 2.2), (1.73, 1.6)];
 /// Sine waves whose sum is the head's tilt to its left, degrees.
 const GAZE_ROLL: [Sine; 3] = [(0.17, 3.4), (0.71, 2.5), (1.37, 1.6)];
 
-/// The angles and the relative distance of the sway at one instant.
 pub(crate) struct Swing {
     pub(crate) azimuth_deg: f64,
     pub(crate) elevation_deg: f64,

@@ -58,7 +58,7 @@ pub(crate) fn rectangle(class: &str, [x, y, width, height]: [Units; 4]) -> Eleme
     Element::new("rect").with("class", class).with("x", x).with("y", y).with("width", width).with("height", height)
 }
 
-/// Returns a straight line with a CSS class. The numbers are the coordinates of the two end points.
+/// Returns a straight line with a CSS class. The numbers are the coordinates of the line's two ends.
 pub(crate) fn segment(class: &str, [x1, y1, x2, y2]: [Units; 4]) -> Element {
     Element::new("path").with("class", class).with("d", format_args!("M{x1} {y1}L{x2} {y2}"))
 }

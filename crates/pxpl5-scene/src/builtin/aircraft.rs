@@ -101,7 +101,6 @@ fn fin() -> Vec<Vec<DVec3>> {
     prism(&root, &tip)
 }
 
-/// Returns the faces of the canopy: two pyramids on a common base, which lies inside the fuselage.
 fn canopy() -> Vec<Vec<DVec3>> {
     let base = [(0.0, 3.6), (0.4, 1.9), (0.0, -0.4), (-0.4, 1.9)].map(|(x, z)| DVec3::new(x, 0.62, z));
     let [above, below] = [1.35, 0.4].map(|y| DVec3::new(0.0, y, 1.9));

@@ -131,7 +131,6 @@ fn hall(solid: &mut Solid) {
     }
 }
 
-/// A straight part of the path, on the floor between two corners.
 struct Leg {
     from: DVec3,
     along: DVec3,
@@ -178,7 +177,6 @@ fn partition(solid: &mut Solid, number: usize) {
     solid.end_structure(&format!("partition {number}"), None);
 }
 
-/// Number of picture frames on the near side of each partition.
 const FRAMES: usize = 3;
 
 fn frame(solid: &mut Solid, number: usize, place: usize) {

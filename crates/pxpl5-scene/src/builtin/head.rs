@@ -10,9 +10,9 @@ use crate::motion::HeadMotion;
 use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
 use crate::trig;
 
-/// Number of vertices around the head. The head has 2 x 156 x 191 = 59,592 triangles, including 156 at each pole.
+/// Number of vertices on each parallel. The head has 2 x 156 x 191 = 59,592 triangles, including 156 at each pole.
 const MERIDIANS: usize = 156;
-/// Number of rings of vertices between the two poles.
+/// Number of rings of vertices (parallels) between crown and neck.
 const PARALLELS: usize = 191;
 
 const SKIN: Colour = [226, 178, 150];
@@ -81,7 +81,6 @@ fn push_parallel(mesh: &mut Mesh, down: f64) {
     }
 }
 
-/// Adds a vertex where a ray from inside the head meets the surface. Returns the index of the vertex.
 fn push_hit(mesh: &mut Mesh, ray: Ray) -> u32 {
     let point = ray.hit();
     mesh.push(point, normal(point), colour(point))

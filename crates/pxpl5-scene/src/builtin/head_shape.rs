@@ -65,7 +65,6 @@ fn face(d: f64, p: DVec3) -> f64 {
     mouth(d, p)
 }
 
-/// Returns the distance of a point from the eyelids, a shell around the eyeball with a slit.
 fn eyelids(p: DVec3) -> f64 {
     let shell = (p - EYE).length() - (EYE_RADIUS + 0.2);
     let slit = ellipsoid(p, xyz(3.2, 0.65, 8.4), xyz(1.5, 0.5, 1.9));

@@ -130,7 +130,6 @@ fn reversed(mut section: Vec<DVec3>) -> Vec<DVec3> {
     section
 }
 
-/// A cross-section of a wing or fin: leading edge, trailing edge, and half the thickness.
 struct Cut {
     leading: DVec3,
     trailing: DVec3,
@@ -255,7 +254,6 @@ fn arch(z: f64, base: f64, width: f64, height: f64) -> [DVec3; 5] {
     })
 }
 
-/// Adds a canopy of three arches between a front point and a back point: 4 + 8 + 8 + 4 triangles.
 fn canopy(solid: &mut Solid) {
     let arches = [arch(1.0, 0.62, 0.42, 0.62), arch(2.1, 0.58, 0.48, 0.74), arch(3.0, 0.56, 0.44, 0.62)];
     let back = DVec3::new(0.0, 0.88, -0.6);

@@ -26,7 +26,6 @@ pub(super) fn scene(count: u32) -> Scene {
     fitted_scene(&format!("sphere:{count}"), mesh, Vec::new())
 }
 
-/// The vertices on one parallel of the sphere.
 struct Ring {
     first: u32,
     points: u32,

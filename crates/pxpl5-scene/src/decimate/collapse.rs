@@ -19,7 +19,6 @@ pub(super) struct Rules {
     pub(super) may_overshoot: bool,
 }
 
-/// A possible collapse of an edge, with its cost. One end of the edge moves onto the other end.
 #[derive(Clone)]
 struct Candidate {
     cost: f64,
@@ -144,7 +143,6 @@ impl Decimator {
         Self { surface, quadrics, changes: vec![0; points], least_left: usize::MAX }
     }
 
-    /// Collapses edges, the cheapest first, until at most `wanted` triangles remain or no edge can be collapsed.
     pub(super) fn until(&mut self, wanted: usize, rules: Rules) {
         while self.surface.left > wanted {
             let before = self.surface.left;

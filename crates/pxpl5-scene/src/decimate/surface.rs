@@ -8,19 +8,16 @@ use glam::DVec3;
 
 use crate::scene::{Scene, Vertex};
 
-/// The triangles of a scene during decimation. Each distinct position of a structure's vertices is one point.
 #[derive(Clone)]
 pub(super) struct Surface {
     vertices: Arc<[Vertex]>,
     pub(super) places: Vec<DVec3>,
     /// Index of the point at which each vertex lies.
     point_of: Vec<u32>,
-    /// Indices of the vertices at each point.
     vertices_on: Vec<Vec<u32>>,
     /// Indices of the three vertices of each triangle, or `None` for a removed triangle.
     pub(super) triangles: Vec<Option<[u32; 3]>>,
     around: Vec<Vec<u32>>,
-    /// Number of triangles that have not been removed.
     pub(super) left: usize,
 }
 
@@ -85,7 +82,6 @@ impl Surface {
         (0..self.triangles.len() as u32).filter_map(|triangle| Some((triangle, self.points(triangle)?)))
     }
 
-    /// Returns the remaining triangles around a point, each with its points.
     pub(super) fn round(&self, point: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
         let triangles = self.around[point as usize].iter();
         triangles.filter_map(|triangle| Some((*triangle, self.points(*triangle)?)))
@@ -175,7 +171,6 @@ pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// Returns the similarity of two vertices in normal and colour. Larger values are more similar.
 fn likeness(one: &Vertex, other: &Vertex) -> f64 {
     let shades = one.colour.iter().zip(other.colour).map(|(a, b)| f64::from(a.abs_diff(b)));
     f64::from(one.normal.dot(other.normal)) - shades.sum::<f64>() / (3.0 * 255.0)

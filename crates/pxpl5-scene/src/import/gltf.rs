@@ -87,7 +87,7 @@ const OF_INDICES: [ComponentType; 3] = [ComponentType::U8, ComponentType::U16, C
 
 struct Reader<'a> {
     document: &'a Document<'a>,
-    /// Number of bytes of memory that the parsed JSON and the decoded buffers take.
+    /// Number of bytes that the parsed JSON and the decoded buffers take in memory.
     held: usize,
     model: Model,
     /// Number of glTF primitives that consist of points or lines, which are not read.
@@ -161,7 +161,6 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds the triangles of a glTF primitive, which is a part of a mesh with one material.
     fn primitive(&mut self, part: &str, primitive: &Primitive, to_world: DMat4) -> Result<(), FileError> {
         let document = self.document;
         let mode = match primitive.mode {
@@ -444,11 +443,6 @@ impl Corners<'_> {
         }
     }
 
-    /// Returns the vertices of a triangle.
-    ///
-    /// # Errors
-    ///
-    /// Fails if a vertex does not exist.
     fn triangle(&self, source: &Source<'_>, part: &str, n: usize) -> Result<[u32; 3], FileError> {
         // The corners have the order that section 3.7.2.1 of the specification defines.
         let corners = match self.mode {

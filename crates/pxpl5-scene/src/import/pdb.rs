@@ -20,7 +20,6 @@ pub(crate) struct Atom {
     pub(crate) element: Element,
 }
 
-/// Radius and colour with which the atoms of a chemical element are drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct Element {
     symbol: &'static str,

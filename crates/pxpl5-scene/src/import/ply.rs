@@ -55,7 +55,6 @@ pub(super) fn read(source: &Source<'_>) -> Result<Model, FileError> {
     Ok(mesh)
 }
 
-/// A reader of the rows of a PLY file, element after element.
 struct Rows<'a> {
     source: &'a Source<'a>,
     header: Header,
@@ -72,7 +71,6 @@ struct Rows<'a> {
     not_numbers: Option<(usize, FilePlace)>,
     /// True if the file has colours of vertices and of faces. The colours of faces are then ignored.
     has_both_colours: bool,
-    /// Vertices that were created because faces with different colours share a point.
     coloured: Vertices,
 }
 
@@ -363,7 +361,6 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Returns an error if the file has anything except white space after the last row.
     fn check_end(&self) -> Result<(), FileError> {
         let rest = &self.source.bytes[self.cursor.position() as usize..];
         if rest.iter().all(u8::is_ascii_whitespace) {

@@ -100,7 +100,6 @@ struct Projection {
 }
 
 impl Projection {
-    /// Creates the projection of a polygon, or returns `None` for a polygon without area.
     fn of(fan: &[[u32; 3]], place: impl Fn(u32) -> DVec3) -> Option<Self> {
         let (origin, scale) = near_one(fan, &place)?;
         let area = area(fan, |corner| (place(corner) - origin) * scale);

@@ -100,7 +100,6 @@ pub(crate) fn is_not_a_number(word: &str) -> bool {
     word.get(..3).is_some_and(|begin| begin.eq_ignore_ascii_case(b"nan")) || word.contains(&b'#')
 }
 
-/// Returns the beginning of a text in quotation marks, short enough for a message.
 pub(crate) fn excerpt(text: &str) -> String {
     let short: String = text.trim_end().chars().take(40).collect();
     format!("{short:?}")

@@ -86,7 +86,6 @@ fn read_binary(source: &Source<'_>) -> Result<Model, FileError> {
     Ok(model)
 }
 
-/// The statement that may come next in an ASCII file.
 #[derive(Clone, Copy, PartialEq)]
 enum Expects {
     Solid,

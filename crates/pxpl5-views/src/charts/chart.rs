@@ -211,7 +211,6 @@ impl Chart {
     }
 }
 
-/// A point in axis coordinates, with the ends of its confidence interval.
 #[derive(Clone, Copy)]
 struct Placed {
     at: (f64, f64),

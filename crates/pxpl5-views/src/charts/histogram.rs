@@ -3,12 +3,10 @@ use crate::svg::{Tenths, anchored, hint, line};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 200.0;
-/// Space on the left of the bars, in SVG units.
 const LEFT: f64 = 44.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 42.0;
-/// Vertical position of the lower end of the bars, measured from the top.
 const FLOOR: f64 = HEIGHT - BOTTOM;
 
 const BINS: usize = 24;

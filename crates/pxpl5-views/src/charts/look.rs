@@ -13,13 +13,12 @@ const COLOURS: [u32; 8] = [0x00_0000, 0xe6_9f00, 0x56_b4e9, 0x00_9e73, 0x00_72b2
 /// Lengths of dashes and gaps, in tenths of the height of text. `None` is a solid line.
 const DASHES: [Option<(u32, u32)>; 3] = [None, Some((5, 3)), Some((2, 3))];
 
-/// Colour, dashes and marker of a series.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
     place: usize,
     pub(super) colour: RGBColor,
     pub(super) em: u32,
-    /// True if the marker is hollow. A hollow marker is a wide ring.
+    /// True if the marker is hollow, which is drawn as a wide ring.
     is_hollow: bool,
 }
 

@@ -41,7 +41,6 @@ fn value_row(key: &str, value: &str) -> Element {
     row([Element::new("th").text(key), Element::new("td").child(&code)])
 }
 
-/// Returns a value as text, or `None` for lists and statistics.
 fn shown(value: &Value) -> Option<String> {
     match value {
         Value::Array(all) if all.is_empty() || !all.iter().all(Value::is_string) => None,

@@ -83,7 +83,6 @@ const STAGES: [&str; 7] = ["tracking", "waiting", "sending", "drawing", "showing
 const ERRORS: [&str; 2] = ["pixels", "degrees"];
 const PERCENTILES: [&str; 5] = ["mean", "p50", "p90", "p99", "max"];
 
-/// Returns the section about the latency from the head's pose until the picture is lit, for a run with a tracker.
 pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
     if head.is_null() {
         return Vec::new();

@@ -2,7 +2,6 @@ use crate::markup::Element;
 use serde_json::Value;
 use std::fmt::Display;
 
-/// Returns a value as a number, or NaN if the value is not a number.
 pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
@@ -59,7 +58,6 @@ pub(super) fn table(names: &[&str], rows: impl IntoIterator<Item = Element>) -> 
     wide(&table)
 }
 
-/// Returns an element that scrolls if its content is wider than the page.
 pub(super) fn wide(content: &Element) -> Element {
     Element::new("div").with("class", "wide").child(content)
 }

@@ -10,8 +10,8 @@ use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
-/// Divisor for the greatest overlap of two bars in one lane (a part of a row). Bars may overlap by the drawn time span
-/// divided by this number. If they overlap more, they get separate lanes.
+/// Share of the drawn time, as a divisor, by which two bars in one lane (a part of a row) may overlap. Bars that
+/// overlap by more than 1/300 of the drawn time get separate lanes.
 const TOUCHING: u64 = 300;
 
 /// Smallest number of display periods in a drawing, if the user gives no number.
@@ -77,7 +77,6 @@ fn sent_at(rows: &[TimelineRow], update: Option<PictureNumber>) -> Option<Time> 
     (bar.stage == Stage::Send).then_some(bar.begin)
 }
 
-/// Returns the range of the first display's periods in which the timeline begins and ends.
 fn periods(
     run: &SoFar<'_>,
     options: &TimelineOptions,

@@ -26,7 +26,6 @@ const CROWDED: usize = 10;
 struct Drawing<'a> {
     timeline: &'a Timeline,
     out: Element,
-    /// Vertical position of the top of the tracker's row.
     tracker: i64,
     rows: Vec<i64>,
     beam: i64,
@@ -78,7 +77,6 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Returns the horizontal position of a time, limited to the range of the time axis.
     fn x(&self, time: Time) -> Units {
         let Timeline { from, to, .. } = self.timeline;
         let all = (*to - *from).0;

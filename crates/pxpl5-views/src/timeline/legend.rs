@@ -46,7 +46,6 @@ fn surfaces(line: &mut Line<'_>, surfaces: &[Surface]) {
     }
 }
 
-/// A line of the legend, to which entries are added from left to right.
 struct Line<'a> {
     out: &'a mut Element,
     x: i64,

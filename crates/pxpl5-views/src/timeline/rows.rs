@@ -31,8 +31,6 @@ fn row(name: &str, mut bars: Vec<Bar>) -> TimelineRow {
     TimelineRow { name: name.to_owned(), bars, lanes: 1, shown: Vec::new() }
 }
 
-/// Returns the row of a port that swaps independently: the data that the port received and the pictures that the port
-/// showed.
 fn port_row(run: &SoFar<'_>, port: &DisplayPort) -> TimelineRow {
     let bars = copies(run, |arrival| arrival.target.frame_buffer == port.node);
     TimelineRow { shown: shown(run, port.node), ..row(&port.name, bars) }
@@ -107,7 +105,7 @@ fn first_line(record: &Record, arrival: &Arrival) -> u32 {
     top * height / grid.height.max(1)
 }
 
-/// Marks each bar as the top or bottom half of its picture, if the surface received both halves one after the other.
+/// Marks each bar as the top or bottom half of its picture, if the surface received the halves one after the other.
 fn name_halves(parts: &mut Parts) {
     let bottoms: Vec<PictureNumber> =
         parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();

@@ -114,7 +114,6 @@ impl Trace {
         }
     }
 
-    /// Adds the regions that arrive for a surface, and the swaps of this surface.
     fn regions(&mut self, outcome: &Outcome, group: usize, surface: SurfaceId) {
         let record = outcome.record();
         let message = record.message_span();
@@ -151,7 +150,6 @@ impl Trace {
     }
 }
 
-/// Returns the event of a stage, from its start to the time stamp of its end.
 fn ended(record: &Record, mark: &Mark, begin: Time) -> Slice {
     let surface = mark.surface.and_then(|id| record.surface(id));
     stage_slice(mark.stage, mark.picture, surface.map(|surface| surface.label), [begin, mark.time])

@@ -17,7 +17,6 @@ struct Stop {
     place: usize,
 }
 
-/// Connects the events of each shown picture by a flow (a chain of arrows).
 pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     let updates = Updates::of(&outcome.so_far(), &outcome.stages());
     let sends = firsts(trace, &[Stage::Send]);

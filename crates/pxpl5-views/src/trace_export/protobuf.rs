@@ -1,6 +1,5 @@
 //! An encoder for Protocol Buffers, limited to the wire types that a trace needs.
 
-/// An encoded message that is being written.
 #[derive(Debug, Default)]
 pub(super) struct Message(pub(super) Vec<u8>);
 

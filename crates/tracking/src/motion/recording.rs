@@ -179,7 +179,7 @@ impl Recording {
         self.samples.len()
     }
 
-    /// Appends the samples of another recording. All new samples must be later than the last sample of this recording.
+    /// Appends samples, all of which must be later than the last sample of this recording.
     pub(super) fn append(&mut self, more: &Self) {
         self.samples.extend_from_slice(&more.samples);
     }

@@ -62,7 +62,7 @@ impl Spline {
         settings(key, &format_args!("{spacing_ps} {x} {y} {z} {calm} {power} {a} {b} {c} {spells}"));
     }
 
-    /// Returns the three values of the splines at `t_ps`, and their rates of change per second.
+    /// Returns the three values of the splines at `t_ps`, and their derivatives per second.
     pub(super) fn at(&self, t_ps: u64) -> (DVec3, DVec3) {
         // Six B-splines overlap every knot interval.
         let knot = t_ps / self.spacing_ps;

@@ -8,7 +8,6 @@ use crate::time::span_s;
 /// The order of an extrapolation, which is the highest derivative that the extrapolation uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// Order 0: the prediction is the last value.
     Zeroth,
     /// Order 1: the first derivative (velocity) stays constant.
     First,

@@ -24,7 +24,6 @@ pub struct ReportCounts {
     pub restarts: u64,
 }
 
-/// The decision about a report: to reject it, to update the filters with it, or to restart the filters with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Reject,

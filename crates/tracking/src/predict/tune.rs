@@ -131,7 +131,6 @@ struct TrainingData {
 }
 
 impl TrainingData {
-    /// Collects reports of a tracker on a motion. Returns `None` if no report can be evaluated.
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
         // A head that stands still at its end teaches the filter nothing.
         let until_ps = motion.moves_until_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);

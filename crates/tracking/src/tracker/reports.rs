@@ -184,7 +184,6 @@ impl<M: Motion> Reports<M> {
     }
 }
 
-/// Computes the constant errors of the tracker from the seed: an offset in metres and a rotation vector in radians.
 fn bias(config: &TrackerConfig, seed: u64) -> (DVec3, DVec3) {
     let [(a, b), (c, d), (e, f)] = core::array::from_fn(|i| normal_pair(seed, i as u64));
     let turn = DVec3::new(d, e, f) * config.orientation_bias_deg.to_radians();

@@ -204,7 +204,6 @@ impl Hmd {
         self.misregistration_at(point, begun, shown)
     }
 
-    /// Returns the matrix from eye to clip coordinates ([`View::projection`](super::View::projection)).
     pub(super) fn projection(&self) -> Mat4 {
         let HmdConfig { width_px, height_px, near_m: near, far_m: far, .. } = self.config;
         // Half the width and half the height of the picture at a distance of 1.

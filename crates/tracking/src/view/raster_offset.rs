@@ -43,7 +43,6 @@ impl RasterOffset {
         Self { yaw_rate: -of_head.y, pitch_rate: -of_head.x, ..self }
     }
 
-    /// Returns yaw and pitch of the offset at `t_ps`, radians.
     fn angles(&self, t_ps: u64) -> (f64, f64) {
         let dt_s = span_s(self.at_ps, t_ps);
         (self.yaw + self.yaw_rate * dt_s, self.pitch + self.pitch_rate * dt_s)

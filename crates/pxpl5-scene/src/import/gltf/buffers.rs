@@ -43,11 +43,6 @@ impl<'a> Buffers<'a> {
         all
     }
 
-    /// Returns the bytes of a buffer.
-    ///
-    /// # Errors
-    ///
-    /// Fails if the buffer does not exist or could not be read.
     pub(super) fn get(&self, source: &Source<'_>, number: usize) -> Result<&[u8], FileError> {
         match self.buffers.get(number) {
             Some(Ok(bytes)) => Ok(bytes),

@@ -134,7 +134,6 @@ fn number(column: &str) -> Option<usize> {
 impl FromStr for Columns {
     type Err = SettingError;
 
-    /// Parses the same text as [`Columns::parse`].
     fn from_str(text: &str) -> Result<Self, SettingError> {
         Self::parse(text)
     }

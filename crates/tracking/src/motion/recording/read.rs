@@ -30,11 +30,9 @@ const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
 /// smaller difference.
 const LENGTH_TOLERANCE: f64 = 1e-2;
 
-/// The format of the lines of a file: separator, columns and header.
 struct Layout {
     /// Character between two columns, or `None` if white space separates the columns.
     separator: Option<char>,
-    /// Columns of time, x, y, z, qw, qx, qy, qz.
     columns: [Column; 8],
     /// Exact number of columns in each line. `None` allows lines with any number of additional columns.
     n_fields: Option<usize>,
@@ -69,7 +67,6 @@ pub(super) struct Samples {
     pub(super) repeated: Option<String>,
 }
 
-/// Reads the samples of a recorded file and converts the samples to this crate's axes.
 pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Samples, FileError> {
     // Number the lines from 1, and drop a byte order mark and empty lines.
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
@@ -121,7 +118,6 @@ fn of_json(lines: &[Line<'_>], axes: Option<Axes>) -> Result<Samples, FileError>
     collect(&lines, &layout, axes)
 }
 
-/// Parses lines as samples and converts the samples to this crate's axes.
 fn collect(lines: &[Line<'_>], layout: &Layout, axes: Option<Axes>) -> Result<Samples, FileError> {
     let axes = axes.unwrap_or(layout.axes);
     let mut first_ps = None;
