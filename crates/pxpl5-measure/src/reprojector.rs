@@ -10,7 +10,6 @@ use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// The newest pose of the head for one part of a scan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NewestPose {
     /// Pose of the head, predicted for the middle of the time in which the part of the scan is lit.

@@ -84,7 +84,6 @@ impl Screen {
         })
     }
 
-    /// Returns the region that a pixel of a field shows at the instant `at`, or `None` before the first arrival.
     pub(crate) fn shown(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<CopyTarget> {
         // Buffer 0 is shown first, and every swap shows the other buffer.
         let before = self.swaps.partition_point(|swap| swap.0 <= field);

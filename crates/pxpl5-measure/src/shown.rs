@@ -24,7 +24,6 @@ pub(crate) enum Seen {
     Complete(Drawn),
 }
 
-/// The views of a run and the contents of its screen, updated as the run proceeds.
 #[derive(Debug)]
 pub(crate) struct Shown {
     screen: Screen,
@@ -52,7 +51,6 @@ struct Viewed {
 }
 
 impl Shown {
-    /// Creates a state without any records of the run.
     pub(crate) fn begin(run: &FinalResults<'_>, head: &Arc<HeadViews>) -> Self {
         Self {
             screen: Screen::default(),
@@ -71,7 +69,7 @@ impl Shown {
         shown
     }
 
-    /// Adds the pictures, the arrivals of regions and the views of the run that can no longer change.
+    /// Adds final results of the run: pictures, arrivals of regions, and views. Final results can no longer change.
     pub(crate) fn take(&mut self, run: &FinalResults<'_>, head: &HeadViews) {
         self.screen.take(run);
         self.views.extend(run.pictures.iter().map(|times| (times.picture, times.view)));

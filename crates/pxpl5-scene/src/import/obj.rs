@@ -144,7 +144,6 @@ impl<'a> Reader<'a> {
         model
     }
 
-    /// Reads a statement that defines a point (`v`) or a normal (`vn`).
     fn point(&mut self, at: FilePlace, line: &[u8]) -> Result<(), FileError> {
         let mut words = words(line);
         match words.next() {

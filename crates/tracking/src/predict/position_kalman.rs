@@ -5,7 +5,6 @@ use crate::time::span_s;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NoiseModel {
-    /// Variance of the measurement noise along each axis.
     pub(super) measurement: f64,
     pub(super) jerk: f64,
     /// Variances of the head's velocity and acceleration that the filter assumes before the first measurement.
