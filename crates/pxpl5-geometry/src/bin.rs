@@ -1,12 +1,11 @@
 //! Binning: finds the regions that a screen triangle touches.
 //!
 //! Renderers evaluate a triangle at pixel centres. The *pixel-centre box* of a region is the smallest rectangle that
-//! contains the centres of the region's pixels. A region is *touched* if the triangle meets this box in two ways:
+//! contains the centres of the region's pixels. A region is *touched* if two conditions hold:
 //!
-//!  - The triangle's bounding box contains the centre of a pixel column and the centre of a pixel row of the region.
-//!  - For each edge of the triangle, some point of the pixel-centre box is on the inner side. Points on right and
-//! bottom
-//!    edges do not count.
+//! - The triangle's bounding box contains the centre of a pixel column and the centre of a pixel row of the region.
+//! - For each edge of the triangle, some point of the pixel-centre box is on the inner side. Points on right and bottom
+//!   edges do not count.
 //!
 //! Together, the two conditions are exact, because they test all sides of the Minkowski sum of triangle and box. Every
 //! region with a covered pixel is touched. A touched region can have no covered pixel, if the triangle passes between

@@ -123,10 +123,11 @@ impl Conic {
     }
 
     /// Rounds the conic to fixed point, for the pixels of `rectangle` (first and last pixel along x, then along y).
+    /// `peak` is the conic's greatest value.
     ///
     /// The values are scaled by the largest power of two with which they fit into 46 bits on the rectangle. Rounding
-    /// errors are smallest at the pixel (px, py). Callers pass the pixel with the greatest value, `peak`, so that even
-    /// a small sphere covers a pixel.
+    /// errors are smallest at the pixel (px, py). If this is the pixel of the greatest value, even a small sphere
+    /// covers a pixel.
     pub(crate) fn fixed(&self, peak: f64, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
         let local = self.around([f64::from(px), f64::from(py)]);
         let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);

@@ -286,7 +286,8 @@ impl Kernel {
     /// Returns the factor and the summand that convert a surface value to a plane's units, for the front and the back
     /// of a triangle.
     ///
-    /// The summand adds half a unit for rounding, and removes [`ROUND_SINGLE`], which an earlier step has added.
+    /// The summand adds half a unit for rounding. The summand also removes [`ROUND_SINGLE`], which an earlier step has
+    /// added.
     fn sides(&self) -> [(f64, f64); 2] {
         let (units, half) = match self.surface {
             KernelSurface::Gouraud | KernelSurface::Precomputed => ([16.0, 16.0], screen::colour_value(0)),
@@ -334,8 +335,7 @@ impl KernelPicture {
     }
 }
 
-/// Returns the greatest x and the greatest y of the video frame (the whole screen), both in subpixels, and the number
-/// of columns of regions.
+/// Returns the greatest x and the greatest y of the video frame, in subpixels, and the number of columns of regions.
 pub(crate) const fn size_words(viewport: &Viewport) -> [Word; 3] {
     let grid = viewport.grid();
     [16 * grid.width - 1, 16 * viewport.frame_lines() - 1, grid.columns()]

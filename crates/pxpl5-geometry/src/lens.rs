@@ -18,11 +18,11 @@ pub(crate) struct Lens {
     pub(crate) rate: [f64; 2],
     /// x and y of the centre of pixel (0, 0) in eye coordinates, at distance 1 if there is perspective.
     pub(crate) corner: [f64; 2],
-    /// Coefficients of t and 1 in two expressions of the distance t. The expression `near` is negative before the near
-    /// plane, and the expression `far` is positive behind the far plane.
+    /// Coefficients (of t, of 1) of an expression of the distance t that is negative before the near plane. The
+    /// expression of `far` is positive behind the far plane.
     ///
-    /// With a parallel projection, the expressions are depth and depth - 1. With perspective, they are these values
-    /// times t.
+    /// With a parallel projection, the two expressions are depth and depth - 1. With perspective, they are t depth and
+    /// t (depth - 1).
     pub(crate) near: [f64; 2],
     pub(crate) far: [f64; 2],
     /// Largest distance t at which a point still counts as behind the eye.

@@ -220,8 +220,8 @@ impl ScreenTriangle<SurfaceNormals> {
     }
 }
 
-/// Applies `value` to three numbers. The function makes three calls, because compilers do not always inline a closure
-/// that maps an array.
+/// Applies `value` to three numbers. The function makes three calls instead of mapping an array, because compilers do
+/// not always inline the mapping.
 #[inline(always)]
 fn values<T: Copy>([a, b, c]: &[T; 3], value: impl Fn(T) -> f32) -> [f32; 3] {
     [value(*a), value(*b), value(*c)]

@@ -87,8 +87,8 @@ impl Viewport {
         self.lines
     }
 
-    /// Returns the number of lines of the video frame from one row of the picture to the next: 1 for a whole video
-    /// frame, 2 for a field.
+    /// Returns the distance between rows of the picture, in lines of the video frame: 1 for a whole video frame, 2 for
+    /// a field.
     #[must_use]
     pub const fn line_step(&self) -> u32 {
         match self.lines {

@@ -38,7 +38,7 @@ pub(crate) enum Drawn {
 #[derive(Clone, Debug)]
 pub(crate) struct FacesSeen {
     /// For each display memory, in ascending order: the eye's pose in this memory, turned to the latched direction, and
-    /// a flag for each structure of the scene. The flag is true if the memory holds the structure.
+    /// a flag for each structure of the scene. A flag is true if the memory holds the structure.
     pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
     /// Instant for which the latched direction was predicted.
     pub(crate) aimed_at: Time,

@@ -147,7 +147,7 @@ impl Evaluation {
         }
     }
 
-    /// Returns the periods of the result window whose results can no longer change and that are not evaluated yet.
+    /// Returns the next periods of the result window to evaluate. Their results can no longer change.
     fn fields(&mut self, run: &FinalResults<'_>) -> impl Iterator<Item = PeriodNumber> + Clone + use<> {
         let fields = run.periods_from(self.next);
         self.next = self.next.max(run.until);

@@ -58,7 +58,7 @@ pub struct PixelErrors {
     pub empty: u64,
     /// Number of pixels from pictures that were not complete in time.
     pub incomplete: u64,
-    /// Number of pixels that still showed a picture from before the result window, such as a picture from the warm-up.
+    /// Number of pixels that still showed a picture from before the result window, for example from the warm-up.
     pub before: u64,
     /// Errors of each field, in the order of time.
     ///

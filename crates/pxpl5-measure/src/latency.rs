@@ -43,8 +43,8 @@ impl fmt::Debug for LatencyPartStatistics {
     }
 }
 
-/// Latency of one surface, or of a pair of surfaces, until the end of COPY, until the swap, or until the pixels are
-/// lit.
+/// Latency of one surface, or of a pair of surfaces, until one of three ends: the end of COPY, the swap, or the light
+/// of the pixels.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SurfaceStatistics {
     /// Label of the surface (`left`, `right`), or `pair`. The latency of a pair lasts from the first TRANSFORM until

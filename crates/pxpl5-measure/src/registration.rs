@@ -19,7 +19,7 @@ pub(crate) struct Evaluator {
     head: Arc<HeadViews>,
     /// The scene's primitives. Empty if the experiment evaluates errors at a fixed distance.
     contents: Contents,
-    /// Distance at which content is assumed on rays that hit nothing, in metres.
+    /// Distance, in metres, at which a ray that hits nothing is assumed to meet content.
     distance_m: f64,
 }
 
@@ -126,8 +126,8 @@ pub(crate) enum Warped {
 const NEARER: f64 = 1e-4;
 
 impl Evaluator {
-    /// Returns the content at the screen position `place` after each pixel of a picture was moved to the pose `now` by
-    /// its depth.
+    /// Returns the content at the screen position `place`, after each pixel of a picture was moved by its depth to the
+    /// pose `now`.
     pub(crate) fn warped(&self, drawn: &Moment, now: &Pose, place: DVec2) -> Warped {
         let ahead = now.orientation * self.direction(place);
         let met = self.contents.met(now.position, ahead, drawn.objects_at);
@@ -166,8 +166,7 @@ impl Evaluator {
         }
     }
 
-    /// Returns the smear of a content, which is the distance that the content moves across the screen between two
-    /// times, in pixels.
+    /// Returns the distance that a content moves across the screen between two times (its smear), in pixels.
     ///
     /// Returns `None` if the content is behind the eye.
     pub(crate) fn way_px(&self, content: &Content, from: Time, to: Time) -> Option<f64> {

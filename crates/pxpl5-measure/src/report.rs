@@ -79,7 +79,7 @@ pub struct Report {
     /// Latency of each eye and of the pair, in milliseconds: to the end of COPY, to the swap, and until the pixels are
     /// lit.
     ///
-    /// Empty if the eyes share one TRANSFORM.
+    /// The list is empty if the eyes share one TRANSFORM.
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
     /// Number of complete pictures shown in the whole run, including the warm-up.
     pub shown: u64,
@@ -181,8 +181,8 @@ impl HeadReport {
 }
 
 impl Report {
-    /// Returns the number of lines of regions that were overwritten before the display showed these lines. `None` if
-    /// the display does not count such lines.
+    /// Returns the number of lines that were overwritten before the display showed them. `None` if the display does not
+    /// count such lines.
     #[must_use]
     pub fn lines_never_shown(&self) -> Option<u64> {
         let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);

@@ -14,8 +14,7 @@ pub(crate) struct Screen {
     swaps: Vec<(PeriodNumber, u64)>,
 }
 
-/// Arrivals of regions in one buffer, for one division of the screen into regions. The arrivals are sorted by region
-/// and time.
+/// Arrivals of regions in one buffer, for one division of the screen into regions, sorted by region and time.
 #[derive(Debug)]
 struct Cut {
     /// Copy target of the first arrival. Its buffer and its division of the screen hold for all arrivals. The region

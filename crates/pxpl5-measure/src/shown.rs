@@ -28,8 +28,8 @@ pub(crate) enum Seen {
 pub(crate) struct Shown {
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    /// Pictures that were complete in time, with the first period that showed each picture. `None` for pictures during
-    /// the warm-up.
+    /// Pictures that were complete in time, with the first period that showed each picture. The period is `None` for
+    /// pictures during the warm-up.
     complete: BTreeMap<PictureNumber, Option<PeriodNumber>>,
     /// Number of pictures of the run that were added, including incomplete pictures.
     pictures: usize,
@@ -42,8 +42,8 @@ pub(crate) struct Shown {
     faces: Option<LatchedFaces>,
 }
 
-/// The pose and time for which a view was drawn, and the arrival time of the last tracker report that the host had
-/// received.
+/// The pose and time for which a view was drawn. `known` is the arrival time of the last tracker report that the host
+/// had then received.
 #[derive(Clone, Copy, Debug)]
 struct Viewed {
     known: Time,
@@ -109,8 +109,8 @@ impl Shown {
         self.screen.targets().count() + self.views.len() + self.complete.len() + self.moments.len() + of_faces
     }
 
-    /// Returns the views whose pictures are on the screen at `instant` or may still be shown, without the views that
-    /// were made after `instant`.
+    /// Returns the views whose pictures are on the screen at `instant` or may still be shown later. Views that were
+    /// made after `instant` are left out.
     ///
     /// For an address recalculation display, the result has the views of all updates whose records are in memory.
     fn still_seen(&self, run: &FinalResults<'_>, instant: Time) -> BTreeSet<ViewNumber> {

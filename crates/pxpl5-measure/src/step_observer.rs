@@ -8,8 +8,8 @@ use pxpl5_wire::PeriodNumber;
 /// Names of the parts of the latency after a step (translation) of the head, in the order of time.
 const PARTS: [&str; 4] = ["before_due", "draw", "age", "scan"];
 
-/// A streaming observer of the latencies from a step (translation) of the head until the content of each display memory
-/// is lit.
+/// A streaming observer of latencies. A latency lasts from a step (translation) of the head until the content of a
+/// display memory is lit.
 ///
 /// The observer adds one latency for each display memory and each display period after the memory's first update.
 #[derive(Debug, Default)]
@@ -20,8 +20,8 @@ pub(crate) struct StepSum {
 
 #[derive(Debug, Default)]
 struct OfMemory {
-    /// The display period that first shows the display memory's newest update, and the instant at which the latency of
-    /// this update begins.
+    /// The display period that first shows the display memory's newest update, and the instant at which this update's
+    /// latency begins.
     begin: Option<(PeriodNumber, Time)>,
     total: Samples,
     parts: [f64; PARTS.len()],

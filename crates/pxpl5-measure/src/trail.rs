@@ -360,8 +360,8 @@ impl<'a> Trail<'a> {
         self.to_transform(way, picture, surface)
     }
 
-    /// Continues at the earlier work on the same renderer for which the region's commands had to wait. This work is the
-    /// commands of the previous region, or a copy that waited for room in the backing store.
+    /// Continues at the earlier work on the same renderer for which the region's commands had to wait. The earlier work
+    /// is the previous region's commands, or a copy that waited for room in the backing store.
     fn before_next_region(&self, way: &mut Way, place: usize) -> At {
         let (renderer, region) = self.drawn[place];
         let held = Span(way.cursor.0.saturating_sub(region.copy_at.0));
@@ -385,8 +385,8 @@ impl<'a> Trail<'a> {
         own.checked_sub(1).map(|before| of[before])
     }
 
-    /// Returns the part of the time from `from` to `to` in which at least one graphics processor executed TRANSFORM for
-    /// a picture.
+    /// Returns the time between `from` and `to` in which at least one graphics processor executed TRANSFORM for a
+    /// picture.
     fn transform_beside(&self, picture: PictureNumber, surface: Option<SurfaceId>, from: Time, to: Time) -> Span {
         let of = self.transforms(picture, surface);
         let begin = of.iter().map(|work| work.begin).min().unwrap_or(to).max(from);

@@ -19,8 +19,8 @@ pub(crate) struct LatchedFaces {
     turns: RefCell<Turns>,
 }
 
-/// Predicted orientations of the head, in the map `known`. The key of an orientation has two times: the time up to
-/// which the host used tracker reports, and the instant for which the host predicted.
+/// Predicted orientations of the head. The map `known` has two times as its key: the time up to which the host used
+/// tracker reports, and the instant for which the host predicted.
 struct Turns {
     estimator: Estimator,
     /// Time of the last report passed to the estimator, which accepts reports only in ascending order.
@@ -56,7 +56,7 @@ impl LatchedFaces {
         self.turns.borrow().known.len()
     }
 
-    /// Switches to the head orientations that the run would have had without one cause of error.
+    /// Replaces the head's orientations by the orientations that the run would have had without one cause of error.
     pub(crate) fn disable_cause(&mut self, cause: Cause) {
         self.without = Some(cause);
         self.turns = RefCell::new(Turns::new(&self.head, self.without));

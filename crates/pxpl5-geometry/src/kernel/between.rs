@@ -9,7 +9,7 @@ use super::{COMPILED, Kernel, KernelList, PARAMETERS, PICTURE, SCALAR, Schedule,
 /// corners in both views. The flag is set if both views have the triangle on the screen.
 pub const ENDS_WORDS: usize = 28;
 
-/// Number of words for the corners of a recorded triangle in one of its two views.
+/// Number of words for the corners of a recorded triangle in one view.
 pub const ENDS_VIEW_WORDS: usize = 12;
 
 impl Kernel {

@@ -25,7 +25,7 @@ const EYE_M: f64 = 1.7;
 const BESIDE_M: f64 = 1.0;
 const THICKNESS_M: f64 = 0.1;
 
-/// Beginning and end of a partition, as fractions of the length of the straight part of the path beside the partition.
+/// Ends of each partition, as fractions of the straight part of the path beside the partition.
 const BESIDE_LEG: [f64; 2] = [0.2, 0.8];
 
 /// Corners of the path, x and z in metres. The straight parts are slanted, so the head's distances to the borders of

@@ -86,8 +86,8 @@ fn push_hit(mesh: &mut Mesh, ray: Ray) -> u32 {
     mesh.push(point, normal(point), colour(point))
 }
 
-/// A ray from a point on the spine (a curve inside head and neck, see [`SPINE`]) outwards. The ray meets the surface of
-/// the head at one vertex.
+/// A ray outwards from the spine, a curve inside head and neck ([`SPINE`]). The ray meets the surface of the head at
+/// one vertex.
 struct Ray {
     origin: DVec3,
     direction: DVec3,

@@ -86,8 +86,8 @@ impl FirstPass {
         Self { decimator, queue }
     }
 
-    /// Returns true if a decimation to `wanted` triangles also passes through the present surface, so that it can
-    /// continue from this surface.
+    /// Returns true if a decimation to `wanted` triangles also passes through the present surface. The decimation can
+    /// then continue from this surface.
     pub(super) const fn serves(&self, wanted: usize) -> bool {
         wanted <= self.decimator.least_left
     }

@@ -240,8 +240,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds each triangle of a glTF primitive without normals with three vertices of its own. The format demands that
-    /// such triangles are flat.
+    /// Adds the triangles of a glTF primitive without normals, each with three new vertices. The format demands that
+    /// these triangles are flat.
     fn push_flat(
         &mut self,
         vertices: &PrimitiveVertices<'_>,

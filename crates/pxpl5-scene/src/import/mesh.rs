@@ -100,7 +100,7 @@ pub(super) fn still_at_origin() -> HeadMotion {
     HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range")
 }
 
-/// Makes a scene from the vertices, triangles and spheres of a model and a head motion. The scene has one structure.
+/// Makes a scene of one structure from the vertices, triangles and spheres of a model. `motion` is the head's motion.
 pub(super) fn seen_by(
     motion: HeadMotion,
     name: &str,

@@ -380,7 +380,7 @@ fn check_memory(name: &str, found: usize, file_bytes: usize) -> Result<(), FileE
 }
 
 /// Greatest number of bytes per vertex in the hash table. A slot has five bytes, and between 7/16 and 7/8 of the slots
-/// are used. While the table grows, it needs half as much memory again.
+/// are used. A growing table takes 1.5 times its memory.
 const TABLE_BYTES: usize = 17;
 
 /// Keeps the items whose element in `keep` is true, and frees the unused memory. An empty list stays empty.

@@ -180,7 +180,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Parses the numbers of one line. The library's own parser accepts neither `.5` nor `nan`.
+    /// Parses the numbers of one line. The parser of the PLY library is not used, because it accepts neither `.5` nor
+    /// `nan`.
     fn ascii_row<E: PropertyAccess>(&self, at: FilePlace, element: &ElementDef) -> Result<E, FileError> {
         let wrong = || self.source.syntax(at, row_of(element), excerpt(self.text));
         let mut words = self.text.split_ascii_whitespace();
@@ -483,7 +484,7 @@ fn header_fault(source: &Source<'_>, text: &str, line: u64, error: &ParseError) 
     }
 }
 
-/// Returns the library's message on one line, cut to 200 characters.
+/// Returns the PLY library's error message on one line, cut to 200 characters.
 fn message(error: &ParseError) -> String {
     let words: Vec<String> = error.to_string().split_whitespace().map(str::to_owned).collect();
     words.join(" ").chars().take(200).collect()

@@ -48,7 +48,7 @@ impl<'a> Source<'a> {
         FileError::new(kind, expected, found).at(at).in_file(self.name)
     }
 
-    /// Returns an error for a part of a glTF file, given by its path in the JSON of the file.
+    /// Returns an error for a part of a glTF file. `part` is the path of this part in the file's JSON.
     #[cfg(feature = "gltf")]
     pub(crate) fn part(&self, part: impl Display, expected: impl Display, found: impl Display) -> FileError {
         self.error(FileErrorKind::Syntax, part, expected, found)

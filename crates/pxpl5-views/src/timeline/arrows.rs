@@ -92,8 +92,8 @@ fn is_sequel(first: &Bar, second: &Bar) -> bool {
 
 /// Returns the arrow from the bar of an earlier stage to the bar of a later stage.
 ///
-/// The later stage may begin before the end of the earlier stage, because the later stage needs only a part of the
-/// earlier stage's result. The arrow is then vertical.
+/// The later stage may begin before the earlier stage ends, because it needs only a part of the earlier stage's result.
+/// The arrow is then vertical.
 fn follow(earlier: Located<'_>, later: Located<'_>) -> Arrow {
     let from = earlier.place;
     let to = later.place;

@@ -10,8 +10,8 @@ use pxpl5_wire::display::Display;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
-/// Share of the drawn time, as a divisor, by which two bars in one lane (a part of a row) may overlap. Bars that
-/// overlap by more than 1/300 of the drawn time get separate lanes.
+/// Divisor of the drawn time. Two bars that overlap by more than 1/300 of the drawn time get separate lanes (parts of a
+/// row).
 const TOUCHING: u64 = 300;
 
 /// Smallest number of display periods in a drawing, if the user gives no number.

@@ -141,8 +141,8 @@ impl<'a> Drawing<'a> {
         self.out.add_line(&rectangle("row", [LEFT, top, WIDTH - LEFT - RIGHT, height].map(Units::whole)));
     }
 
-    /// Draws the pictures that a port shows, each from its swap to the next swap, below the data that the port
-    /// receives.
+    /// Draws the pictures that a port shows, below the data that the port receives. Each picture lasts from its swap to
+    /// the next swap.
     fn shown(&mut self, row: &TimelineRow, top: i64) {
         let y = Units::whole(top + LANE * row.lanes as i64);
         for shown in &row.shown {

@@ -59,7 +59,7 @@ fn has_many_surfaces(record: &Record) -> bool {
     record.surfaces().nth(1).is_some()
 }
 
-/// COPY bars of a row. The key of a bar has the number of its picture and the index of its part of this picture.
+/// COPY bars of a row. The key of a bar has the number of its picture and the index of the picture's part in this bar.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
 /// Returns the COPY bars of a surface or a port. A picture has one bar, or two bars if the picture arrived in two

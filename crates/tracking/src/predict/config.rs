@@ -64,11 +64,11 @@ pub struct PredictorConfig {
     pub position_noise_m: f64,
     /// Random orientation error that the filter assumes for each report, rms about each axis, degrees.
     pub orientation_noise_deg: f64,
-    /// Strength of random changes of the head's acceleration, as a Kalman filter assumes it, m/s^3/sqrt(Hz). The jerk
-    /// is white noise, and the value is the root of its spectral density.
+    /// Strength of random changes of the head's acceleration (jerk), as a Kalman filter assumes it, m/s^3/sqrt(Hz). The
+    /// jerk is white noise, and the value is the root of its spectral density.
     pub position_jerk: f64,
-    /// Strength of random changes of the head's angular acceleration, as a Kalman filter assumes it, rad/s^3/sqrt(Hz).
-    /// The angular jerk is white noise, and the value is the root of its spectral density.
+    /// Strength of random changes of the head's angular acceleration (angular jerk), as a Kalman filter assumes it,
+    /// rad/s^3/sqrt(Hz). The angular jerk is white noise, and the value is the root of its spectral density.
     pub orientation_jerk: f64,
     /// Longest time ahead for which the predictor extrapolates, ps. For later instants the predictor returns the last
     /// reported pose.

@@ -14,8 +14,8 @@ pub struct ReportCounts {
     pub accepted: u64,
     /// Number of reports rejected because of NaN, infinity or a quaternion that is not of unit length.
     pub malformed: u64,
-    /// Number of reports rejected because of their time stamp. Such a time stamp precedes the time stamp of the last
-    /// accepted report, or follows it by less than the `interval` of [`table::Gate`].
+    /// Number of reports rejected because of their time stamp. The time stamp is earlier than the last accepted time
+    /// stamp, or later by less than the `interval` of [`table::Gate`].
     pub untimely: u64,
     /// Number of reports that were rejected because the head would have to move or turn faster than a head can.
     pub jumps: u64,

@@ -122,7 +122,7 @@ pub fn tune<M: Motion + ?Sized>(
 struct TrainingData {
     reports: Vec<TrackerReport>,
     truths: Vec<Pose>,
-    /// Number of reports at the start that the filter receives but whose predictions are not evaluated.
+    /// Number of reports that the filter receives before the first evaluated prediction.
     settled: usize,
     seconds: f64,
     interval_ps: u64,

@@ -79,8 +79,8 @@ fn excerpt(uri: &str) -> String {
     crate::import::source::excerpt(uri)
 }
 
-/// Returns the path of a uri. `None` for an absolute path, for a path that leaves its folder, and for a uri with a
-/// scheme, such as `https:`.
+/// Returns the relative path that a URI states. `None` for an absolute path, for a path that leaves its folder, and for
+/// a URI with a scheme, such as `https:`.
 fn path_of(uri: &str) -> Option<PathBuf> {
     let decoded = percent_decoded(uri)?;
     let path = Path::new(&decoded);
@@ -88,7 +88,7 @@ fn path_of(uri: &str) -> Option<PathBuf> {
     (stays_below && !decoded.is_empty() && !decoded.contains([':', '\\'])).then(|| path.to_owned())
 }
 
-/// Replaces each `%` and two hexadecimal digits by the byte that they stand for.
+/// Replaces `%` and two hexadecimal digits by the byte with this hexadecimal number.
 fn percent_decoded(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.bytes();

@@ -37,7 +37,7 @@ struct Layout {
     /// Exact number of columns in each line. `None` allows lines with any number of additional columns.
     n_fields: Option<usize>,
     axes: Axes,
-    /// True if time counts from the first sample, whose time stamp can have any value.
+    /// True if the first sample defines time 0. Its time stamp can then have any value.
     from_first: bool,
     /// Line number of the header, or 0 without a header. Samples begin after this line.
     begins_after: u64,
