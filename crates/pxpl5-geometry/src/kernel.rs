@@ -235,7 +235,8 @@ impl Kernel {
         }
     }
 
-    /// Returns the kernel's parameters for a view. `clipper` is the address of the clipper's code.
+    /// Returns the kernel's parameters for a view. `clipper` is the address of the code for triangles that need
+    /// clipping.
     #[must_use]
     pub fn parameters(
         &self,

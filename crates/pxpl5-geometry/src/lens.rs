@@ -94,8 +94,8 @@ impl Lens {
         self.base + self.reach * u
     }
 
-    /// Returns the pixel at which a point (x, y) of the plane t = 1 appears. With a parallel projection, the plane may
-    /// be at any distance.
+    /// Returns the pixel of a point (x, y) in the plane t = 1. With a parallel projection, the pixel is the same for
+    /// every t.
     pub(crate) fn pixel(&self, x: f64, y: f64) -> [f64; 2] {
         [(x - self.corner[0]) * self.rate[0], (y - self.corner[1]) * self.rate[1]]
     }

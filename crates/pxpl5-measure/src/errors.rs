@@ -125,7 +125,7 @@ pub enum Showing {
     /// Pictures are shown as drawn, in front of a video of the real world that has the same delay (I3D95, 2.1).
     ///
     /// Pictures and video show the instant at which the head's pose was measured, so only the tracker's error remains.
-    /// The video is later than the real world by the time from this measurement until the pixels are lit.
+    /// The delay lasts from this measurement until the pixels are lit.
     DelayedVideo,
 }
 

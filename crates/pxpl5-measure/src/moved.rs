@@ -23,8 +23,8 @@ pub(crate) enum Moved {
     Hidden,
 }
 
-/// Largest number of iterations in the search for the picture position that a pixel shows. The search is iterative
-/// because parts of a picture can have different poses, so the pose depends on the position.
+/// Largest number of iterations in the search for the picture position that a pixel shows. If parts of a picture have
+/// different poses, the pose depends on the position and the position on the pose.
 const STEPS: usize = 4;
 
 /// Returns the content of a pixel that is lit from the time `at` on, after the picture has been moved to the pose

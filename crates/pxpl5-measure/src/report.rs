@@ -89,8 +89,8 @@ pub struct Report {
     /// Number of pictures that were due in the result window, counted by result (shown, late, incomplete or missed).
     /// `None` if no picture was due.
     pub due: Option<DuePictures>,
-    /// Definition of the pictures due: the time at which a picture is due, the time by which the picture must be shown,
-    /// and the pictures that count.
+    /// Definition of the due pictures: the time at which a picture is due, the latest time for its display, and the
+    /// pictures that are counted.
     pub due_definition: String,
     /// Number of pictures due that were not shown: late, incomplete or missed.
     pub missed_retraces: Option<u64>,

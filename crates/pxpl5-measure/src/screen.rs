@@ -17,8 +17,8 @@ pub(crate) struct Screen {
 /// Arrivals of regions in one buffer, for one division of the screen into regions, sorted by region and time.
 #[derive(Debug)]
 struct Cut {
-    /// Copy target of the first arrival. Its buffer and its division of the screen hold for all arrivals. The region
-    /// and the picture in this target are ignored.
+    /// Copy target of the first arrival. All arrivals have the same buffer and the same division of the screen. The
+    /// region and the picture in this target are ignored.
     of: CopyTarget,
     regions: Vec<Vec<(Time, PictureNumber)>>,
 }

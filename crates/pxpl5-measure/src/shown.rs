@@ -35,8 +35,7 @@ pub(crate) struct Shown {
     pictures: usize,
     /// The result window. The pixels of pictures outside the result window are not evaluated.
     ///
-    /// `None` for pipelines without due pictures. All pictures of such a pipeline are evaluated, until the next picture
-    /// covers them.
+    /// `None` for pipelines without due pictures. All pictures of such a pipeline are evaluated.
     window: Option<ResultWindow>,
     moments: BTreeMap<ViewNumber, Viewed>,
     faces: Option<LatchedFaces>,

@@ -51,8 +51,7 @@ const ARRIVALS_SEARCHED: usize = 512;
 /// [`Resource::Other`].
 const MOST_STEPS: usize = 20_000;
 
-/// The work of a run, sorted by end time. The list begins with the earliest work that the followed pictures can have
-/// waited for.
+/// The work of a run from a chosen instant on, sorted by end time.
 pub(crate) struct Trail<'a> {
     record: &'a Record,
     message: Span,

@@ -19,8 +19,8 @@ pub(crate) struct LatchedFaces {
     turns: RefCell<Turns>,
 }
 
-/// Predicted orientations of the head. The map `known` has two times as its key: the time up to which the host used
-/// tracker reports, and the instant for which the host predicted.
+/// Predicted orientations of the head, stored by two times. The first is the time up to which the host used tracker
+/// reports. The second is the instant for which the host predicted.
 struct Turns {
     estimator: Estimator,
     /// Time of the last report passed to the estimator, which accepts reports only in ascending order.

@@ -29,7 +29,8 @@ use crate::tracker::TrackerModel;
 /// fails.
 const PATIENCE_PS: u64 = 10 * PS_PER_S;
 
-/// A detection of the lowest point may be early, because of noise, by at most half a swing divided by this number.
+/// Divisor of half a swing, for detections that are early because of noise. A detection up to this part of half a swing
+/// before a pass of the lowest point belongs to this pass.
 const EARLY_PART: u64 = 10;
 
 /// The pendulum rig, which measures latency from outside the machine. The pendulum's pivot and the tracker's origin are

@@ -12,7 +12,7 @@ const LEAST_COSINE: f64 = 0.2;
 
 #[derive(Clone, Copy)]
 pub(super) struct Rules {
-    /// True if a collapse may turn triangles over.
+    /// True if a collapse may reverse the orientation of triangles.
     pub(super) may_flip_triangles: bool,
     /// True if a collapse may leave fewer triangles than wanted. A collapse inside a surface removes two triangles at
     /// once.
@@ -59,16 +59,16 @@ pub(super) struct Decimator {
     pub(super) surface: Surface,
     quadrics: Vec<Quadric>,
     changes: Vec<u32>,
-    /// Least number of triangles that any collapse tried so far would have left. A decimation to at most this number of
-    /// triangles would have made the same decisions so far.
+    /// Smallest number of triangles that would have remained after any collapse tried so far. A decimation to at most
+    /// this number of triangles would have made the same decisions so far.
     least_left: usize,
 }
 
-/// Rules of the first pass. No collapse may turn a triangle over or leave fewer triangles than wanted.
+/// Rules of the first pass. No collapse may reverse a triangle or leave fewer triangles than wanted.
 const FIRST: Rules = Rules { may_flip_triangles: false, may_overshoot: false };
 
-/// Rules of the last two passes. Both passes may leave fewer triangles than wanted. The last pass may also turn
-/// triangles over.
+/// Rules of the last two passes. Both passes may leave fewer triangles than wanted. Only the last pass may reverse
+/// triangles.
 const LATER: [Rules; 2] =
     [Rules { may_flip_triangles: false, may_overshoot: true }, Rules { may_flip_triangles: true, may_overshoot: true }];
 

@@ -25,7 +25,7 @@ pub(crate) struct Element {
     symbol: &'static str,
     /// Van der Waals radius of the element, Ångström.
     pub(crate) radius: f64,
-    /// Colour of the element by the custom of the models of Corey, Pauling and Koltun.
+    /// Colour of the element, as in the plastic models of Corey, Pauling and Koltun.
     pub(crate) colour: [u8; 3],
 }
 

@@ -81,7 +81,7 @@ const LIST: usize = 1 << 16;
 const LIST_PER_VERTEX: usize = 8;
 
 /// If no line `end_header` ends the header, the reader parses only this number of bytes, to find the error. The number
-/// is assumed. It only needs to cover a few lines.
+/// is assumed, and only needs to cover a few lines.
 const HEADER: usize = 1 << 16;
 
 /// Returns the header with LF at its line ends, the position after the header, and the byte that ends its lines. Bytes

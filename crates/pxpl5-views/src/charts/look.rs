@@ -41,8 +41,8 @@ impl Look {
         dashes.map(|(on, off)| (on * self.em / 10, off * self.em / 10))
     }
 
-    /// Draws the marker of the series. Successive series have a disc, a triangle, a cross and a ring, then a disc
-    /// again.
+    /// Draws the marker of the series. The markers of successive series are a disc, a triangle, a cross and a ring, and
+    /// then repeat.
     pub(super) fn mark<B, C>(
         &self,
         area: &DrawingArea<B, C>,

@@ -13,11 +13,11 @@ use crate::tracker::{TrackerModel, TrackerReport};
 /// are rare. With only 20 seconds, the filter tuned for predictions of 200 ms was worse on another motion than the
 /// filter tuned for 50 ms.
 const TRAINING_S: u64 = 100;
-/// Time at the start of the training motion whose predictions are not evaluated, seconds.
+/// Time at the start of the training motion for which predictions are not evaluated, seconds.
 const SETTLING_S: u64 = 1;
 
-/// Greatest number of reports on which a filter is tuned: a 120 Hz tracker sends this number in `TRAINING_S`. A faster
-/// tracker reaches the limit sooner.
+/// Greatest number of reports on which a filter is tuned. A 120 Hz tracker sends this number in `TRAINING_S` seconds. A
+/// faster tracker reaches the limit sooner.
 const MOST_REPORTS: usize = 12_000;
 
 /// Seed of the tracker's noise when a filter is tuned. If the noise of the evaluated run has the same seed, the tuning
@@ -39,7 +39,8 @@ const LONGEST_BASELINE: u32 = 16;
 /// Conditions of the tuning of a prediction filter, and the errors that remained.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Training {
-    /// Time from the instant at which a reported pose was true to the predicted instant, ps.
+    /// Prediction interval of the tuning, ps: from the instant at which a reported pose was true to the predicted
+    /// instant.
     pub interval_ps: u64,
     /// True if the filter was tuned on another random motion of the same kind, false if the filter was tuned on the
     /// evaluated motion.

@@ -104,10 +104,10 @@ impl<'a> Chunks<'a> {
 /// Greatest number of bytes that a JSON object takes after parsing. The largest type of an item in a list is a node or
 /// a material. While a list grows, it takes up to three times the size of its items.
 const OBJECT_BYTES: usize = 3 * max(size_of::<gltf_json::Node>(), size_of::<gltf_json::Material>());
-/// Greatest number of bytes of a text in a growing list, without its characters.
+/// Greatest number of bytes that a text takes in a growing list, in addition to its characters.
 const TEXT_BYTES: usize = 3 * size_of::<String>();
-/// Greatest number of bytes of an index or a number in a growing list. The largest numbers are the limits of an
-/// accessor, which are stored as JSON values.
+/// Greatest number of bytes that an index or a number takes in a growing list. The numbers of the largest type are the
+/// limits of an accessor, which are stored as JSON values.
 const NUMBER_BYTES: usize = 3 * size_of::<gltf_json::Value>();
 
 const fn max(a: usize, b: usize) -> usize {

@@ -18,8 +18,8 @@ const NAMES: [&str; 8] = [
     "orientation_z",
 ];
 
-/// Suffixes of the names of time columns. The number with a suffix is the count of decimal places of a second in its
-/// unit. A time column without suffix is in nanoseconds, as an `XrTime` of OpenXR.
+/// Suffixes of the names of time columns, with the decimal places of their units. For example, `_ns` has 9 places,
+/// because a nanosecond is 10^-9 s. A time column without suffix is in nanoseconds, as an `XrTime` of OpenXR.
 const UNITS: [(&str, i32); 4] = [("_ns", 9), ("_us", 6), ("_ms", 3), ("_s", 0)];
 
 const NANOSECONDS: i32 = 9;
