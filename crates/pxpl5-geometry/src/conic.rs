@@ -30,7 +30,8 @@ pub(crate) struct Conic {
     pub(crate) yy: f64,
 }
 
-/// A conic in fixed point. The two shifts are for the renderer, which computes a depth from the conic's square root.
+/// A conic in fixed point, with two shifts for the renderer. The renderer computes a depth from the conic's square
+/// root.
 ///
 /// The value is `Q = 2^root_shift (bulge / 2^depth_shift)^2`. The bulge is the depth by which the sphere's surface is
 /// nearer than the plane through its silhouette.

@@ -125,7 +125,8 @@ const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
 const TWO_18: f32 = 262_144.0;
 
-/// Constant from which integers are subtracted to reverse their order. The integers have an added offset (bias).
+/// Constant from which the bits of the single-precision number 1.5 * 2^23 + n are subtracted. The subtraction reverses
+/// the order of the integers n.
 const FLIP: Word = 0x9700_0000;
 
 const PARAMETERS: &str = include_str!("../kernels/parameters.s");

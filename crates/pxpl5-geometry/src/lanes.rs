@@ -175,7 +175,7 @@ impl GouraudLanes {
 pub struct PhongLanes(Expressions);
 
 impl PhongLanes {
-    /// Returns the first `len` triangles in the form that renderers evaluate, with their colours, 0x00RRGGBB.
+    /// Returns the first `len` triangles in the form that renderers evaluate. `colours` are 0x00RRGGBB.
     #[must_use]
     pub const fn batch(&self, len: usize, colours: [u32; LANES]) -> TriangleBatch<'_> {
         TriangleBatch { len, edges: &self.0.edges, planes: &self.0.planes, colours: Some(colours) }

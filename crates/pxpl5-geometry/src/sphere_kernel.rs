@@ -34,10 +34,11 @@ pub const SPHERE_WORDS: usize = 8;
 /// Number of words of a sphere kernel's parameters.
 pub const SPHERE_PARAMETER_WORDS: usize = SIZE + 3;
 
-/// Index, in the parameters, of the blank command. The kernel copies this command and fills in its operands.
+/// Index, in the parameters, of a renderer command with zeros as operands. The kernel copies this command and fills in
+/// the operands.
 const TEMPLATE: usize = 110;
 
-/// Index, in the parameters, of the picture's size, which follows the longest blank command.
+/// Index, in the parameters, of the picture's size. The size follows the longest renderer command.
 const SIZE: usize = TEMPLATE + 53;
 
 /// Number of words at the start of the parameters that depend on a view and a light.

@@ -148,7 +148,7 @@ impl Patch {
 }
 
 impl Ray {
-    /// Returns true if the ray's line passes within `radius` of a point.
+    /// Returns true if the ray, extended to a whole line, passes within `radius` of the point `centre`.
     fn passes(&self, centre: DVec3, radius: f64) -> bool {
         let way = centre - self.origin;
         let along = way.dot(self.direction);

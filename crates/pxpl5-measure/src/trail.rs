@@ -146,7 +146,7 @@ impl<'a> Trail<'a> {
         trail
     }
 
-    /// Collects the stages of each board. Each stage is joined from the record of its start and the record of its end.
+    /// Collects the stages of each board. The records of a stage's start and of its end are joined into one stage.
     fn take_marks(&mut self, earliest: Time) {
         let mut open: BTreeMap<(NodeId, PictureNumber, Option<SurfaceId>, Stage), Time> = BTreeMap::new();
         let mut ends: BTreeMap<(PictureNumber, Option<SurfaceId>), Time> = BTreeMap::new();

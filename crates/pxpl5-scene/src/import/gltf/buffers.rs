@@ -16,9 +16,9 @@ use crate::import::Source;
 /// The bytes of all buffers. A buffer that no triangle needs may be missing.
 pub(super) struct Buffers<'a> {
     buffers: Vec<Result<Cow<'a, [u8]>, ErrorText>>,
-    /// Number of bytes in files beside the model.
+    /// Number of bytes of the files beside the model that hold buffers.
     pub(super) file_bytes: usize,
-    /// Number of decoded bytes from the JSON.
+    /// Number of bytes of the buffers that were decoded from text inside the JSON.
     pub(super) decoded_bytes: usize,
 }
 

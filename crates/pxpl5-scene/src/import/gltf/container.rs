@@ -53,7 +53,7 @@ impl<'a> Chunks<'a> {
     ///
     /// # Errors
     ///
-    /// Fails for JSON that is not glTF, and for JSON that would take more memory than its size allows.
+    /// Fails for JSON that is not glTF, and for JSON that would take too much memory for the size of the file.
     pub(super) fn parse(&self, source: &Source<'_>) -> Result<Root, FileError> {
         Root::from_slice(self.json).map_err(|error| {
             // The library adds the position to its message. The `at` of our error states this position already.
