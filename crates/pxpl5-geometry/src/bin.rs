@@ -143,8 +143,8 @@ impl Binner {
         })
     }
 
-    /// Returns the regions with pixels in the columns `x` and rows `y` for which `test` returns true. The arguments of
-    /// `test` are the region's column and row in the grid of regions.
+    /// Returns the regions with pixels in the columns `x` and rows `y` for which `test` returns true. `test` receives
+    /// the region's column and row in the grid of regions.
     fn cells(&self, x: Range, y: Range, test: impl Fn(i32, i32) -> bool) -> RegionMask {
         let columns = [x.first, x.last].map(|n| quotient(n, self.column_reciprocal));
         let rows = [y.first, y.last].map(|n| quotient(n, self.row_reciprocal));

@@ -183,7 +183,8 @@ impl Kernel {
 
     /// Returns the source in i860 assembly. Execution begins at the label `start`.
     ///
-    /// For [`Schedule::Dual`], the assembler of this project must first schedule the linear parts of the source.
+    /// For [`Schedule::Dual`], the assembler of this project must first choose the order and registers of the parts
+    /// without branches.
     #[must_use]
     pub fn source(&self) -> String {
         let choices = self.choices(false);

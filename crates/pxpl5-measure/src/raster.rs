@@ -122,7 +122,7 @@ impl<'a> RasterOffsets<'a> {
 
     /// Copies the rows that a field lights from `screen` to `shifted`, moved by the field's offset in whole pixels.
     ///
-    /// Pixels to which no pixel moves become black. A field without an offset is copied unchanged.
+    /// Pixels beyond the edge of the moved rows become black. A field without an offset is copied unchanged.
     pub fn shift_rows(&self, screen: &RgbImage, field: PeriodNumber, shifted: &mut RgbImage) {
         if let MovedBy::Device(mover) = &self.moved_by {
             mover.move_rows(screen, field, shifted);

@@ -96,8 +96,8 @@ impl Evaluator {
         self.error_between(place, content, at, at)
     }
 
-    /// Returns the distance from the position `place` to the correct position of `content`. The correct position has
-    /// the head at the time `head_at` and moving objects at the time `objects_at`.
+    /// Returns the distance from the position `place` to the correct position of `content`. The correct position is
+    /// seen from the head at the time `head_at`, with moving objects at the time `objects_at`.
     pub(crate) fn error_between(
         &self,
         place: DVec2,

@@ -5,7 +5,7 @@ use pxpl5_run::{FinalResults, region_at};
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
-/// Arrivals of regions on a run's first surface, from which the region that a pixel shows at any time is found.
+/// Arrivals of regions on a run's first surface. The region that a pixel shows at any time follows from these arrivals.
 #[derive(Debug, Default)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,

@@ -393,7 +393,7 @@ impl PrimitiveVertices<'_> {
         DMat3::from_mat4(self.to_world).determinant() < 0.0
     }
 
-    /// Returns the corners of a triangle in anticlockwise order. A transform that mirrors reverses the order.
+    /// Returns the corners of a triangle in anticlockwise order. The corners are reversed if the transform mirrors.
     fn oriented(&self, [a, b, c]: [u32; 3]) -> [u32; 3] {
         if self.is_mirrored() { [a, c, b] } else { [a, b, c] }
     }

@@ -32,8 +32,8 @@ struct Reader<'a> {
     normals: usize,
     /// Number of normals in the file that are NaN, and the position of the first such normal.
     not_numbers: Option<(usize, FilePlace)>,
-    /// Smoothing group that the last `s` statement has set, with the number that corners store for it
-    /// ([`Detail`](super::model::Detail)). `None` for flat faces.
+    /// Smoothing group that the last `s` statement has set, with the number that corners store for the group. `None`
+    /// for flat faces.
     smoothing: Option<u32>,
     vertices: Vertices,
     model: Model,

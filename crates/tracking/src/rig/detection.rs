@@ -34,8 +34,8 @@ pub(super) struct Detector {
     how: Detection,
     dead_ps: u64,
     dead_until_ps: u64,
-    /// The sign that decides about a pass, and the height, both from the last report. The sign is `true` for a positive
-    /// x ([`Detection::Crossing`]) or an upward movement ([`Detection::VelocitySign`]).
+    /// A sign and the height of the pendulum, both from the last report. The sign is `true` for a positive x
+    /// ([`Detection::Crossing`]) or an upward movement ([`Detection::VelocitySign`]).
     last: Option<(bool, f64)>,
 }
 

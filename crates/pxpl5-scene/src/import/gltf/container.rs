@@ -101,8 +101,8 @@ impl<'a> Chunks<'a> {
     }
 }
 
-/// Greatest number of bytes that a JSON object takes after parsing. The largest type of an item in a list is a node or
-/// a material. While a list grows, it takes up to three times the size of its items.
+/// Greatest number of bytes that a JSON object takes after parsing. The largest objects in a list are nodes and
+/// materials. A growing list takes up to three times the size of its items.
 const OBJECT_BYTES: usize = 3 * max(size_of::<gltf_json::Node>(), size_of::<gltf_json::Material>());
 /// Greatest number of bytes that a text takes in a growing list, in addition to its characters.
 const TEXT_BYTES: usize = 3 * size_of::<String>();
