@@ -45,8 +45,8 @@ impl DepthPicture {
 /// Largest ratio of the depths of two neighbouring pixels that belong to the same surface of an object. At a larger
 /// ratio, a near surface ends between the two pixels and hides content of a far surface.
 ///
-/// The ratio is assumed, with a range of 1.02 to 1.2. For comparison, the depth of a floor that is seen at an angle of
-/// 5 degrees changes by a factor of 1.03 from row to row.
+/// The ratio is assumed, with a range of 1.02 to 1.2. For comparison, take a floor that is seen at an angle of 5
+/// degrees. Its depth changes by a factor of 1.03 from row to row.
 const SAME_SURFACE: f32 = 1.1;
 
 /// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that vector

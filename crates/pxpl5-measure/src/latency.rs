@@ -43,8 +43,8 @@ impl fmt::Debug for LatencyPartStatistics {
     }
 }
 
-/// Latency of one surface, or of a pair of surfaces, until one of three ends: the end of COPY, the swap, or the light
-/// of the pixels.
+/// Latency of one surface or of a pair of surfaces. The latency ends at the end of COPY, at the swap, or when the
+/// pixels are lit.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SurfaceStatistics {
     /// Label of the surface (`left`, `right`), or `pair`. The latency of a pair lasts from the first TRANSFORM until

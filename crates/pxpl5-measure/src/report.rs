@@ -295,8 +295,8 @@ impl Report {
     }
 }
 
-/// Computes the hash of a text in the same way as the trace hash of one event with time zero, kind 9 and the text's
-/// bytes.
+/// Computes the hash of a text like the trace hash of one event. This event has time zero, kind 9 and the bytes of the
+/// text.
 ///
 /// The text is not stored, because the text of a long run would be large.
 struct HashedText(u64);

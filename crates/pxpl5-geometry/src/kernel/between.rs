@@ -5,8 +5,10 @@
 
 use super::{COMPILED, Kernel, KernelList, PARAMETERS, PICTURE, SCALAR, Schedule, choices};
 
-/// Number of words that record one triangle in two views: a flag, the least y, the greatest y, a free word, and the
-/// corners in both views. The flag is set if both views have the triangle on the screen.
+/// Number of words that record one triangle in two views.
+///
+/// The words are: a flag, the least y, the greatest y, a free word, and the corners in both views. The flag is set if
+/// both views have the triangle on the screen.
 pub const ENDS_WORDS: usize = 28;
 
 /// Number of words for the corners of a recorded triangle in one view.

@@ -93,9 +93,9 @@ struct Ray {
     direction: DVec3,
 }
 
-/// Origins and inclinations of rays from the crown to the lower end of the neck, one ray in each row. The three numbers
-/// of a row are the position from crown (0) to lower end (1), the height of the origin in centimetres, and the downward
-/// angle in degrees.
+/// Origins and inclinations of rays from the crown to the lower end of the neck, one ray in each row. The first number
+/// is the position from crown (0) to lower end (1). The second number is the height of the origin in centimetres, and
+/// the third number is the downward angle in degrees.
 const SPINE: [(f64, f64, f64); 8] = [
     (0.0, 2.5, -90.0),
     (0.24, 2.5, -24.0),
