@@ -20,19 +20,16 @@ impl RegionMask {
         Self(1 << region.0)
     }
 
-    /// Returns true if the set contains no region.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Returns the number of regions in the set.
     #[must_use]
     pub const fn len(self) -> u32 {
         self.0.count_ones()
     }
 
-    /// Returns true if `region` is in the set.
     #[must_use]
     pub const fn contains(self, region: RegionId) -> bool {
         Self::only(region).0 & self.0 != 0

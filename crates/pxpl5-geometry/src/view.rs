@@ -76,7 +76,6 @@ impl Viewport {
         Ok(Self { grid, lines })
     }
 
-    /// Returns the division of the picture into regions.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         self.grid
@@ -88,8 +87,8 @@ impl Viewport {
         self.lines
     }
 
-    /// Returns the number of lines of the video frame from one row of the picture to the next: 1 for a whole video
-    /// frame, 2 for a field.
+    /// Returns the distance between rows of the picture, in lines of the video frame: 1 for a whole video frame, 2 for
+    /// a field.
     #[must_use]
     pub const fn line_step(&self) -> u32 {
         match self.lines {
@@ -199,7 +198,7 @@ impl FromWorld {
         Self { columns, origin }
     }
 
-    /// Returns the rows x, y, z and w of the matrix, for points relative to [`Self::origin`].
+    /// Returns the rows x, y, z and w of the matrix. The matrix applies to points relative to [`Self::origin`].
     pub(crate) fn rows(&self) -> [[f32; 4]; 4] {
         std::array::from_fn(|row| self.columns.map(|column| column[row]))
     }

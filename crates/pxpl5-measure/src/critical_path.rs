@@ -28,7 +28,7 @@ pub struct PathPart {
     pub share_of_board: Option<f64>,
 }
 
-/// The chain of waits of the last complete pictures of a run.
+/// The waits of the last complete pictures of a run, from the screen back to the start of TRANSFORM.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CriticalPath {
     /// Number of pictures that were followed: the last complete pictures of the result window, at most
@@ -97,7 +97,6 @@ impl CriticalPath {
     }
 }
 
-/// Sums the waits for one resource over all chains. Returns `None` if no chain contains a wait for the resource.
 fn part(resource: Resource, chains: &[Vec<Step>], total: Span) -> Option<PathPart> {
     let of = || chains.iter().flatten().filter(|step| step.resource == resource);
     let span: Span = of().map(Step::span).sum();

@@ -17,7 +17,7 @@ use tracking::view::Hmd;
 pub struct DepthPicture {
     width: u32,
     height: u32,
-    /// Depth along the axis of the view in metres, row after row.
+    /// Depth of each pixel along the axis of the view, in metres, row after row.
     depths: Vec<f32>,
     /// Smallest and largest depth of the picture's pixels in metres, except depths of 0 (rows that do not belong to the
     /// field).
@@ -43,25 +43,25 @@ impl DepthPicture {
 }
 
 /// Largest ratio of the depths of two neighbouring pixels that belong to the same surface of an object. At a larger
-/// ratio, a near surface ends between the two pixels and hides content of a far surface. The ratio is assumed, with a
-/// range of 1.02 to 1.2. For comparison, the depth of a floor that is seen at an angle of 5 degrees changes by a factor
-/// of 1.03 from row to row.
+/// ratio, a near surface ends between the two pixels and hides content of a far surface.
+///
+/// The ratio is assumed, with a range of 1.02 to 1.2. For comparison, take a floor that is seen at an angle of 5
+/// degrees. Its depth changes by a factor of 1.03 from row to row.
 const SAME_SURFACE: f32 = 1.1;
 
 /// The pixels of a row of the picture, seen from the new pose. Each list has one number for each pixel, so that vector
-/// instructions can compute several pixels together.
+/// instructions can compute several pixels at once.
 #[derive(Debug, Default)]
 struct SeenRow {
     /// Positions on the screen, horizontally in pixels and vertically in rows of the field.
     x: Vec<f32>,
     row: Vec<f32>,
-    /// Depth of each pixel's content, seen from the new pose.
     depth: Vec<f32>,
     /// Depth of each pixel's content, seen from the old pose. Infinity if the content is behind the eye of the new
     /// pose.
     old_depth: Vec<f32>,
-    /// First column at or to the right of `x`, limited to the columns of the screen. The list `next_row` has the first
-    /// row at or below `row`, limited to the rows that are drawn.
+    /// For each pixel, the first column of the screen at or to the right of `x`. The list `next_row` has the first
+    /// drawn row at or below `row`.
     next_column: Vec<i32>,
     next_row: Vec<i32>,
 }
@@ -74,8 +74,8 @@ impl SeenRow {
     }
 }
 
-/// Depths and new positions of all pairs of pixels in two neighbouring rows of the picture. A pair is a pixel and the
-/// pixel directly below. For each pair, the lists have the smaller and the larger depth, column and row.
+/// Depths and new positions of two neighbouring rows of the picture, pair by pair. A pair is a pixel and the pixel
+/// directly below. For each pair, the lists have the smaller and the larger depth, column and row.
 #[derive(Debug, Default)]
 struct Pairs {
     near: Vec<f32>,
@@ -105,7 +105,6 @@ fn larger<T: PartialOrd + Copy>(out: &mut Vec<T>, a: &[T], b: &[T]) {
     out.extend(a.iter().zip(b).map(|(a, b)| if a > b { *a } else { *b }));
 }
 
-/// A picture and the view for which the picture was drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drawing<'a> {
     pub(crate) picture: &'a RgbImage,
@@ -147,7 +146,6 @@ impl Drawing<'_> {
         &self.depths.depths[begin..begin + self.picture.width() as usize]
     }
 
-    /// Computes the positions at which the pixels of a row of the field are seen from the new pose `now`.
     fn see_row(&self, now: &Pose, row: u32, target: &Target, out: &mut SeenRow) {
         let to_new = now.orientation.conjugate();
         let turn = to_new * self.drawn_for.orientation;
@@ -223,9 +221,9 @@ impl Drawing<'_> {
 struct Target {
     width: u32,
     rows: Range<u32>,
-    /// Depth of the nearest content found so far, for each pixel.
     depths: Vec<f32>,
-    /// Source pixel of the nearest content found so far, for each pixel: column plus width times row of the field.
+    /// Source of the nearest content found so far, for each pixel: the source's column plus width times its row of the
+    /// field.
     sources: Vec<u32>,
 }
 
@@ -240,7 +238,6 @@ impl Target {
         Self { width, rows, depths: vec![f32::INFINITY; size], sources: vec![NOTHING; size] }
     }
 
-    /// Draws the cells of the mesh between the row `upper_row` of the picture and the row below `upper_row`.
     fn draw_cells(&mut self, upper_row: u32, rows: [&SeenRow; 2], pairs: &Pairs) {
         let count = pairs.near.len();
         let first = upper_row * self.width;
@@ -320,7 +317,7 @@ impl Target {
         }
     }
 
-    /// Copies the colour of each pixel's source to the moved picture. Returns the number of pixels without a source.
+    /// Copies the colour of each pixel's source to the moved picture. Returns the number of pixels that have no source.
     fn copy(&self, drawing: &Drawing<'_>, out: &mut RgbImage) -> u64 {
         let width = self.width as usize;
         let pixels = drawing.picture.as_raw();

@@ -4,8 +4,8 @@ use crate::percentiles::Percentiles;
 use pxpl5_run::Samples;
 use std::collections::BTreeMap;
 
-/// Number of leading fraction bits of a number that select the bin in which the number is counted. A bin is an interval
-/// of numbers. The width of a bin is at most 1/1024 of the numbers in the bin.
+/// Number of leading fraction bits by which a number is assigned to a bin. A bin is an interval of numbers, whose width
+/// is at most 1/1024 of the numbers in it.
 const FRACTION_BITS: u32 = 10;
 const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 
@@ -18,8 +18,8 @@ const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - FRACTION_BITS;
 pub(crate) struct Distribution {
     samples: Samples,
     limit: usize,
-    /// Number of values in each bin. The key holds the leading bits of the values. The map is empty until more than
-    /// `limit` values were added.
+    /// Number of values in each bin, by the leading bits of the values. The map is empty until more than `limit` values
+    /// were added.
     bins: BTreeMap<u64, u64>,
 }
 
@@ -38,7 +38,6 @@ impl Distribution {
         self.samples.push(value);
     }
 
-    /// Returns the numbers that were added first, at most `limit` numbers.
     pub(crate) fn kept(&self) -> &[f64] {
         &self.samples
     }

@@ -1,11 +1,8 @@
-//! The pose and the time for which a pixel was drawn.
-
 use glam::DVec2;
 use pxpl5_sim::Time;
 use std::sync::Arc;
 use tracking::Pose;
 
-/// The pose for which a view was drawn, and the time for which moving objects were placed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment {
     pub(crate) pose: Pose,
@@ -16,13 +13,11 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    /// Returns true if two views with the poses and times `self` and `other` give the same picture.
     pub(crate) fn is_same_picture(&self, other: &Self) -> bool {
         self.pose == other.pose && self.objects_at == other.objects_at
     }
 }
 
-/// The pose or the poses for which a displayed pixel was drawn.
 #[derive(Clone, Debug)]
 pub(crate) enum Drawn {
     View(Moment),
@@ -43,7 +38,7 @@ pub(crate) enum Drawn {
 #[derive(Clone, Debug)]
 pub(crate) struct FacesSeen {
     /// For each display memory, in ascending order: the eye's pose in this memory, turned to the latched direction, and
-    /// a flag for each structure of the scene. The flag is true if the memory holds the structure.
+    /// a flag for each structure of the scene. A flag is true if the memory holds the structure.
     pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
     /// Instant for which the latched direction was predicted.
     pub(crate) aimed_at: Time,

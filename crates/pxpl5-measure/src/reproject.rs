@@ -8,7 +8,6 @@ use std::ops::Range;
 use tracking::Pose;
 use tracking::view::{Hmd, RasterOffset};
 
-/// Returns the direction of a picture position in head coordinates, scaled to a depth of 1 m.
 pub(crate) fn direction(view: &Hmd, place: DVec2) -> DVec3 {
     let from_centre = (place - view.centre_px()) / view.focal_px();
     DVec3::new(from_centre.x, -from_centre.y, -1.0)
@@ -17,7 +16,6 @@ pub(crate) fn direction(view: &Hmd, place: DVec2) -> DVec3 {
 /// The mapping from screen positions to positions in a picture that was drawn for another pose. Depth is ignored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Move {
-    /// The whole picture is shifted by the offset, in pixels.
     Shift(DVec2),
     /// The view is rotated. The rotation converts directions from the head's newest axes to the head's axes for which
     /// the picture was drawn.
@@ -46,7 +44,7 @@ impl Move {
     }
 }
 
-/// Writes some pixels of a row. Each pixel is copied from the position in the source picture that `place` returns.
+/// Writes some pixels of a row. Each pixel is copied from the position that `place` returns, in the source picture.
 ///
 /// Pixels without a source become black. Returns the number of these pixels.
 pub(crate) fn fill_row(
@@ -77,7 +75,6 @@ pub(crate) fn fill_row(
     empty
 }
 
-/// Writes the pixels `xs` of the row `y` of a moved picture. Returns the number of pixels without a source.
 pub(crate) fn move_row(
     source: &RgbImage,
     rows: Rows,

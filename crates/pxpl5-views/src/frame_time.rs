@@ -1,5 +1,3 @@
-//! Duration of a film's frame.
-
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use pxpl5_wire::display::Display;
@@ -28,7 +26,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// Returns the distance from another fraction, multiplied by both denominators so that the result is an integer.
+    /// Returns the difference to another fraction, multiplied by both denominators so that the result is an integer.
     const fn distance(self, other: Self) -> u128 {
         (self.over * other.under).abs_diff(other.over * self.under)
     }

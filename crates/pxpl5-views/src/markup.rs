@@ -21,7 +21,7 @@ impl Element {
         self
     }
 
-    /// Appends text to the content. Even with empty text, the element gets a closing tag.
+    /// Appends text to the content. Even an empty text gives the element a closing tag.
     pub(crate) fn text(mut self, text: impl Display) -> Self {
         self.content().push_str(&escape(&text.to_string()));
         self

@@ -15,7 +15,6 @@
 use crate::time::nearest_ps;
 use pxpl5_sim::parameters::{ParameterTable, parameter_table};
 
-/// Converts milliseconds of a parameter table into picoseconds, rounded to the nearest picosecond.
 pub(crate) fn ms_to_ps(ms: f64) -> u64 {
     nearest_ps(ms / 1e3)
 }

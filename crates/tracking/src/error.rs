@@ -7,7 +7,6 @@ pub(crate) fn check(what: &str, found: f64, low: f64, high: f64) -> Result<(), S
     SettingError::require((low..=high).contains(&found), what, format_args!("{low} to {high}"), found)
 }
 
-/// Creates the error of two settings that contradict each other. `what` describes both settings.
 pub(crate) fn contradiction(what: &str) -> SettingError {
     SettingError::combination(format_args!("settings contradict each other: {what}"))
 }

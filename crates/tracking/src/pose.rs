@@ -1,5 +1,3 @@
-//! The pose of a head: position and orientation.
-
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 

@@ -15,8 +15,8 @@ pub fn bits(seed: u64, index: u64) -> u64 {
     mix(seed.wrapping_add(index.wrapping_mul(INCREMENT)))
 }
 
-/// Returns the seed of the stream of random numbers with the number `name`. Streams with other names or seeds are
-/// independent of this stream. Two rounds of mixing prevent streams of neighbouring seeds from overlapping.
+/// Returns the seed of stream number `name` of random numbers. Streams with different numbers or seeds are independent.
+/// Two rounds of mixing prevent streams of neighbouring seeds from overlapping.
 pub(crate) fn stream(seed: u64, name: u64) -> u64 {
     bits(bits(seed, name), seed)
 }

@@ -38,7 +38,7 @@ pub fn log(q: DQuat) -> DVec3 {
     v * (2.0 * libm::atan2(sin, q.w) / sin)
 }
 
-/// Returns the world-frame rotation vector (rad) of the shorter rotation from `from` to `to`.
+/// Returns the vector (rad) of the shorter rotation from `from` to `to`, in the world frame.
 pub fn difference(from: DQuat, to: DQuat) -> DVec3 {
     log(to * from.conjugate())
 }

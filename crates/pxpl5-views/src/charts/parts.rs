@@ -1,9 +1,6 @@
-//! Bar chart of the parts of latency.
-
 use crate::markup::Element;
 use crate::svg::{Tenths, anchored, hint};
 
-/// Width of the chart in SVG units.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 76.0;
 const MARGIN: f64 = 4.0;
@@ -19,7 +16,7 @@ pub struct MeanPart {
     pub published: bool,
 }
 
-/// Returns the colour of a part of the latency. Waiting times are grey.
+/// Returns the colour of a part of the latency: grey for waiting times.
 pub(crate) fn colour_of_part(name: &str) -> &'static str {
     match name {
         "send" => "#7f7f7f",

@@ -21,7 +21,7 @@ pub struct MarkedPoint {
     pub at: (f64, f64),
     /// Lower and upper end of the confidence interval. NaN means that there is no interval.
     pub interval: (f64, f64),
-    /// True for a hollow marker, which shows that the value cannot be compared with the other values.
+    /// True for a hollow marker. The point's value is then not comparable with the values of filled markers.
     pub is_hollow: bool,
 }
 

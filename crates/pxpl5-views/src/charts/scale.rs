@@ -76,7 +76,7 @@ impl Axis {
     }
 }
 
-/// Makes the axis usable in the crate `plotters`. The values that `plotters` receives are positions on the axis.
+/// Makes the axis usable in the crate `plotters`, which receives positions on the axis instead of values.
 impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;

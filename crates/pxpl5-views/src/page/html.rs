@@ -23,7 +23,6 @@ pub fn html(runs: &[PageRun]) -> String {
     page(std::iter::once(summary(runs)).chain(runs.iter().flat_map(sections)))
 }
 
-/// Returns a page that contains `sections`, the parts of all experiments.
 pub(super) fn page(sections: impl IntoIterator<Item = Element>) -> String {
     let mut body = Element::new("body");
     body.end_line();

@@ -1,5 +1,3 @@
-//! The writer of all CSV files.
-
 use csv::WriterBuilder;
 
 /// Returns a table as CSV: a line of names and a line for each row. Lines end with a line feed. A value with a comma, a

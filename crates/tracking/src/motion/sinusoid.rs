@@ -28,7 +28,6 @@ impl Sinusoid {
         Self { start: Pose::IDENTITY, hz, yaw_deg, sway_m: 0.0 }
     }
 
-    /// Returns sine and cosine of the phase of both sine waves at an instant.
     fn phase(&self, t_ps: u64) -> (f64, f64) {
         libm::sincos(TAU * libm::fmod(self.hz * seconds(t_ps), 1.0))
     }

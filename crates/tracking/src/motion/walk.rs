@@ -81,7 +81,6 @@ impl Walk {
     }
 }
 
-/// Returns a distance modulo the length of one round of the path.
 fn rounded(way: f64, round: f64) -> f64 {
     let rest = libm::fmod(way, round);
     if rest < 0.0 { rest + round } else { rest }

@@ -8,11 +8,10 @@ use crate::time::span_s;
 /// The order of an extrapolation, which is the highest derivative that the extrapolation uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// No derivative: the prediction is the last value.
     Zeroth,
-    /// The first derivative: velocity stays constant.
+    /// Order 1: the first derivative (velocity) stays constant.
     First,
-    /// The second derivative: acceleration stays constant.
+    /// Order 2: the second derivative (acceleration) stays constant.
     Second,
 }
 

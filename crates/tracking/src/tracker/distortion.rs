@@ -28,9 +28,9 @@ pub struct MagneticDistortion {
 }
 
 impl MagneticDistortion {
-    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. The error
-    /// grows with the squared distance, but more slowly far from the transmitter (`reach_m`). With the squared distance
-    /// alone, the error 1 m from the transmitter would be 20 mm (assumed).
+    /// Returns the distortion by metal in the floor below a transmitter at the position `transmitter_m`. Near the
+    /// transmitter, the error at a distance of r metres is 0.02 r^2 metres (assumed). Farther away than `reach_m`, the
+    /// error grows more slowly.
     pub fn floor_below(transmitter_m: DVec3) -> Self {
         Self::floor_below_by(&Tables::PAPERS, transmitter_m)
     }

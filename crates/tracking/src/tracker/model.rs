@@ -3,7 +3,7 @@ use crate::error::{check, contradiction};
 use crate::time::{PS_PER_S, tick_ps};
 use pxpl5_sim::parameters::SettingError;
 
-/// Longest latency or polling interval that settings may have, ps.
+/// Greatest latency or polling interval that settings may have, ps.
 const LONGEST_PS: u64 = 10 * PS_PER_S;
 
 /// A tracker whose settings have been checked.

@@ -48,7 +48,7 @@ impl RandomOrder {
         }
     }
 
-    /// Permutes the numbers 0..2^width by a Feistel network. The upper and the lower bits of the number exchange their
+    /// Permutes the numbers 0..2^width by a Feistel network. The upper and the lower bits of `place` exchange their
     /// roles in each round, so that `width` can be odd.
     fn permuted(&self, place: u32) -> u32 {
         let mut low_bits = self.half_bits;

@@ -99,7 +99,7 @@ pub struct Hmd {
     focal_px: f64,
 }
 
-/// The offset between the shown and the true position of a point in the picture.
+/// Difference between the shown and the true position of a point in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misregistration {
     /// Shown position minus true position, px, x to the right and y down.
@@ -204,7 +204,6 @@ impl Hmd {
         self.misregistration_at(point, begun, shown)
     }
 
-    /// Returns the matrix from eye to clip coordinates ([`View::projection`](super::View::projection)).
     pub(super) fn projection(&self) -> Mat4 {
         let HmdConfig { width_px, height_px, near_m: near, far_m: far, .. } = self.config;
         // Half the width and half the height of the picture at a distance of 1.
@@ -225,7 +224,7 @@ pub fn drift_deg(deg_per_s: f64, span_ps: u64) -> f64 {
     deg_per_s * seconds(span_ps)
 }
 
-/// Returns the angle between two vectors, radians. Small angles keep full accuracy.
+/// Returns the angle between two vectors, radians. The formula is accurate for small angles too.
 pub(super) fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }

@@ -1,4 +1,4 @@
-/// Greatest number of digits in a time stamp. A time stamp in nanoseconds since 1970 has 19 digits.
+/// Greatest number of digits in a time stamp. Nanoseconds since 1970 have only 19 digits.
 const MOST_DIGITS: usize = 30;
 
 /// Parses a decimal number exactly and rounds it to a multiple of 10^-`places`. For seconds, 12 places give

@@ -18,8 +18,8 @@ const NAMES: [&str; 8] = [
     "orientation_z",
 ];
 
-/// Suffixes of the names of time columns, with the units that the suffixes stand for. A unit is a number of decimal
-/// places of a second. A time column without suffix is in nanoseconds, as an `XrTime` of OpenXR.
+/// Suffixes of the names of time columns, with the decimal places of their units. For example, `_ns` has 9 places,
+/// because a nanosecond is 10^-9 s. A time column without suffix is in nanoseconds, as an `XrTime` of OpenXR.
 const UNITS: [(&str, i32); 4] = [("_ns", 9), ("_us", 6), ("_ms", 3), ("_s", 0)];
 
 const NANOSECONDS: i32 = 9;
@@ -111,7 +111,6 @@ fn flatten(path: &str, value: &Value, all: &mut Vec<(String, String)>) {
     }
 }
 
-/// Returns the columns of a sample that was parsed from JSON, in the order of [`NAMES`].
 pub(super) fn json_columns(time: &Column) -> [Column; 8] {
     std::array::from_fn(|index| Column {
         index,
