@@ -1,5 +1,3 @@
-//! Configuration of a machine: boards, displays and all timing parameters.
-
 use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;

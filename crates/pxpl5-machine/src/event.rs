@@ -1,5 +1,3 @@
-//! The events in a machine's queue.
-
 use crate::board::{Board, EventDescription};
 use crate::ports::Ports;
 use pxpl5_gp::GpEvent;
@@ -19,7 +17,6 @@ pub(crate) enum Event {
     Renderer(usize, RendererEvent),
     /// Messages arrive at the first display on a host line, a connection that bypasses the ring.
     HostLine(usize),
-    /// An event that a display scheduled for itself.
     Display(usize, DisplayEvent),
     /// A display begins a period.
     Tick(usize, PeriodNumber),

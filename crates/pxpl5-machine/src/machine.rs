@@ -349,7 +349,6 @@ impl Machine {
         }
     }
 
-    /// Returns true if a program, a renderer or a message waits for another board.
     fn waits_for_a_board(&self) -> bool {
         self.processors.iter().any(GpBoard::waits_for_a_board)
             || self.record.renderers.iter().any(|renderer| renderer.blocked().is_some())

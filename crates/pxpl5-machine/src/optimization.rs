@@ -1,5 +1,3 @@
-//! Optimizations of the simulator that change no result.
-
 /// A shortcut of the simulator that an experiment can disable (`Experiment::without`).
 ///
 /// No optimization changes a time or a visible pixel. The test `tests/optimizations.rs` repeats runs with each

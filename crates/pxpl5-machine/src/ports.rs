@@ -1,5 +1,3 @@
-//! Assignment of boards to ports of the ring.
-
 use crate::board::Board;
 use crate::config::MachineConfig;
 use pxpl5_wire::NodeId;

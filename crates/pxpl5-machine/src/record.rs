@@ -1,5 +1,3 @@
-//! The boards of a machine, and all observations of a run.
-
 use crate::board::Board;
 use crate::config::MachineConfig;
 use crate::observation::{Observation, Shown, StageSpan};

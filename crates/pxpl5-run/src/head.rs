@@ -1,5 +1,3 @@
-//! The head of a viewer, with a tracker and a predictor.
-
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
 use crate::report_schedule::{Arrivals, Coming, Contents};
@@ -29,8 +27,8 @@ enum Numbers {
     Tuned(Option<Training>, Option<Training>),
 }
 
-/// Names of experiments contain this text instead of the tuned parameters, which follow from the method and all other
-/// settings.
+/// Names of experiments contain this text in place of the tuned parameters. The parameters follow from the method and
+/// from all other settings.
 const TUNING: &str = "for its interval and motion, version 1";
 
 /// The coordinates in which a head motion is given.

@@ -28,8 +28,8 @@ pub struct SampledPose {
     pub measured_at: Option<Time>,
     /// Time at which the newest used report arrived at the host. `None` before the first report.
     pub arrived_at: Option<Time>,
-    /// Instant for which the picture is drawn, chosen by the head's [`Aim`](crate::Aim). Moving objects have their
-    /// positions of this instant.
+    /// Instant for which the picture is drawn, chosen by the head's [`Aim`](crate::Aim). Moving objects are drawn at
+    /// their positions at this instant.
     pub objects_at: Time,
     /// Instant for which the pose was predicted. `None` without prediction: the newest report was used unchanged.
     pub predicted_for: Option<Time>,

@@ -1,5 +1,3 @@
-//! Values of the settings of pipelines.
-
 use pxpl5_sim::parameters::KeyValue;
 use std::collections::BTreeMap;
 

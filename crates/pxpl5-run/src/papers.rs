@@ -1,5 +1,3 @@
-//! Registry of the papers' pipelines and displays.
-
 use crate::displays;
 use crate::pipelines;
 use crate::registry::{PipelineEntry, Registry};

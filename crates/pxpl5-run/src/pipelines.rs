@@ -77,10 +77,8 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Setti
     Ok(display)
 }
 
-/// The methods of shading, with their names in experiment files.
 const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
 
-/// The setting `shading` of pipelines that support both Phong and Gouraud shading.
 const SHADING: Key = Key::new("shading", "method of shading", KeyValues::Names(&const { names(&SHADINGS) }));
 
 fn shading_value(shading: Shading) -> KeyValue {

@@ -35,7 +35,6 @@ impl<E, O> Context<E, O> {
         self.now
     }
 
-    /// Schedules an event for the same device.
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         self.own.push((time, phase, event));
     }
@@ -107,7 +106,6 @@ impl<E, O> TestBench<E, O> {
         &mut self.queue
     }
 
-    /// Schedules an event for the device.
     pub fn feed(&mut self, time: Time, phase: Phase, event: E) {
         self.queue.schedule(time, phase, event);
     }

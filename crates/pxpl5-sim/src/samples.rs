@@ -37,7 +37,6 @@ impl Samples {
         Self { kept: Vec::new(), limit, moments: None }
     }
 
-    /// Adds a number to the collection.
     pub fn push(&mut self, value: f64) {
         if let Some(moments) = &mut self.moments {
             moments.push(value);
@@ -56,7 +55,6 @@ impl Samples {
         self.moments.as_ref().map_or(self.kept.len() as u64, |moments| moments.n)
     }
 
-    /// Returns the statistics of all added numbers.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         self.statistics_in(1.0)

@@ -24,7 +24,6 @@ macro_rules! count_from_zero {
         pub struct $name(pub u64);
 
         impl $name {
-            /// The first number, 0.
             pub const FIRST: Self = Self(0);
 
             /// Returns the next number. The greatest number of the type is returned unchanged.
@@ -55,7 +54,6 @@ macro_rules! count_from_zero {
                 self.0.saturating_sub(earlier.0)
             }
 
-            /// Iterates over this number and all greater numbers.
             pub fn onwards(self) -> impl Iterator<Item = Self> {
                 (self.0..).map(Self)
             }

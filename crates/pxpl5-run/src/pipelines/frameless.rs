@@ -1,5 +1,3 @@
-//! Frameless rendering on the emulated machine.
-
 use super::jitp::{TABLES, config, load, whole_pass};
 use super::{ntsc, samples};
 use crate::keys::PipelineSettings;

@@ -1,5 +1,3 @@
-//! Just-in-time pixels on the emulated machine.
-
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;

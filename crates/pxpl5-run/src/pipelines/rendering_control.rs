@@ -1,5 +1,3 @@
-//! Rendering Control on the emulated machine.
-
 use super::{SHADING, region_has_room, shading_or, shading_value, swapped_in, whole_picture};
 use crate::keys::PipelineSettings;
 use crate::pipeline::{PictureRules, PictureTimes, Pipeline, Setup};
@@ -23,11 +21,11 @@ pub struct RenderingControl {
     pub mono: bool,
     /// Method of shading.
     pub shading: Shading,
-    /// The choice of a renderer's action with a finished region while the frame buffer is not available.
+    /// Action of a renderer that has finished a region while the frame buffer is not available.
     pub finished: FinishedRegions,
 }
 
-/// The choice of a renderer's action with a finished region while the frame buffer is not available.
+/// Action of a renderer that has finished a region while the frame buffer is not available.
 ///
 /// TR94 says that the last slave returns the token, and that the master then gives the renderer its next region. TR94
 /// does not say if this also happens before the finished region is copied.

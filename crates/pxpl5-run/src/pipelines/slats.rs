@@ -1,5 +1,3 @@
-//! Slats on the emulated machine.
-
 use super::{late_regions, ntsc, samples};
 use crate::keys::PipelineSettings;
 use crate::picture_ends::PictureResult;

@@ -53,8 +53,8 @@ pub type PathTable<'a> = (&'static str, &'a dyn ParameterTable);
 /// A table of parameters that can be changed, with the first part of their paths.
 pub type PathTableMut<'a> = (&'static str, &'a mut dyn ParameterTable);
 
-/// Returns the table of the parameter at a path such as `ring.word_ns`. The first and the last result are the parts of
-/// the path. Returns `None` if no table has the parameter.
+/// Finds the parameter at a path such as `ring.word_ns`. Returns the first part of the path, the table, and the name of
+/// the parameter. Returns `None` if no table has the parameter.
 pub fn table_at<'a, 'p>(
     tables: impl IntoIterator<Item = PathTableMut<'a>>,
     path: &'p str,
@@ -66,7 +66,6 @@ pub fn table_at<'a, 'p>(
 
 /// A setting that is no number of a table, such as a choice among names.
 pub struct Choice<S> {
-    /// Path of the setting.
     pub path: &'static str,
     /// Sets the setting to the value that a text denotes. The error states the expected texts.
     pub set: fn(&mut S, &str) -> Result<(), SettingError>,
@@ -126,7 +125,7 @@ pub trait PathSettings: Sized + 'static {
     /// Returns the tables of [`PathSettings::tables`] for changes.
     fn tables_mut(&mut self) -> Vec<PathTableMut<'_>>;
 
-    /// Called after a text has changed the setting at a path.
+    /// Is called after a text has changed the setting at `_path`.
     fn was_set(&mut self, _path: &str, _text: &str) {}
 
     /// Returns all numbers with their paths and current values.

@@ -1,5 +1,3 @@
-//! Unit, provenance, range and source of a parameter.
-
 use crate::parameters::{SettingError, Value};
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,3 @@
-//! The instant for which the view of a picture is predicted.
-
 use pxpl5_sim::Time;
 use serde::{Deserialize, Serialize};
 

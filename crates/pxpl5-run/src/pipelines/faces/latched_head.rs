@@ -15,7 +15,6 @@ pub(crate) fn lights_of(scan: &FaceScan, field: PeriodNumber) -> LightTimes {
     LightTimes { tick, first: light(0, top), last: light(scan.width() - 1, scan.height() - 2 + top) }
 }
 
-/// Number of words of an orientation message on the host's connection to the display.
 pub(crate) const ORIENTATION_WORDS: u32 = 9;
 
 /// Timing of the orientation register of a display with cube faces.
@@ -100,7 +99,8 @@ impl OrientationTiming {
         self.aim.instant(&lights_of(&self.scan, field))
     }
 
-    /// Returns the time up to which the host used reports for a pixel's orientation, and the instant of the prediction.
+    /// Returns the time up to which the host used reports for a pixel's orientation, and the instant for which this
+    /// orientation was predicted.
     ///
     /// Before the first report, the host has the head's initial pose. Returns `None` before an orientation is loaded.
     #[must_use]

@@ -48,12 +48,10 @@ impl LoadSchedule {
         Some(Self { scan, depth, link, lines, loads, aim })
     }
 
-    /// Returns the number of lines of a field.
     fn height(&self) -> u32 {
         self.scan.height() / 2
     }
 
-    /// Returns the instant at which a pixel of a line of a field is lit.
     fn light(&self, x: u32, line: u32, field: PeriodNumber) -> Time {
         let y = 2 * line + FieldParity::of_field(field).first_line();
         self.scan.when(x, y, field).unwrap_or_else(|| self.scan.retrace(field))

@@ -63,8 +63,8 @@ pub struct FacePipeline {
     /// Otherwise each whole structure is in the fastest (most often updated) display memory among the memories of the
     /// cells that the structure touches.
     pub segmented: bool,
-    /// Rule by which, for warped cells, the displacement of vertices decreases with the distance from the border to a
-    /// display memory with a lower update rate.
+    /// Decrease of the displacement of vertices, for warped cells, with the distance from the border to a display
+    /// memory with a lower update rate.
     pub falloff: Falloff,
     /// Lens between display and eye.
     pub lens: FaceLens,
@@ -167,7 +167,7 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content, warped: WarpedLists::default() })
     }
 
-    /// Returns the plan (a function) by which the host selects the next update of a display memory.
+    /// Returns the function by which the host selects the next update of a display memory.
     fn plan(self, machine: &mut Machine, setup: &Setup) -> Result<Plan, SettingError> {
         let notes = Arc::new(RequestedUpdates::default());
         machine.attach(Arc::clone(&notes) as Arc<dyn Attachment>);
@@ -208,7 +208,6 @@ impl FacePipeline {
     }
 }
 
-/// Returns the parameters of the policies after a check of their ranges.
 fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, SettingError> {
     let timing = config.firmware_table().copied().unwrap_or(PriorityTiming::PAPERS);
     timing.check()?;
@@ -238,7 +237,6 @@ fn projection(display: &ArpConfig) -> Mat4 {
     Mat4::from_cols(x, y, z, w)
 }
 
-/// Index of the display port that receives the head's orientations.
 const ORIENTATION_PORT: usize = 0;
 
 /// Connection from the host to the display that carries the head's orientations.

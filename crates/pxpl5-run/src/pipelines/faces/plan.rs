@@ -17,14 +17,12 @@ use std::sync::Arc;
 /// Function that returns the next action of a host, when the host is ready for an update.
 pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction<FaceUpdate>>;
 
-/// State that all plans of a host share: views, starts of frames, and the record of updates.
 pub(super) struct Updates {
     pub(super) setup: Setup,
     pub(super) projection: Mat4,
     pub(super) notes: Arc<RequestedUpdates>,
     /// Flag of each structure of the scene: true if the structure moves by itself or with the head.
     pub(super) moving: Vec<bool>,
-    /// Number of updates that were sent so far, for each display memory.
     sent: Vec<u64>,
     /// True if any structure is attached to the head. The position of such a structure depends on the head's direction.
     has_head_frame: bool,
@@ -83,7 +81,7 @@ impl Updates {
     }
 }
 
-/// A display memory that must be redrawn, with the content of its update.
+/// A display memory that must be redrawn, and the content of its update.
 #[derive(Clone, Debug)]
 pub(super) struct Due {
     pub(super) memory: usize,
@@ -151,7 +149,6 @@ pub(super) struct Cycles<P> {
     scan: FaceScan,
     policy: P,
     pending: VecDeque<Due>,
-    /// Field in which the last cycle (round of updates of display memories) began.
     began: Option<PeriodNumber>,
 }
 
