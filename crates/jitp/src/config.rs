@@ -60,7 +60,8 @@ pub enum DrawingSchedule {
 /// The times at which the beam of the display reaches each pixel.
 #[derive(Clone)]
 pub struct Beam {
-    /// The time for a field, a row of this field and a pixel of this row.
+    /// Function that returns the time at which the beam reaches a pixel. The arguments are the field, the row of the
+    /// field, and the pixel of the row.
     at: Arc<dyn Fn(PeriodNumber, u32, u32) -> Time + Send + Sync>,
     retrace: Arc<dyn Fn(PeriodNumber) -> Time + Send + Sync>,
 }
@@ -140,13 +141,10 @@ pub struct JitpConfig {
     pub renderers: Vec<NodeId>,
     /// Ring port of the frame buffer. The display is mono.
     pub frame_buffer: NodeId,
-    /// The parts in which a picture is drawn, and their order.
     pub schedule: DrawingSchedule,
-    /// The times at which the beam reaches each pixel.
     pub beam: Beam,
     /// Choice of the instant for which a part is drawn, such as the middle of the time in which the part lights.
     pub aim: Aim,
-    /// Use of the bits of a pixel's memory.
     pub layout: Layout,
     /// True if the run can compute pixels. If false, no command words are made, but all times stay the same.
     pub pixels: bool,

@@ -1,8 +1,3 @@
-//! CPU work of a slave between TRANSFORM and the drawing of a strip or a batch of blocks.
-//!
-//! The slave interpolates primitives, finds the primitives in each region, and lists the messages that draw these
-//! primitives.
-
 use pphigs::{PrimitiveCounts, StripInterpolation, WindowSearchWork};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_sim::Span;

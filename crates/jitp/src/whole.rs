@@ -1,5 +1,3 @@
-//! CPU work of TRANSFORM for the whole display list.
-
 use pphigs::{FrameView, MemoryPart, Picture, RegionBinning, Shading, Share, TransformCost, TriangleEndsRecorder};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};

@@ -101,7 +101,6 @@ impl PassStartWork {
         Self { chosen: chosen.map(Arc::from), ..self }
     }
 
-    /// Returns the structures of an eye that are drawn.
     fn begun<'a>(&'a self, placed: &'a [PlacedStructure]) -> impl Iterator<Item = &'a PlacedStructure> {
         let is_chosen = |number: usize| self.chosen.as_ref().is_none_or(|chosen| chosen.get(number) == Some(&true));
         let chosen = placed.iter().enumerate().filter(move |(number, _)| is_chosen(*number)).map(|(_, place)| place);

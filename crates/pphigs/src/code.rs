@@ -77,7 +77,6 @@ pub struct KernelOutput {
 }
 
 impl KernelOutput {
-    /// Returns the number of entries in all bins together.
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
@@ -440,7 +439,7 @@ impl Pass {
         self.picture().binning == RegionBinning::Touched
     }
 
-    /// Returns the words that all triangle commands have in common, from the encoding of a command with zeros.
+    /// Returns the words that all triangle commands have in common, found by encoding a command with zeros.
     pub(crate) fn heads(&self) -> Heads {
         let blank = match self.picture().shading {
             Shading::Gouraud | Shading::Precomputed => Command::Triangle(TriangleCommand::default()),

@@ -1,5 +1,5 @@
-//! Messages with renderer commands. A message states the kinds of its commands at once, but computes their words only
-//! when the words are read.
+//! Messages with renderer commands. The kinds of a message's commands are known from the start, but the words of the
+//! commands are computed only when the words are read.
 
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
@@ -123,7 +123,7 @@ impl Parts {
 impl Iterator for Parts {
     type Item = RegionPart;
 
-    /// Returns the next message, unless it would only select the region.
+    /// Returns the next message, or `None` if that message would only select the region.
     fn next(&mut self) -> Option<RegionPart> {
         if self.has_ended {
             return None;

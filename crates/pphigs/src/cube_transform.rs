@@ -35,7 +35,6 @@ pub struct CubeTransform<'a> {
 /// Result of TRANSFORM for six views, in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CubeTransformOutput {
-    /// Simulated time of all steps.
     pub span: Span,
     /// Simulated time of the steps before the first primitive, which is included in `span`.
     pub start_span: Span,

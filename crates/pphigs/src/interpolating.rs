@@ -26,13 +26,10 @@ const VIEW_BYTES: u32 = 4 * ENDS_VIEW_WORDS as u32;
 /// Work that records the corners of all triangles in two views, in a part of the board's memory.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleEndsRecorder<'a> {
-    /// Primitives of the graphics processor.
     pub share: &'a Share,
     /// Views at the start and at the end of a field.
     pub views: [&'a FrameView; 2],
-    /// Picture that the views show.
     pub picture: Picture,
-    /// Part of the board's memory for the records.
     pub part: MemoryPart,
 }
 
@@ -79,7 +76,6 @@ const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
 /// The result has commands and bounding boxes of the triangles near the strip, and of all spheres.
 #[derive(Clone, Copy, Debug)]
 pub struct StripInterpolation<'a> {
-    /// Primitives of the graphics processor.
     pub share: &'a Share,
     /// Views at the start and at the end of a field, in which a [`TriangleEndsRecorder`] has recorded the triangles.
     pub views: [&'a FrameView; 2],
@@ -94,7 +90,6 @@ pub struct StripInterpolation<'a> {
     /// First and last line of a range around the strip, in 1/16 px from the top of the frame. Triangles outside this
     /// range cannot touch the strip in any view between the two views.
     pub near: [i32; 2],
-    /// Picture that contains the strip.
     pub picture: Picture,
     /// Part of the board's memory with the [recorded corners](TriangleEndsRecorder).
     pub ends: MemoryPart,
@@ -165,7 +160,8 @@ impl StripInterpolation<'_> {
     }
 }
 
-/// Returns the matrix elements to interpolate. Projection matrices are left out, because both views have the same.
+/// Returns the matrix elements to interpolate. Projection matrices are left out, because both views have the same
+/// projection.
 fn elements(view: &FrameView) -> Vec<Word> {
     let of_eyes = view.eyes.iter().flat_map(|eye| [eye.world_to_eye, eye.head_to_eye]);
     let matrices = of_eyes.chain(view.edits.iter().map(|edit| edit.model));

@@ -12,13 +12,10 @@ pub(crate) const CODE: u32 = 0x1000;
 pub(crate) const SORT_CODE: u32 = 0xB000;
 /// Address of the code that edits and places structures before the first triangle of a pass.
 pub(crate) const BEGIN_CODE: u32 = 0xC000;
-/// Address of the code for spheres.
 pub(crate) const SPHERE_CODE: u32 = 0xE000;
-/// Address of the parameters of a triangle kernel.
 pub(crate) const PARAMETERS: u32 = 0x1_0000;
 /// Address of the table of bins. A kernel reads and updates the end of each bin in this table.
 pub(crate) const BIN_TABLE: u32 = 0x1_0200;
-/// Address of the parameters of a sphere kernel.
 pub(crate) const SPHERE_PARAMETERS: u32 = 0x1_0400;
 /// Address of the stack frame of a kernel. The stack frames of the clipper and of kernels/runs.s are below this
 /// address.

@@ -10,13 +10,11 @@ use std::sync::Arc;
 
 /// The host's message for one picture (SEND).
 pub trait Sent: Clone + Debug + PartialEq + 'static {
-    /// Returns the number of the picture.
     fn number(&self) -> PictureNumber;
 
     /// Returns the views of all eyes, with the edits of structures.
     fn view(&self) -> &FrameView;
 
-    /// Encodes the message as words.
     fn to_words(&self) -> Vec<Word>;
 
     /// Decodes the message, or returns `None` if the words are invalid.
@@ -27,7 +25,6 @@ pub trait Sent: Clone + Debug + PartialEq + 'static {
 ///
 /// A picture consists of one drawing for each eye. TRANSFORM, RENDER and COPY process one drawing after the other.
 pub trait Drawn: Clone + 'static {
-    /// The host's message for one picture.
     type Sent: Sent;
 
     /// Number of views of a drawing, such as the six faces of a cube. The regions of all views are numbered together:

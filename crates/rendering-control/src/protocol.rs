@@ -14,7 +14,8 @@ const TOKEN: Word = 6;
 const ACCEPTED: Word = 7;
 const EDITS_DONE: Word = 8;
 
-/// The token of a region, which passes from slave to slave. Its holder may send its bin of the region to a renderer.
+/// The token of a region, which passes from slave to slave. The slave that holds the token may send a bin of the region
+/// to a renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) drawing: Drawing,

@@ -40,7 +40,7 @@ impl Drawing {
     }
 }
 
-/// Progress of all stages: for each stage, the number of frames or drawings that have passed it.
+/// Progress of all stages: for each stage, the number of frames or drawings that have passed the stage.
 ///
 /// A drawing is the picture of one eye. Every stage processes frames and drawings in the order of their numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

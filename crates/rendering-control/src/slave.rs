@@ -14,7 +14,6 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Data that both programs of a slave use.
 #[derive(Debug)]
 struct SlaveState<S> {
     sent: VecDeque<S>,
@@ -168,7 +167,7 @@ impl<D: Drawn> Slave<D> {
         Ok(())
     }
 
-    /// Runs the interrupt program. It stores the host's pictures and the master's permissions, and it handles tokens.
+    /// Runs the interrupt program, which stores the host's pictures and the master's permissions, and handles tokens.
     async fn answer_messages(self) -> Result<(), Fault> {
         loop {
             let received = self.gp.next_message().await;
@@ -253,7 +252,8 @@ impl<D: Drawn> Slave<D> {
     }
 }
 
-/// Writes the vertices of a picture into the board's memory if they were displaced. This takes no simulated time.
+/// Writes the vertices of a picture into the board's memory if the vertices were displaced. The write takes no
+/// simulated time.
 fn place_vertices(gp: &Gp, share: &Share, installed: &mut Arc<DisplayList>) -> Result<(), Fault> {
     if !Arc::ptr_eq(installed, share.list()) {
         gp.install(|processor| share.install(processor))?;
@@ -269,7 +269,7 @@ struct TokenBin {
     view: usize,
     region: RegionId,
     envelope: RegionEnvelope,
-    /// Frame buffer of the region. Observers read from it for which eye the renderer draws.
+    /// Ring port of the region's frame buffer. Observers use the port to find the eye for which the renderer draws.
     frame_buffer: Option<NodeId>,
 }
 

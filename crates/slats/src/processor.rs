@@ -304,8 +304,8 @@ impl SlatsProcessor {
         if self.config.copy == CopySchedule::Backup { 1 - complete } else { 0 }
     }
 
-    /// Runs the program of the other graphics processors, which draw their share of each field that the first graphics
-    /// processor begins.
+    /// Runs the program of every graphics processor except the first. The program draws a share of each field that the
+    /// first graphics processor begins.
     async fn follow(self) -> Result<(), Fault> {
         loop {
             let (field, view) =

@@ -45,7 +45,6 @@ impl SpherePoint {
         })
     }
 
-    /// Returns the z component of the normal.
     pub(crate) fn normal_z(&self) -> i32 {
         self.upper_root(NORMAL_ROOT_BITS)
     }
