@@ -39,7 +39,6 @@ pub enum Viewpoint {
 pub enum DrawingSchedule {
     /// Strips of lines, from the top to the bottom of each field.
     Beam {
-        /// Choice of the instants for which the strips are drawn.
         viewpoint: Viewpoint,
         /// True if strips reach the frame buffer just before the beam. False if strips arrive one field earlier.
         racing: bool,
@@ -52,7 +51,6 @@ pub enum DrawingSchedule {
         block: u32,
         /// Number of blocks in one order to a slave.
         batch: u32,
-        /// The random order of the blocks.
         order: BlockOrder,
     },
 }

@@ -85,7 +85,6 @@ impl Part {
     }
 }
 
-/// Returns the messages that draw a region and copy it to the frame buffer.
 pub(crate) fn messages(
     config: &JitpConfig,
     drawing: &Arc<DrawnList>,

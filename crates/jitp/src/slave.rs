@@ -30,7 +30,6 @@ struct SlaveFields {
     ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
     /// Transformed fields, oldest first, with their parts of memory.
     transformed: VecDeque<(PeriodNumber, Field, MemoryPart)>,
-    /// Number of fields that were transformed in the run.
     n_transformed: usize,
 }
 

@@ -11,7 +11,6 @@ use pxpl5_wire::display::DisplayEvent;
 #[derive(Debug)]
 pub(crate) enum Event {
     Ring(RingEvent),
-    /// An output of the ring, such as a delivered message.
     FromRing(RingOutput),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),

@@ -19,7 +19,6 @@ pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Numbers {
     Given,
-    /// A dry run will find the parameters.
     ToBeTuned,
     /// A dry run has found the parameters. The first training data are for complete poses, the second for orientations.
     ///
@@ -308,7 +307,6 @@ impl Head {
         self.numbers == Numbers::ToBeTuned && self.predicts()
     }
 
-    /// Returns this head with a predictor that is tuned for a prediction interval in picoseconds.
     pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
         let tuned = self.tuning(interval_ps);
         Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training, None), ..self.clone() }

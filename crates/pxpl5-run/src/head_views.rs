@@ -55,7 +55,6 @@ pub(crate) struct Follower {
 }
 
 impl Follower {
-    /// Creates a follower of the reports whose times are `arrivals` and whose contents are `contents`.
     pub(crate) fn new(arrivals: Arrivals, contents: Contents, predictor: Box<dyn Predictor + Send>) -> Self {
         Self { arrivals: arrivals.peekable(), contents, predictor, newest: Newest::default() }
     }

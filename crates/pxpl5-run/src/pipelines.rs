@@ -48,7 +48,6 @@ fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     Err(SettingError::value("renderer.backing_bits", expected, found))
 }
 
-/// Returns the viewport of a picture that fills the first surface of the machine's display.
 fn whole_picture(record: &Record) -> Result<Viewport, SettingError> {
     let grid = record.display().surfaces().first().map_or(Viewport::FRAME.grid(), |surface| surface.grid());
     Viewport::new(grid, Lines::Frame)

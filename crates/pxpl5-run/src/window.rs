@@ -124,7 +124,6 @@ impl Window {
         self.sum.iter_mut().for_each(|sum| sum.take(results));
     }
 
-    /// Adds all remaining results of a run that ended in the period `reached`.
     pub(crate) fn close(
         mut self,
         experiment: &Experiment,

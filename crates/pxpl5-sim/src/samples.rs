@@ -96,7 +96,6 @@ impl IntoIterator for Samples {
     type Item = f64;
     type IntoIter = std::vec::IntoIter<f64>;
 
-    /// Iterates over the kept numbers.
     fn into_iter(self) -> Self::IntoIter {
         self.kept.into_iter()
     }

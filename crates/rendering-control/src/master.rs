@@ -58,7 +58,6 @@ impl<S> DrawingProgress<S> {
     }
 }
 
-/// Progress of RENDER for one drawing.
 #[derive(Debug)]
 struct RenderStage {
     drawing: Drawing,

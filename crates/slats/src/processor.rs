@@ -91,7 +91,6 @@ pub fn processor(
     })
 }
 
-/// The frame buffers of both eyes under [`CopySchedule::Backup`].
 #[derive(Clone, Copy, Debug)]
 struct Backup {
     frame_buffers: [NodeId; 2],
@@ -344,7 +343,6 @@ impl SlatsProcessor {
         self.gp.send_batch(messages.collect()).await;
     }
 
-    /// Draws this graphics processor's share of `field`.
     async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
         let number = PictureNumber::drawn_for(field);
         self.gp.begin_view(Stage::Sample, number, view.number);

@@ -12,7 +12,6 @@ pub(crate) enum Paint {
     Surface(Surface),
 }
 
-/// Normal and colour of a surface at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
     /// x, y and z of the normal, each in 12 bits.

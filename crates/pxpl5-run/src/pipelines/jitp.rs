@@ -233,7 +233,6 @@ impl PictureRules for Jitp {
         late_regions(display, record, end, |video, arrival| due(video, &arrival.target))
     }
 
-    /// Returns 1, because a picture is due in every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }

@@ -167,7 +167,6 @@ impl Pipeline for Slats {
         }
     }
 
-    /// Sets the times per primitive of the selected code version.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let Some(code) = self.code else { return config };
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
@@ -262,7 +261,6 @@ impl PictureRules for Slats {
         late_regions(display, record, end, due)
     }
 
-    /// Returns 1, because a picture is due in every field.
     fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }

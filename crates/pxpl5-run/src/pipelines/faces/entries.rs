@@ -80,7 +80,6 @@ fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
 const BY_LINE: &str = "the same, with an orientation for each line";
 const BY_PIXEL: &str = "the same, with an orientation for each pixel, as far as the host's connection can carry them";
 
-/// Creates a registry entry from a policy and a latch mode.
 macro_rules! entry {
     ($policy:ident, $latch:ident, $about:expr) => {
         entry((FacePolicy::$policy, Latch::$latch), $about, |settings| {

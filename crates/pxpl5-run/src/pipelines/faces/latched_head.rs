@@ -7,7 +7,6 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::display::{Aim, Display, LightTimes};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
-/// Returns the time span in which a field of a scan is lit.
 pub(crate) fn lights_of(scan: &FaceScan, field: PeriodNumber) -> LightTimes {
     let tick = scan.retrace(field);
     let top = FieldParity::of_field(field).first_line();

@@ -24,7 +24,6 @@ struct ObjectSphere {
     radius_m: f64,
 }
 
-/// Returns a sphere that contains a structure. Its centre is the middle of the structure's bounding box.
 fn sphere_around(list: &DisplayList, structure: &DisplayStructure) -> ObjectSphere {
     let corners = list.triangles[structure.triangles.clone()].iter().flatten();
     let points = corners.map(|corner| (list.positions[*corner as usize].as_dvec3(), 0.0));

@@ -167,7 +167,6 @@ impl FacePipeline {
         Ok(Faces { memories, picture, content, warped: WarpedLists::default() })
     }
 
-    /// Returns the function by which the host selects the next update of a display memory.
     fn plan(self, machine: &mut Machine, setup: &Setup) -> Result<Plan, SettingError> {
         let notes = Arc::new(RequestedUpdates::default());
         machine.attach(Arc::clone(&notes) as Arc<dyn Attachment>);

@@ -36,7 +36,6 @@ impl Updates {
         Self { setup, projection, notes, moving, sent: vec![0; memories], has_head_frame }
     }
 
-    /// Returns the newest view of the head for an update that the host sends now.
     pub(super) fn view(&self, number: PictureNumber, now: Time) -> FrameView {
         (self.setup.views)(ViewNumber::taken_for(number), now)
     }

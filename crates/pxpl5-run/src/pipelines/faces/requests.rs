@@ -27,7 +27,6 @@ pub struct RequestedUpdates(Mutex<Held>);
 
 #[derive(Debug, Default)]
 struct Held {
-    /// Number of updates that were requested so far, by display memory.
     asked: BTreeMap<usize, u64>,
     /// Updates that were not discarded, in order. Each entry begins with the number of earlier updates of the same
     /// display memory.
