@@ -151,7 +151,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Sends the next blocks and the newest view to each slave that has finished its blocks.
+    /// Sends the next blocks and the newest view to each slave that has finished its earlier blocks.
     async fn roam(&mut self, batch: u64) -> Result<(), Fault> {
         let slaves = self.config.slaves.len();
         self.state.done.borrow_mut().extend(0..slaves as u32);
@@ -182,7 +182,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
 }
 
 /// Expected times of a batch of blocks: from the order until the blocks are visible (`drawing`), and from then until
-/// newer blocks replace them (`standing`).
+/// newer blocks replace these blocks (`standing`).
 struct Expected {
     drawing: Span,
     standing: Span,

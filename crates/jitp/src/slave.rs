@@ -28,7 +28,7 @@ const OF_STRIP: MemoryPart = MemoryPart::of(PARTS_OF_FIELDS as usize, PARTS_OF_F
 struct SlaveFields {
     /// Fields that the master has ordered but that are not transformed yet, oldest first, with their views.
     ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
-    /// Transformed fields, oldest first, with their parts of memory.
+    /// Transformed fields, oldest first, each with the part of memory that holds the result.
     transformed: VecDeque<(PeriodNumber, Field, MemoryPart)>,
     n_transformed: usize,
 }

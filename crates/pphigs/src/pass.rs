@@ -174,7 +174,7 @@ impl BinningSink for BinFiller {
     }
 }
 
-/// A sink that collects the triangles that touch each region, if every region receives all triangles.
+/// A sink that collects the triangles that touch each region, for a pass in which every region receives all triangles.
 #[derive(Debug)]
 struct RegionTriangles {
     /// Triangles of each region, with their indices in the region's bin.

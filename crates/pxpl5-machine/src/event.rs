@@ -24,7 +24,8 @@ pub(crate) enum Event {
 }
 
 impl Event {
-    /// Returns true for events of displays, host lines and clocks. Such events occur even while all programs wait.
+    /// Returns true for events that occur even while all programs wait: events of displays, of clocks, and of host
+    /// lines (connections that bypass the ring).
     pub(crate) const fn is_of_displays(&self) -> bool {
         matches!(self, Self::Edge | Self::Tick(..) | Self::Display(..) | Self::HostLine(_))
     }

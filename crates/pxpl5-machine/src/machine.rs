@@ -48,8 +48,8 @@ pub struct Machine {
     /// True if boards run at every edge of their clock, because the optimization `IdleBoards` is disabled.
     every_edge: bool,
     failure: Option<RunError>,
-    /// Number of events in the current period of the first display, without the events of displays, host lines and
-    /// clocks.
+    /// Number of events in the current period of the first display, except events of displays, clocks, and host lines
+    /// (connections that bypass the ring).
     work_events: u64,
     /// Number of successive idle periods of the first display. [`DEADLOCK_TICKS`] defines an idle period.
     idle_ticks: u64,
@@ -66,7 +66,8 @@ struct Contexts {
 
 /// Number of idle periods of the first display after which a machine with waiting programs counts as deadlocked.
 ///
-/// In an idle period, only displays, host lines and clocks have events, and no other board has a pending event.
+/// In an idle period, only displays, clocks and [host lines](HostLine) have events, and no other board has a pending
+/// event.
 pub const DEADLOCK_TICKS: u64 = 120;
 
 /// Number of events that the start of a period causes on the first graphics processor: the retrace signal, and a poll
@@ -361,7 +362,7 @@ impl Machine {
         self.idle_ticks
     }
 
-    /// Returns true if only displays, host lines and clocks have pending events.
+    /// Returns true if only displays, clocks and [host lines](HostLine) have pending events.
     ///
     /// The start of a display period can still end the wait of a program.
     #[must_use]

@@ -63,7 +63,8 @@ impl Record {
         &self.renderers
     }
 
-    /// Returns the displays with their state at the end of the run. The first display is the sync generator.
+    /// Returns the displays with their state at the end of the run. The clock of the first display defines the periods
+    /// of the run.
     #[must_use]
     pub fn displays(&self) -> &[Box<dyn Display>] {
         &self.displays

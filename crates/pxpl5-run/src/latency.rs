@@ -70,7 +70,8 @@ impl LatencyParts {
     }
 }
 
-/// Divides the latency of a picture. `stages` must contain the stages of this picture only.
+/// Divides the latency of a picture into the parts of [`LATENCY_PARTS`]. `stages` must contain only the stages of this
+/// picture.
 pub(crate) fn parts(record: &Record, times: &PictureTimes, stages: &[StageSpan]) -> LatencyParts {
     let PictureTimes { picture, sampled_at, transform_at, shown_at, .. } = *times;
     let light = first_light(record, shown_at);
@@ -169,8 +170,8 @@ fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }
 
-/// Returns true if a SEND stage begins at `sampled_at`. Otherwise SEND counts its pictures in another way than the
-/// other stages, so the latency has no part for SEND.
+/// Returns true if a SEND stage begins at `sampled_at`. Otherwise the numbers of SEND differ from the picture numbers
+/// of all other stages, so the latency has no part for SEND.
 fn sent_for_it(stages: &[StageSpan], sampled_at: Option<Time>) -> bool {
     spans_of(stages, Stage::Send, None).any(|span| Some(span.begin) == sampled_at)
 }

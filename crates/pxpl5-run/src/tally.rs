@@ -81,7 +81,8 @@ pub struct SurfaceLatency<'a> {
     pub ms: &'a Samples,
 }
 
-/// The first and the last word of a copy: one eye under Rendering Control, half a field under Slats.
+/// The times of the first and the last word of a copy. A copy is one eye under Rendering Control, and half a field
+/// under Slats.
 struct CopySpan {
     begin: Time,
     end: Time,

@@ -39,7 +39,7 @@ impl<E, O> Context<E, O> {
         self.own.push((time, phase, event));
     }
 
-    /// Schedules an event for the same device at `span` after the current time, in phase `Work`.
+    /// Schedules an event for the same device at `span` after the current time, in the phase [`Phase::Work`].
     pub fn after(&mut self, span: Span, event: E) {
         self.schedule(self.now + span, Phase::Work, event);
     }

@@ -28,7 +28,7 @@ pub trait Drawn: Clone + 'static {
     type Sent: Sent;
 
     /// Number of views of a drawing, such as the six faces of a cube. The regions of all views are numbered together:
-    /// first the regions of view 0, then those of view 1, and so on.
+    /// first the regions of view 0, then the regions of view 1, and so on.
     const VIEWS: u16 = 1;
 
     /// True if the master announces each drawing to its frame buffer before COPY. The announcement lists the regions
@@ -124,7 +124,7 @@ pub struct RenderingControlConfig<D> {
     pub slaves: Vec<NodeId>,
     /// Ring ports of the renderers. There is at least one.
     pub renderers: Vec<NodeId>,
-    /// Kind of pictures, with the ring ports to which they are copied.
+    /// Kind of pictures, and the ring ports of the frame buffers that receive the pictures.
     pub drawn: D,
 }
 
@@ -141,7 +141,7 @@ impl<D: Drawn> RenderingControlConfig<D> {
         drawing.eye(self.drawn.eyes())
     }
 
-    /// Returns the share of the slave `index`: the triangles and spheres that it stores and transforms.
+    /// Returns the share of the slave `index`: the triangles and spheres that the slave stores and transforms.
     #[must_use]
     pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {
         Share::new(Arc::clone(list), index, self.slaves.len())

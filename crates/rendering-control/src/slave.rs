@@ -127,11 +127,11 @@ impl<D: Drawn> Slave<D> {
         Ok(sent)
     }
 
-    /// Performs TRANSFORM of a drawing: makes the commands of all triangles and spheres, and puts them into bins.
+    /// Performs TRANSFORM of a drawing: makes the commands of all triangles and spheres, and fills the bins.
     ///
-    /// If the bins do not fit into memory beside those of the previous drawing, TRANSFORM waits until RENDER has freed
-    /// them. The simulated program has the number of entries in advance. A real program would estimate this number from
-    /// the previous drawing.
+    /// If memory has no room for the bins beside the bins of the previous drawing, TRANSFORM waits until RENDER has
+    /// freed the older bins. The simulated program has the number of entries in advance. A real program would estimate
+    /// this number from the previous drawing.
     async fn transform(&self, share: &Share, sent: &Arc<D::Sent>, drawing: Drawing) -> Result<(), Fault> {
         let drawn = &self.config.drawn;
         let (picture, eye) = (self.config.picture_of(drawing), self.config.eye_of(drawing));

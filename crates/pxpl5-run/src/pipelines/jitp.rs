@@ -134,8 +134,8 @@ fn due(video: &Video, target: &CopyTarget) -> Time {
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
-/// Arrivals of a field's regions: number before the end of the field, number before the beam, and arrival time of the
-/// middle strip.
+/// Counts of a field's regions that arrived before the end of the field and before the beam, and the arrival time of
+/// the middle strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arrived {
     in_period: u32,

@@ -32,8 +32,8 @@ const WARPED: Word = 1 << 24;
 const HEADER: usize = 4;
 
 impl FaceUpdate {
-    /// Returns the two messages that announce the update to its display memory. They contain the list of regions that
-    /// will arrive, and the swap request.
+    /// Returns the two messages that announce the update to its display memory. The messages contain the list of
+    /// regions that will arrive, and the swap request.
     #[must_use]
     pub fn announcement(&self, face_texels: u32, regions: &[RegionId]) -> [Arc<[Word]>; 2] {
         let map = begin_update(face_texels, self.buffer, regions);

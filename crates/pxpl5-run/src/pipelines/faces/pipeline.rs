@@ -457,8 +457,8 @@ impl FacePipeline {
         }
     }
 
-    /// Connects the line that carries orientations from the host to the display. Every renderer of faces needs this
-    /// line.
+    /// Adds the connection that carries orientations from the host to the display. Every renderer of faces needs this
+    /// connection.
     fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {
         let link = setup.host.link_span(ORIENTATION_WORDS);
         if let Some(latched) = OrientationTiming::before(machine.record().display(), link, setup.aim) {

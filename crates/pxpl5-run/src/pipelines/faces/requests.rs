@@ -61,7 +61,7 @@ impl RequestedUpdates {
 }
 
 impl Attachment for RequestedUpdates {
-    /// Discards the updates that each display memory showed before its first swap in memory.
+    /// Discards the updates that each display memory showed before the first swap that the record still holds.
     fn discard(&self, record: &Record) {
         let ports = record.ports().display().iter();
         let first: Vec<u64> = ports.map(|port| record.observation().first_swap_held(*port)).collect();
