@@ -251,8 +251,8 @@ impl Slave {
 
     /// Finds the primitives in some regions and sends the messages that draw these regions, as one chain.
     ///
-    /// Several slaves use the same region memory of a renderer. The messages of a region therefore reserve the
-    /// renderer's port until the last message, so that no other slave can draw into the region.
+    /// Several slaves use the same region context (part of pixel memory) of a renderer. The messages of a region
+    /// therefore reserve the renderer's port until the last message, so that no other slave can draw into the region.
     async fn send(
         &self,
         picture: PictureNumber,

@@ -74,9 +74,10 @@ struct Found {
 
 /// A sink that counts primitives and does not store them.
 struct PrimitiveCounter {
-    /// Number of triangles for each region that touch only this region.
+    /// For each region, the number of triangles that touch only this region.
     alone: [u32; RegionMask::CAPACITY as usize],
-    /// Number of triangles for each region that also touch another region, and number of spheres that touch the region.
+    /// For each region, the number of triangles that also touch another region, and the number of spheres that touch
+    /// this region.
     counts: Vec<PrimitiveCounts>,
     on_screen: PrimitiveCounts,
     binning: RegionBinning,

@@ -45,8 +45,8 @@ struct Newest {
 
 /// A predictor that receives tracker reports as simulated time advances.
 ///
-/// The content of a report is computed only after its arrival, because the motion of an interactive head is unknown
-/// before.
+/// The content of a report is computed only after its arrival, because the motion can depend on a user's input during
+/// the run.
 pub(crate) struct Follower {
     arrivals: Peekable<Arrivals>,
     contents: Contents,

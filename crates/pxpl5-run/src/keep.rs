@@ -21,8 +21,8 @@ pub enum Keep {
     /// The run keeps the same data as under [`Keep::Statistics`], but messages may be recorded, and no streaming
     /// observer is used.
     ///
-    /// A page that displays a run for hours uses this choice. Pixel errors and messages are available only for the last
-    /// periods.
+    /// A web page that displays a run for hours uses this choice. Pixel errors and messages are available only for the
+    /// last periods.
     Recent,
 }
 

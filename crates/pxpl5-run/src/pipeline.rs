@@ -85,7 +85,8 @@ pub struct PictureTimes {
     pub shown_at: Time,
     /// Result of the picture: shown, late or incomplete.
     pub end: PictureResult,
-    /// Layer of the display that the picture replaces. 0 for a display that shows one picture at a time.
+    /// Layer of the display, such as a display memory, in which the picture replaces the last picture. 0 for a display
+    /// that shows one picture at a time.
     pub layer: usize,
 }
 

@@ -36,7 +36,7 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
 }
 
 /// Checks that a backing store of `renderer.backing_bits` bits holds one finished region, because a region without room
-/// can never be copied. The region takes `blocks` blocks of `renderer.kept_bits` bits.
+/// can never be copied. The region takes `blocks` times `renderer.kept_bits` bits.
 fn region_has_room(record: &Record, blocks: u64) -> Result<(), SettingError> {
     let renderer = &record.config().renderer;
     if renderer.backing_regions() >= blocks {

@@ -1,5 +1,5 @@
 //! Arrival times of a tracker's reports at the host. The times do not depend on the motion, so the times are known in
-//! advance even for an interactive head.
+//! advance, even if a user moves the head during the run.
 
 use pxpl5_sim::Time;
 use std::collections::VecDeque;

@@ -26,8 +26,8 @@ pub enum Body {
 /// A list of commands for a renderer, in order.
 #[derive(Clone, Debug)]
 pub struct CommandList {
-    /// Kinds of the commands, in order. Each run of successive commands of one kind forms one entry. The execution time
-    /// of the list depends only on these entries.
+    /// Kinds of the commands, in order. Successive commands of one kind form one entry. The execution time of the list
+    /// depends only on these entries.
     pub runs: Vec<CommandRun>,
     /// Region context on which all commands of this list work. A region context is a part of pixel memory.
     pub context: u8,

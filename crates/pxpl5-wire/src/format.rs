@@ -1,4 +1,4 @@
-//! Fixed-point formats of expression coefficients and of fields in pixel memory.
+//! Fixed-point formats of expression coefficients and of bit fields in pixel memory.
 //!
 //! All formats are **assumed**. The papers give the number of bits of pixel memory (208), the number of bits of a
 //! colour (24) and the time of a triangle. These figures fit a 24-bit Z and 8-bit colour components. The numbers of

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Declares a number type that counts from 0. Arithmetic combines only numbers of the same type. Text and data files
-/// contain only the number, without the name of its type.
+/// contain only the number, without the name of the type.
 macro_rules! count_from_zero {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*

@@ -82,7 +82,7 @@ struct RegionMaster<D: Drawn> {
     edited: usize,
     /// Drawings that the host has sent and that are not complete in a frame buffer, oldest first.
     under_way: VecDeque<DrawingProgress<D::Sent>>,
-    /// Number of drawings for each frame buffer that the host has sent so far.
+    /// For each frame buffer, the number of drawings that the host has sent so far.
     of_buffers: BTreeMap<NodeId, u64>,
     rendering: Option<RenderStage>,
     renderers: Vec<RendererUse>,

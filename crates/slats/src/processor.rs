@@ -22,8 +22,8 @@ pub const CLUMP: usize = 30;
 /// field follows.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 
-/// First word of a message from the first graphics processor to the others: begin a field. The number and the view of
-/// the field follow.
+/// First word of a message from the first graphics processor to the other graphics processors: begin a field. The
+/// number and the view of the field follow.
 const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
@@ -38,7 +38,7 @@ struct ProcessorState {
     bottom: Option<Bottom>,
     /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],
-    /// Number of graphics processors that have reported the end of their work for each unfinished field.
+    /// For each unfinished field, the number of graphics processors that have reported the end of their work.
     finished: Vec<(PeriodNumber, usize)>,
 }
 

@@ -13,8 +13,8 @@ use std::ops::Range;
 /// Returns the ideal picture of a display list for one eye of a view. `eye` is 0 for a single or left eye, 1 for a
 /// right eye.
 ///
-/// `picture` defines the lines, the shading and the layout of pixel memory. The fields `binning` and `pixels` of
-/// `picture` have no effect.
+/// `picture` defines the lines, the shading and the layout of pixel memory. `picture.binning` and `picture.pixels` have
+/// no effect.
 ///
 /// # Panics
 ///

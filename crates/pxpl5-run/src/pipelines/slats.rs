@@ -86,8 +86,8 @@ pub struct Slats {
 }
 
 impl Slats {
-    /// Creates the prototype with the papers' optimization of COPY (TR94). The lower half of a picture is copied while
-    /// the display already scans the upper half.
+    /// Creates the prototype with the split copy of TR94. The lower half of a picture is copied while the display
+    /// already scans the upper half.
     #[must_use]
     pub const fn split() -> Self {
         Self {
@@ -98,8 +98,7 @@ impl Slats {
         }
     }
 
-    /// Creates the prototype without the papers' optimization of COPY: both halves are copied before the retrace
-    /// (TR94).
+    /// Creates the prototype without the split copy: both halves are copied before the retrace (TR94).
     #[must_use]
     pub const fn whole() -> Self {
         Self { copy: CopySchedule::Whole, ..Self::split() }

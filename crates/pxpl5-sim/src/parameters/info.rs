@@ -25,7 +25,7 @@ crate::parameters::named!(Provenance, "provenance", Provenance::ALL);
 /// Unit, provenance, range and source of one parameter of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ParameterInfo {
-    /// Field name of the parameter within its table.
+    /// Name of the parameter within its table.
     pub name: &'static str,
     /// Unit of the value, the range and the limits. The unit "1" stands for a pure number.
     pub unit: &'static str,

@@ -149,7 +149,7 @@ pub struct RotationLatency {
     ///
     /// For latching by line or pixel, the host waits for this time before it predicts from the report.
     pub wait_for_latch: Span,
-    /// Time that a pixel takes through the stages of the display's pipeline.
+    /// Time that a pixel takes through the hardware of the display.
     pub pipeline: Span,
     /// Time from the lighting of the first pixel with the latched orientation to the lighting of this pixel.
     pub scan: Span,

@@ -14,7 +14,7 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
     scan: FaceScan,
-    /// Delay of a pixel through all stages of the display's pipeline.
+    /// Delay of a pixel in the hardware of the display.
     depth: Span,
     /// Time between two successive loads of the display's orientation register within a line.
     link: Span,
