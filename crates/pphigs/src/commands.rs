@@ -30,7 +30,7 @@ pub struct RegionEnvelope {
     /// True if the renderer computes the colours of all pixels at the end. Only pictures with Phong shading have a
     /// command for this step.
     pub shade: bool,
-    /// Copy of the region to the frame buffer at the end, if any.
+    /// Copy of the region to the frame buffer after its primitives, or `None` if the region is not copied.
     pub copy: Option<CopyOrder>,
 }
 

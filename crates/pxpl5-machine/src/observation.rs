@@ -34,7 +34,7 @@ impl Arrival {
 pub struct Swap {
     /// The surface whose visible buffer changes.
     pub surface: SurfaceId,
-    /// The port of the display that swapped. A surface may have several ports.
+    /// The ring port whose visible buffer changes. A surface may have several ports.
     pub port: NodeId,
     /// Number of earlier swaps at this port.
     pub number: u64,

@@ -24,9 +24,9 @@ pub struct SampledPose {
     pub number: ViewNumber,
     /// Instant of the request. The pose depends only on reports that had arrived by this instant.
     pub known: Time,
-    /// Time at which the newest used report was measured. `None` before the first report.
+    /// Measurement time of the newest report that the pose uses. `None` before the first report.
     pub measured_at: Option<Time>,
-    /// Time at which the newest used report arrived at the host. `None` before the first report.
+    /// Arrival time at the host of the newest report that the pose uses. `None` before the first report.
     pub arrived_at: Option<Time>,
     /// Instant for which the picture is drawn, chosen by the head's [`Aim`](crate::Aim). Moving objects are drawn at
     /// their positions at this instant.
