@@ -191,7 +191,8 @@ pub(crate) struct Next {
 }
 
 impl Next {
-    /// Returns the addresses for the next call, which the last call has left in the processor's registers.
+    /// Returns the addresses for the next call of the kernel. The last call has left these addresses in the processor's
+    /// registers.
     pub(crate) const fn left(self, processor: &Processor, keeps_boxes: bool) -> Self {
         let table = if keeps_boxes { processor.register(19) } else { self.table };
         Self { command: processor.register(18), table }
@@ -479,8 +480,8 @@ impl Pass {
     /// Returns the memory that a kernel needs for its output.
     ///
     /// The memory has room for the commands of all primitives in `given`, visible or not, and of the pieces of clipped
-    /// triangles. The kernel needs room for one more command, which it can discard. [`pxpl5_gp::Memory`] counts only
-    /// the commands of visible primitives.
+    /// triangles. The memory also has room for one more command that the kernel may write and then discard.
+    /// [`pxpl5_gp::Memory`] counts only the commands of visible primitives.
     pub(crate) fn needs(&self, kernel: Kernel, given: PrimitiveCounts) -> OutputSize {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries = (0..regions).map(|region| {

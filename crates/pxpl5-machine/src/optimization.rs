@@ -9,7 +9,8 @@ pub enum Optimization {
     /// If disabled, every processor and the arbiter of the ring check for work at every edge of the boards' 40 MHz
     /// clock. Renderers and frame buffers always sleep, because the end of a command is known when the command arrives.
     IdleBoards,
-    /// The ring computes the end of a message at its start. If disabled, every word on every channel is an event.
+    /// The ring computes the end of a message when the message starts. If disabled, every word on every channel is an
+    /// event.
     Transfers,
     /// The pixels of regions without primitives are computed once and reused.
     ///

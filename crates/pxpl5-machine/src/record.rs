@@ -16,7 +16,7 @@ use std::sync::Arc;
 ///
 /// The pipeline's programs write the data. The pipeline's results read the data with [`Record::attached`].
 pub trait Attachment: Any + Debug + Send + Sync {
-    /// Discards the data that only discarded observations need. By default, all data is kept.
+    /// Discards the data that belong only to discarded observations. By default, all data is kept.
     fn discard(&self, _record: &Record) {}
 }
 

@@ -10,8 +10,8 @@ use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::any::Any;
 use std::collections::BTreeMap;
 
-/// One millisecond, the step to which a prediction interval is rounded before tuning. A finer step changes the
-/// parameters of a filter by less than one per cent.
+/// One millisecond, the step to which a prediction interval is rounded before tuning. A finer step changes the tuned
+/// parameters by less than one per cent.
 const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 
 /// A streaming observer that collects the times at which views are shown, and the prediction intervals.
@@ -87,8 +87,9 @@ impl DryRunObserver {
 
     /// Returns each new picture with its successor, because the successor ends the display time of the picture.
     ///
-    /// For a display with several layers, only the first layer is timed. The first layer holds the structures that must
-    /// be drawn most often. The last picture of this layer is returned only when its successor is known.
+    /// For a display with several layers (display memories), only the first layer is timed. The first layer holds the
+    /// structures that must be drawn most often. The last picture of this layer is returned only when its successor is
+    /// known.
     fn timed(&mut self, results: &FinalResults<'_>) -> Vec<(PictureTimes, Option<PictureTimes>)> {
         let is_timed = |times: &&PictureTimes| times.layer == 0;
         let timed = results.pictures.iter().filter(is_timed).copied();

@@ -281,8 +281,8 @@ impl Experiment {
     /// Begins the evaluation of the run at the period `period` of the first display, or later if the warm-up takes
     /// longer.
     ///
-    /// With this setting, results of different pipelines cover the same periods, to within one interval between due
-    /// pictures.
+    /// With this setting, results of different pipelines cover the same periods, except for at most one interval
+    /// between due pictures.
     #[must_use]
     pub const fn results_from(mut self, period: PeriodNumber) -> Self {
         self.results_from = Some(period);

@@ -354,7 +354,7 @@ impl Head {
 
     /// Returns the training data from which the parameters for orientations were tuned separately, or `None`.
     ///
-    /// Only a display that turns pictures needs separate parameters.
+    /// Only a display that turns pictures by the newest orientation needs separate parameters.
     #[must_use]
     pub const fn training_of_turns(&self) -> Option<&Training> {
         if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }

@@ -238,7 +238,7 @@ impl HeadViews {
     /// Returns the distance, in metres, at which pixel errors are evaluated if the position of a pixel's content is
     /// unknown.
     ///
-    /// The default is the distance from the head's start to the centre of the scene, at least 0.1.
+    /// The default is the distance from the head's start to the centre of the scene, but at least 0.1 metres.
     #[must_use]
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();

@@ -50,8 +50,8 @@ impl Serialize for Statistics {
 impl Statistics {
     /// Returns the statistics in the form for reports and tables, without effects of rounding.
     ///
-    /// If the numbers differ by at most a picosecond, the deviation becomes 0. The mean lies between the minimum and
-    /// the maximum.
+    /// If the numbers differ by at most a picosecond, the deviation becomes 0. The mean is limited to the range from
+    /// the minimum to the maximum.
     #[must_use]
     pub fn told(self) -> Self {
         if self.n == 0 {

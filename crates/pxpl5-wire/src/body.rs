@@ -199,8 +199,8 @@ pub trait CommandWords: Debug + Send + Sync {
     fn append_words(&self, part: u32, out: &mut Vec<Word>);
 
     /// Passes the whole commands of message number `part` to `out`. An implementation may leave out primitives that
-    /// touch no pixel of the region. Each passed command that draws must set the Enable bits itself, because the
-    /// preceding command may have been left out.
+    /// touch no pixel of the region. The Enable bits select the pixels in which a command has an effect. Each passed
+    /// command that draws must set these bits itself, because the preceding command may have been left out.
     ///
     /// Returns true if the passed commands may contain a primitive. The default implementation passes all commands and
     /// returns true.

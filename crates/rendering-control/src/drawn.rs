@@ -77,7 +77,7 @@ pub trait Drawn: Clone + 'static {
         Vec::new()
     }
 
-    /// Returns a slave's share with the vertices of a picture. By default, all vertices stay in place.
+    /// Returns a slave's share with the vertices at their positions in a picture. By default, no vertex moves.
     fn placed(&self, share: &Share, _sent: &Self::Sent) -> Share {
         share.clone()
     }

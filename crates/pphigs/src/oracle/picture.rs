@@ -28,8 +28,8 @@ pub struct Tie<'a> {
 }
 
 impl IdealPicture {
-    /// Returns the image. If several primitives are nearest at a pixel, the image has the colour of the first in the
-    /// display list.
+    /// Returns the image. If several primitives are nearest at a pixel, the image has the colour of the primitive that
+    /// comes first in the display list.
     #[must_use]
     pub const fn image(&self) -> &RgbImage {
         &self.image

@@ -152,7 +152,7 @@ impl Raster<'_> {
     }
 }
 
-/// Returns the columns or rows that a triangle may cover, and one more at each end.
+/// Returns the columns or rows that a triangle may cover, plus one column or row at each end.
 ///
 /// `corners` are the positions of the triangle's corners in subpixels. Row r is line `first + r * step` of the frame.
 /// The picture has `count` rows.

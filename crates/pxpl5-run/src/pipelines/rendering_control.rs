@@ -203,8 +203,8 @@ impl PictureRules for RenderingControl {
     }
 }
 
-/// Returns the time to transfer all pixels of a surface. The busiest port decides, because the regions are assigned to
-/// the ports in turn.
+/// Returns the time to transfer all pixels of a surface. The regions are assigned to the ports in turn, so the port
+/// with the most pixels determines the time.
 fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {
     (0..ports).map(|port| port_span(record, surface, port, ports)).max().unwrap_or(Span::ZERO)
 }

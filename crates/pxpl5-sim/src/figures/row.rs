@@ -91,7 +91,7 @@ pub struct FigureRow {
     pub details: Vec<Detail>,
 }
 
-/// Returns the range of the values that differ from `middle` by at most `half`, as its lowest and highest value.
+/// Returns the lowest and the highest value that differ from `middle` by at most `half`.
 #[must_use]
 pub const fn around(middle: f64, half: f64) -> [f64; 2] {
     [middle - half, middle + half]

@@ -38,8 +38,8 @@ pub enum KeyValues {
     /// The key allows real numbers from the first number to the second number, inclusive.
     Real(f64, f64),
     Names(&'static [&'static str]),
-    /// The key allows texts of a form. The first part describes the form in words and may be empty. The second part
-    /// checks a text.
+    /// The key allows texts of a certain form. The first value describes the form in words and may be empty. The second
+    /// value checks a text.
     Text(&'static str, fn(&str) -> Result<(), SettingError>),
 }
 
@@ -83,7 +83,7 @@ pub struct Key {
     /// Unit of a number, or an empty text.
     pub unit: &'static str,
     /// Default value with its provenance, in words. Empty if the key has no default, if the default depends on the
-    /// pipeline, or if the about text states the default.
+    /// pipeline, or if [`Key::about`] states the default.
     pub default: &'static str,
     /// Paths of machine parameters that the key sets too. A user must not set both the key and one of these parameters.
     pub sets: &'static [&'static str],
