@@ -137,7 +137,7 @@ pub struct JitpConfig {
     pub slaves: Vec<NodeId>,
     /// Ring ports of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// Ring port of the frame buffer. The display is mono.
+    /// Ring port of the frame buffer. The pipeline draws for one eye only.
     pub frame_buffer: NodeId,
     pub schedule: DrawingSchedule,
     pub beam: Beam,
@@ -177,8 +177,8 @@ impl JitpConfig {
 
     /// Returns the number of the view for strip `strip` of a field.
     ///
-    /// If all strips share one view, its number is that of strip 0. The views for the start and the end of a field have
-    /// the numbers of strips 0 and 1.
+    /// If all strips share one view, the view has the number of strip 0. The views for the start and the end of a field
+    /// have the numbers of strips 0 and 1.
     #[must_use]
     pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
         ViewNumber(field.0 * VIEWS_PER_FIELD + strip)

@@ -9,7 +9,6 @@ pub(crate) struct StripSearchWork<'a> {
     /// The interpolation, or `None` if the display list was transformed for only one view.
     pub(crate) interpolating: Option<StripInterpolation<'a>>,
     pub(crate) met: PrimitiveCounts,
-    /// Time to interpolate one primitive, in nanoseconds, from the timing table.
     pub(crate) interpolate_ns: u64,
 }
 

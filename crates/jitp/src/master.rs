@@ -170,7 +170,6 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    /// Returns the instant for which the blocks of an order are drawn, if the master sends the order now.
     fn aimed_at_blocks(&self, expected: Expected) -> Time {
         let first = self.gp.now() + expected.drawing;
         let beam = &self.config.beam;
@@ -188,7 +187,6 @@ struct Expected {
     standing: Span,
 }
 
-/// Times of recent orders, from which the master estimates the times of the next order.
 struct OrderTimes {
     last_order_of: Vec<Option<Time>>,
     /// Times of the newest orders, oldest first. Together, these orders draw every block of the frame once.

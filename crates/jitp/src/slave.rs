@@ -233,7 +233,6 @@ impl Slave {
         }
     }
 
-    /// Draws the next blocks and asks the master for another order.
     async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) -> Result<(), Fault> {
         let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return Ok(()) };
         let viewport = self.config.extent(update).0;

@@ -10,7 +10,6 @@ use pxpl5_sim::Span;
 pub(crate) struct WholeList<'a> {
     pub(crate) share: &'a Share,
     pub(crate) pass: TransformCost,
-    /// One view, or the two views at the start and at the end of a field.
     pub(crate) views: &'a [FrameView],
     pub(crate) viewport: Viewport,
     pub(crate) layout: Layout,

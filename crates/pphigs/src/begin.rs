@@ -96,7 +96,6 @@ impl PassStartWork {
         Self { bins: 0, ..self }
     }
 
-    /// Limits the work to some structures. `chosen` has one entry for each structure.
     pub(crate) fn for_structures(self, chosen: Option<&[bool]>) -> Self {
         Self { chosen: chosen.map(Arc::from), ..self }
     }

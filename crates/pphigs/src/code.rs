@@ -155,7 +155,6 @@ impl Share {
     }
 }
 
-/// Memory for the output of a kernel for one view: bytes of all commands, and entries of each bin.
 pub(crate) struct OutputSize {
     commands: u32,
     entries: Vec<u32>,
@@ -325,7 +324,6 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// Executes the kernels for the primitives with a set bit in `marks`, or for all primitives if `marks` is `None`.
     pub(crate) fn run_kernels(
         &self,
         processor: &mut Processor,
@@ -360,7 +358,6 @@ impl Pass {
         Ok(KernelOutput { span, of_spheres, commands: places.commands..end, spheres, bins })
     }
 
-    /// Executes the triangle kernel. Returns the time, and the addresses for the next output.
     pub(crate) fn run_triangles(
         &self,
         processor: &mut Processor,
@@ -389,7 +386,6 @@ impl Pass {
         Ok((span, next))
     }
 
-    /// Executes the sphere kernel. Returns the time, and the addresses for the next output.
     pub(crate) fn run_spheres(
         &self,
         processor: &mut Processor,
@@ -457,12 +453,10 @@ impl Pass {
         words
     }
 
-    /// Returns each drawn structure with its range of triangles, among the triangles of the graphics processor.
     pub(crate) fn calls_of_triangles(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.triangles, Share::held_places)
     }
 
-    /// Returns each drawn structure with its range of spheres, among the spheres of the graphics processor.
     pub(crate) fn calls_of_spheres(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
         self.calls(|structure| &structure.spheres, Share::held_places_of_spheres)
     }
@@ -551,7 +545,6 @@ pub(crate) const fn sphere_kernel(kernel: Kernel) -> SphereKernel {
 
 pub(crate) type Programs<K> = LazyLock<Mutex<HashMap<K, Arc<Program>>>>;
 
-/// Returns the program of a kernel from the cache, assembled at its first use.
 pub(crate) fn kept<K: Copy + Eq + Hash>(
     programs: &Programs<K>,
     kernel: K,
@@ -564,7 +557,6 @@ pub(crate) fn kept<K: Copy + Eq + Hash>(
 /// Name and source of the code that calls a kernel for each group of successive marked primitives.
 const RUNS: (&str, &str) = ("runs", include_str!("../kernels/runs.s"));
 
-/// Returns the program of a triangle kernel with its clipper. `by_runs` adds the code for marked primitives.
 fn program(kernel: Kernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(Kernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), assembled)
@@ -583,7 +575,6 @@ fn assembled((kernel, by_runs): (Kernel, bool)) -> Program {
     }
 }
 
-/// Returns the program of a sphere kernel. `by_runs` adds the code for marked primitives.
 fn sphere_program(kernel: SphereKernel, by_runs: bool) -> Arc<Program> {
     static PROGRAMS: Programs<(SphereKernel, bool)> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, (kernel, by_runs), |(kernel, by_runs)| {

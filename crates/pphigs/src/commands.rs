@@ -73,7 +73,6 @@ struct RegionPart {
     clear: bool,
     triangles: Range<u32>,
     spheres: Range<u32>,
-    /// True if the message contains the commands after the primitives.
     ends: bool,
 }
 
@@ -449,7 +448,6 @@ enum SetupBatch<'a> {
     /// Triangles whose edges and planes are computed together. A triangle without area takes the place of an invisible
     /// triangle.
     Unclipped(&'a [BinEntry], &'a TriangleLanes<'a>),
-    /// A piece of a clipped triangle, in a batch of its own.
     Clipped(&'a BinEntry),
 }
 

@@ -1,5 +1,3 @@
-//! Encoders of triangle commands for each kind of shading.
-
 use crate::picture::{Picture, Shading};
 use pxpl5_renderer::{PhongTriangleEncoder, TriangleEncoder};
 

@@ -65,7 +65,6 @@ impl TriangleEndsRecorder<'_> {
     }
 }
 
-/// Returns the address of the first triangle, the number of triangles, and the address of the first record.
 const fn addresses(held: &Range<usize>, records: u32) -> [u32; 3] {
     let first = held.start as u32;
     [DISPLAY_LIST + first * TRIANGLE_BYTES, (held.end - held.start) as u32, records + first * RECORD_BYTES]
@@ -115,7 +114,6 @@ impl StripInterpolation<'_> {
         Ok(Some(blended + beginning + of_kernels))
     }
 
-    /// Interpolates the matrices of the eyes and of the edited structures between the two views.
     fn blend(&self, processor: &mut Processor, kernel: Kernel) -> Result<Span, ProcessorFault> {
         let [from, to] = self.views.map(elements);
         let [low, high] = [self.part_of_way.to_bits(), self.part_of_way.to_bits() >> 32].map(|word| word as Word);
@@ -168,7 +166,6 @@ fn elements(view: &FrameView) -> Vec<Word> {
     matrices.flat_map(|matrix| matrix.to_cols_array()).map(f32::to_bits).collect()
 }
 
-/// Returns one program with the code of all steps, and the kernel's clipper.
 pub(crate) fn program(kernel: Kernel) -> Arc<Program> {
     static PROGRAMS: Programs<Kernel> = LazyLock::new(Mutex::default);
     kept(&PROGRAMS, kernel, |kernel| {

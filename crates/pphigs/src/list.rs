@@ -1,5 +1,3 @@
-//! The display list and its division among the graphics processors (GPs).
-
 use crate::counts::PrimitiveCounts;
 use crate::placed::RecentViews;
 use crate::structure::DisplayStructure;
@@ -32,7 +30,8 @@ pub struct DisplayList {
     pub diffuse: f32,
     /// Background colour: red, green and blue.
     pub background: [u8; 3],
-    /// True if surfaces have no highlight. A highlight needs one eye direction for the whole picture.
+    /// True if surfaces have no highlight. A highlight needs one direction to the eye for the whole picture, which the
+    /// face of a cube does not have.
     pub is_matte: bool,
     /// Cache of placed structures, which all graphics processors share. Code that changes the list must empty this
     /// cache.
@@ -127,9 +126,7 @@ pub struct Share {
     pub(crate) list: Arc<DisplayList>,
     first: usize,
     step: usize,
-    /// Range of this share in the list of the graphics processor's triangles.
     triangles: Range<usize>,
-    /// Range of this share in the list of the graphics processor's spheres.
     spheres: Range<usize>,
 }
 

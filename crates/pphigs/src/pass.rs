@@ -11,10 +11,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// A triangle, or a piece of a clipped triangle, as an entry of a bin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BinEntry {
-    /// Index of the triangle in the display list.
     pub(crate) triangle: u32,
     /// Index of the piece of a clipped triangle, 0 for an unclipped triangle. `None` for an invisible triangle.
     pub(crate) piece: Option<u8>,
@@ -53,7 +51,6 @@ struct Walk {
 
 /// A receiver of the results of binning, in the order of the display list.
 trait BinningSink {
-    /// Takes a triangle that touches only one region.
     fn triangle_in(&mut self, region: RegionId, triangle: u32);
 
     /// Takes a triangle, or a piece of a clipped triangle, and the regions that the piece touches. Under

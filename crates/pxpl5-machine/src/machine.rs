@@ -51,7 +51,6 @@ pub struct Machine {
     /// Number of events in the current period of the first display, except events of displays, clocks, and host lines
     /// (connections that bypass the ring).
     work_events: u64,
-    /// Number of successive idle periods of the first display. [`DEADLOCK_TICKS`] defines an idle period.
     idle_ticks: u64,
     now: Time,
 }
@@ -281,8 +280,6 @@ impl Machine {
         self.failure.clone().map_or(Ok(taken), Err)
     }
 
-    /// Removes the next event from the queue and returns its time. Returns `None` if the event is not before `end`, or
-    /// if the machine has failed.
     fn takes_event_before(&mut self, end: Time) -> Option<Time> {
         if self.failure.is_some() {
             return None;
@@ -316,7 +313,6 @@ impl Machine {
         }
     }
 
-    /// Lets every processor and the arbiter of the ring check for work, and schedules the next clock edge.
     fn edge(&mut self, now: Time) {
         (0..self.processors.len()).for_each(|board| self.gp_event(now, board, GpEvent::Poll));
         self.ring_event(now, RingEvent::Arbitrate);

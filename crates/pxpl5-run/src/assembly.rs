@@ -124,7 +124,6 @@ pub fn check_coverage(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result
     )))
 }
 
-/// Checks that a recorded head motion has poses for the whole run.
 fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
     if let Some((from_ps, to_ps)) = head.motion.gap_ps(until.0) {
         return Err(ExperimentError::RecordingGap { from: Time(from_ps), to: Time(to_ps), run: until });

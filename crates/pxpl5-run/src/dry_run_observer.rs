@@ -142,7 +142,6 @@ impl DryRunObserver {
         }
     }
 
-    /// Adds the prediction interval of the orientation that the display uses in each period.
     fn take_turns(&mut self, results: &FinalResults<'_>, head: &HeadViews) {
         let FinalResults { pipeline, record, aim, until, .. } = *results;
         let periods = self.turned_to.until(until);

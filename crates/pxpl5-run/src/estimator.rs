@@ -61,7 +61,6 @@ pub struct Estimator {
 }
 
 enum Way {
-    /// One predictor receives all tracker reports in order of time.
     Following(Follower),
     /// One predictor receives all measurements of the tracker up to the requested instant.
     AtOnce(Follower),

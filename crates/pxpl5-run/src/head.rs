@@ -15,7 +15,6 @@ use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 
 pub(crate) type Moving = Arc<dyn Motion + Send + Sync>;
 
-/// Origin of a predictor's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Numbers {
     Given,
@@ -80,7 +79,6 @@ impl fmt::Debug for Head {
     }
 }
 
-/// Smallest and largest distance, in metres, at which pixel errors can be evaluated.
 const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
 
 impl Head {
@@ -236,7 +234,6 @@ impl Head {
         self.reports_of(Arc::clone(&self.motion))
     }
 
-    /// Returns the reports that [`Head::reporting`] has set, or else the tracker's reports about `motion`.
     fn reports_of(&self, motion: Moving) -> Contents {
         match &self.reports {
             Some(given) => Box::new(GivenReports { given: Arc::clone(given), next: 0 }),

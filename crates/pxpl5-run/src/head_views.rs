@@ -128,7 +128,6 @@ impl HeadViews {
         Self { head, scene: Arc::clone(scene), hmd, eyes, until, schedule, seen_times, base, start, state }
     }
 
-    /// Returns the functions for firmware: the view at a sample time, the view for a later instant, and report times.
     pub(crate) fn functions(this: &Arc<Self>) -> (Views, ViewsWanted, ReportTimes) {
         let [a, b, c] = [(); 3].map(|()| Arc::clone(this));
         (
@@ -210,7 +209,6 @@ impl HeadViews {
         Some(self.schedule().after(after)?.arrives)
     }
 
-    /// Converts a pose from the tracker's coordinates to the scene's coordinates, as [`HeadPlace`] defines.
     pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.start.position);

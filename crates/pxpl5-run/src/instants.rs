@@ -67,7 +67,6 @@ impl Instants {
         self.count += 1;
     }
 
-    /// Returns the instant with the number `number`, or `None` if the list does not contain this number.
     pub(crate) fn of(&self, number: u64) -> Option<Time> {
         let block = self.begins.partition_point(|begin| begin.at.number <= number);
         let Begin { mut at, mut next } = *self.begins.get(block.checked_sub(1)?)?;

@@ -123,7 +123,6 @@ pub(crate) const LATENCY_SURFACES: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)
 /// Function that returns the time of the event that ends a latency. The argument is the index of the eye.
 pub(crate) type End = fn(&Pair, usize) -> Time;
 
-/// The events that can end a latency, with name, definition and time.
 pub(crate) const ENDS: [(&str, &str, End); 3] = [
     ("end_of_copy", "the end of its COPY", |pair, surface| pair.copied_at[surface]),
     ("swap", "the retrace at which the frame is swapped in", |pair, _| pair.shown_at),

@@ -111,7 +111,6 @@ fn samples(record: &Record) -> impl Iterator<Item = &Mark> {
     record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample)
 }
 
-/// Returns the regions that arrived after the deadline `due`, in order of arrival.
 fn late_regions(
     display: &NtscDisplay,
     record: &Record,

@@ -45,14 +45,12 @@ impl ReportSchedule {
         self.from(Time(instant.0.saturating_add(1)))
     }
 
-    /// Returns the last report that arrives at `instant` or earlier.
     pub(crate) fn by(&mut self, instant: Time) -> Option<Coming> {
         self.read_until_after(instant);
         let there = self.known.partition_point(|coming| coming.arrives <= instant);
         self.known.get(there.checked_sub(1)?).copied()
     }
 
-    /// Discards the reports before the last report that had arrived at `instant`.
     pub(crate) fn discard_before(&mut self, instant: Time) {
         let Some(last) = self.by(instant) else { return };
         let earlier = self.known.partition_point(|coming| coming.arrives < last.arrives);

@@ -217,7 +217,6 @@ impl Tally {
         }
     }
 
-    /// Adds the times from the start of an eye's TRANSFORM on any slave to the swap that shows the picture.
     fn take_eye_swaps<'a>(&mut self, stages: &[StageSpan], complete: impl Iterator<Item = &'a PictureTimes>) {
         let shown: BTreeMap<PictureNumber, Time> = complete.map(|times| (times.picture, times.shown_at)).collect();
         let mut begins: BTreeMap<(PictureNumber, SurfaceId), Time> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! The event queue of the simulation. The first page of the crate's documentation states the order of events.
+//! The event queue of the simulation. The documentation of the crate states the order of events.
 
 use crate::heap::{Keyed, QuadHeap};
 use crate::{Time, mix};

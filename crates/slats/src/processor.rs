@@ -28,13 +28,11 @@ const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
 struct ProcessorState {
-    /// The newest view from the host, on the first graphics processor.
     newest: Option<FrameView>,
     /// Fields that this graphics processor must still draw. Empty on the first graphics processor.
     begun: VecDeque<(PeriodNumber, FrameView)>,
     /// Number of renderers that have reported the end of their copies since the newest copy order.
     copied: usize,
-    /// The copies of the bottom regions, which wait until all top regions are copied.
     bottom: Option<Bottom>,
     /// Index of the buffer with the last complete field, for even and for odd lines.
     complete: [u8; 2],

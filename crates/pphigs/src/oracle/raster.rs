@@ -1,5 +1,3 @@
-//! Ideal pictures of display lists, drawn primitive by primitive.
-
 use crate::oracle::picture::{DepthBuffer, IdealPicture};
 use crate::oracle::shade::{Paint, Surface, component, normal};
 use crate::oracle::sphere::SpherePoint;
@@ -125,7 +123,6 @@ impl Raster<'_> {
         self.widths.stored_depth(plane.at(x, y) as u32)
     }
 
-    /// Calls `sink` with the column and row of each pixel inside all three edges.
     fn inside(&self, outline: &Outline, edges: &[Linear; 3], mut sink: impl FnMut(i32, i32)) {
         let viewport = &self.picture.viewport;
         let grid = viewport.grid();
@@ -140,7 +137,6 @@ impl Raster<'_> {
         }
     }
 
-    /// Calls `sink` for each pixel of `regions`, which contain a sphere.
     fn around(&self, regions: RegionMask, mut sink: impl FnMut(i32, i32)) {
         let grid = self.picture.viewport.grid();
         for region in regions.iter() {

@@ -92,7 +92,6 @@ const MOST_BATCH: u64 = 64;
 /// is fixed, because the time of the code is unknown in advance.
 const BATCH_OF_CODE: u32 = 16;
 
-/// Returns the first time at or after `after` at which the display scans the region `target`.
 fn next_light(video: &Video, target: &CopyTarget, after: Time) -> Time {
     let now = video.field_at(after);
     let reached = now.until(now.after(3)).filter_map(|field| video.reaches(target, field)).find(|at| *at >= after);

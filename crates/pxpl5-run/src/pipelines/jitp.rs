@@ -99,7 +99,6 @@ fn beam(video: Video) -> Beam {
     Beam::new(at, move |field| video.retrace(field))
 }
 
-/// Returns the cost of TRANSFORM, in which each slave transforms the whole display list.
 pub(super) fn whole_pass(setup: &Setup) -> TransformCost {
     TransformCost::pass_over(&setup.list, Share::new(Arc::clone(&setup.list), 0, 1).counts())
 }
@@ -128,7 +127,6 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     }
 }
 
-/// Returns the deadline of a region: the time at which the display scans the region's first pixel.
 fn due(video: &Video, target: &CopyTarget) -> Time {
     let field = target.picture.period_drawn_for();
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))

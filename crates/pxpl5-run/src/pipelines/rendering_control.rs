@@ -192,7 +192,6 @@ impl PictureRules for RenderingControl {
         "the time of COPY determines how often a frame is due: once in the number of periods that the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); a frame is shown when it is swapped in"
     }
 
-    /// Returns the index of the eye. The copy of each eye is timed separately.
     fn copy_part(&self, arrival: &Arrival) -> u8 {
         arrival.surface.0 as u8
     }
@@ -209,7 +208,6 @@ fn copy_span(record: &Record, surface: &Surface, ports: u16) -> Span {
     (0..ports).map(|port| port_span(record, surface, port, ports)).max().unwrap_or(Span::ZERO)
 }
 
-/// Returns the time to transfer every `ports`-th region of a surface, beginning with the region `first`.
 fn port_span(record: &Record, surface: &Surface, first: u16, ports: u16) -> Span {
     let timing = record.ring().timing();
     let grid = surface.grid();

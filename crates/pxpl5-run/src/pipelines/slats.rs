@@ -308,7 +308,6 @@ impl Copied {
     }
 }
 
-/// The buffers that each eye's frame buffer has shown, for runs of [`Slats::backup`].
 struct Backup {
     /// First period and buffer of each swap, in order, for each eye.
     swaps: [Vec<(PeriodNumber, u8)>; 2],
@@ -336,7 +335,6 @@ impl Backup {
     }
 }
 
-/// Returns the deadline of a region: the retrace, or the time at which the beam reaches the region.
 fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
     let field = target.picture.period_drawn_for();
     let retrace = video.retrace(field);

@@ -159,10 +159,9 @@ impl FigureRow {
     /// Returns true if the model cannot reproduce the published value with any values of the unpublished parameters. In
     /// this case, a rule of the model is wrong.
     ///
-    /// The values that the model can reach are the interval of the analytic level, extended on both sides. The
-    /// extension is the distance between `analytic` and `simulated`. The two levels may differ as much at the ends of
-    /// the ranges as at the presets. The published value is compared with its printed range, or with its last digit if
-    /// no range is printed.
+    /// The model can reach the interval of the analytic level. The interval is extended on both sides by the distance
+    /// between `analytic` and `simulated`. The two levels may differ by this distance at all values of the parameters.
+    /// The published value is compared with its printed range, or with its last digit if no range is printed.
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
         let Some([low, high]) = self.interval else { return false };

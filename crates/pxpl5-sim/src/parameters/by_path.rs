@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Parameter {
     /// Prefix of the table and name of the parameter, such as `ring.word_ns`.
     pub path: String,
-    /// Unit, provenance, range and source.
+    /// Unit, provenance, range and source of the parameter.
     #[serde(flatten)]
     pub info: ParameterInfo,
     /// Value in the unit that the table states.

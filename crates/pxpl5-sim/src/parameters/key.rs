@@ -1,5 +1,3 @@
-//! Keys: settings with a name, allowed values, a unit, a default and an explanation.
-
 use crate::parameters::SettingError;
 use std::fmt;
 use std::sync::Arc;
@@ -90,7 +88,7 @@ pub struct Key {
 }
 
 impl Key {
-    /// Creates a key without a unit and a stated default.
+    /// Creates a key that states no unit and no default.
     #[must_use]
     pub const fn new(name: &'static str, about: &'static str, values: KeyValues) -> Self {
         Self { name, about, values, unit: "", default: "", sets: &[] }

@@ -93,7 +93,6 @@ pub(super) fn seen_next(setup: &Setup, scan: FaceScan) -> Setup {
     Setup { views: Arc::new(views), ..setup.clone() }
 }
 
-/// A policy that draws the whole scene into display memory 0 in every cycle.
 pub(super) struct All {
     pub(super) structures: Arc<[bool]>,
 }

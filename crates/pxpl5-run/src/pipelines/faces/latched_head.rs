@@ -82,7 +82,6 @@ impl OrientationTiming {
         (self.sent(loaded), aimed)
     }
 
-    /// Returns the time at which the host sends the orientation that is in the register at the time `loaded`.
     fn sent(&self, loaded: Time) -> Time {
         Time(loaded.0.saturating_sub(self.link.0))
     }

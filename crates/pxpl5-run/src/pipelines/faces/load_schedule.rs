@@ -87,14 +87,11 @@ impl LoadSchedule {
         self.aim.instant(&light)
     }
 
-    /// Returns the first pixel of a line that can use the load with the index `number` of the display's orientation
-    /// register.
     fn first_pixel(&self, line: u32, number: u32, field: PeriodNumber) -> u32 {
         let from = self.light(0, line, field) + self.link * u64::from(number);
         partition(self.scan.width() - 1, |x| self.light(x, line, field) < from)
     }
 
-    /// Returns the first load of the display's orientation register that is complete after an instant.
     pub(crate) fn next(&self, after: Time) -> Load {
         let mut field = self.scan.field_at(after);
         loop {

@@ -108,7 +108,6 @@ impl FaceLens {
         }
     }
 
-    /// Returns the lens as text for an experiment file, or `None` for the lens of the display.
     fn text(self) -> Option<String> {
         match self.lens()? {
             Lens::Radial { k1, k2: 0.0 } => Some(format!("radial:{k1}")),
@@ -395,7 +394,6 @@ impl Pipeline for FacePipeline {
 }
 
 impl PictureRules for FacePipeline {
-    /// Returns the updates of all display memories, in the order in which they are shown.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let Ok(display) = display_of(record) else { return Vec::new() };
         let ports = record.ports().display().iter().take(display.config().timing.display_memories as usize);
@@ -491,7 +489,6 @@ fn matte(list: &DisplayList) -> DisplayList {
     DisplayList { is_matte: true, recent: RecentViews::default(), ..list.clone() }
 }
 
-/// Returns the times of an update that was drawn without delay.
 const fn drawn_at_once(shown: Shown) -> PictureTimes {
     let drawn = shown.first_region_at;
     PictureTimes {

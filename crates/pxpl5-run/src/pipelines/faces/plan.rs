@@ -14,7 +14,6 @@ use rendering_control::cube::{FaceUpdate, FaceWarp};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Function that returns the next action of a host, when the host is ready for an update.
 pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> HostAction<FaceUpdate>>;
 
 pub(super) struct Updates {
@@ -92,7 +91,6 @@ pub(super) struct Due {
     pub(super) warp: Option<FaceWarp>,
 }
 
-/// Returns the position of an eye from its world-to-eye matrix.
 pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     let matrix = world_to_eye.as_dmat4();
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
@@ -131,7 +129,6 @@ impl Full {
     }
 }
 
-/// A policy that selects the display memories to redraw at the beginning of a cycle.
 pub(super) trait DuePolicy {
     /// Returns the display memories to redraw, in the order of sending. The first memory gets the update number
     /// `number`.

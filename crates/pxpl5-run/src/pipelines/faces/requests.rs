@@ -1,5 +1,3 @@
-//! Record of the cube-face updates that a host has requested.
-
 use pxpl5_machine::{Attachment, Record};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};

@@ -159,7 +159,6 @@ fn appended<T>(all: &mut Vec<T>, more: impl Iterator<Item = T>) -> Range<usize> 
     first..all.len()
 }
 
-/// Returns the vertex at which a cut crosses an edge.
 fn between(vertices: &[Vertex], place: DVec3, made: &CutVertex) -> Vertex {
     let [from, to] = made.between.map(|i| vertices[i as usize]);
     let share = made.share as f32;
