@@ -169,8 +169,8 @@ fn last_surface(stages: &[StageSpan]) -> Option<SurfaceId> {
     stages.iter().filter(|span| span.stage == Stage::Transform).filter_map(|span| span.surface).max()
 }
 
-/// Returns true if a SEND stage begins at `sampled_at`. Otherwise the numbers of SEND differ from the picture numbers
-/// of all other stages, so the latency has no part for SEND.
+/// Returns true if a SEND stage begins at `sampled_at`. In some pipelines, the numbers of SEND count messages instead
+/// of pictures. The latency then has no part for SEND.
 fn sent_for_it(stages: &[StageSpan], sampled_at: Option<Time>) -> bool {
     spans_of(stages, Stage::Send, None).any(|span| Some(span.begin) == sampled_at)
 }

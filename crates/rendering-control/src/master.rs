@@ -9,7 +9,7 @@ use pxpl5_wire::{Body, CopyOrder, CopyPath, CopyTarget, NodeId, PictureNumber, R
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-/// Use of a renderer, which the master infers from messages.
+/// State of a renderer, which the master infers from messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RendererUse {
     Idle,
