@@ -1,5 +1,3 @@
-//! CPU work of assembling the master's orders.
-
 use crate::protocol::DrawingOrder;
 use pphigs::{TransformCost, assemble_order};
 use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};

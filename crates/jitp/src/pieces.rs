@@ -25,7 +25,6 @@ fn line_of_row(viewport: &Viewport, row: i32) -> i32 {
     viewport.first_line() as i32 + row * viewport.line_step() as i32
 }
 
-/// The content of one of the messages that draw a region.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Part {
     first: bool,
@@ -85,7 +84,6 @@ impl Part {
     }
 }
 
-/// Returns the messages that draw a region and copy it to the frame buffer.
 pub(crate) fn messages(
     config: &JitpConfig,
     drawing: &Arc<DrawnList>,
@@ -134,7 +132,6 @@ struct RegionWords {
     origin: SelectRegion,
     target: CopyTarget,
     parts: Vec<Part>,
-    /// Words of the commands of all triangles and of all spheres, computed at the first use.
     primitives: OnceLock<[Vec<Word>; 2]>,
 }
 

@@ -1,5 +1,3 @@
-//! The display list and its division among the graphics processors (GPs).
-
 use crate::counts::PrimitiveCounts;
 use crate::placed::RecentViews;
 use crate::structure::DisplayStructure;
@@ -14,7 +12,6 @@ use std::sync::Arc;
 pub struct DisplayList {
     /// Positions of the vertices, in the coordinates of their structure.
     pub positions: Vec<Vec3>,
-    /// Normals of the vertices.
     pub normals: Vec<Vec3>,
     /// Colours of the vertices: red, green and blue.
     pub colours: Vec<[u8; 3]>,
@@ -24,7 +21,8 @@ pub struct DisplayList {
     pub spheres: Vec<WorldSphere>,
     /// Structures. The ranges of triangles and of spheres of successive structures follow each other without gaps.
     pub structures: Vec<DisplayStructure>,
-    /// Unit vector towards the light source, in the room or, for structures that move with the head, in the head.
+    /// Unit vector towards the light source: in head coordinates for structures that move with the head, otherwise in
+    /// room coordinates.
     pub towards_light: Vec3,
     /// Fraction of the colour that is visible without the light, 0 to 1.
     pub ambient: f32,
@@ -32,7 +30,8 @@ pub struct DisplayList {
     pub diffuse: f32,
     /// Background colour: red, green and blue.
     pub background: [u8; 3],
-    /// True if surfaces have no highlight. A highlight needs one eye direction for the whole picture.
+    /// True if surfaces have no highlight. A highlight needs one direction to the eye for the whole picture, which the
+    /// face of a cube does not have.
     pub is_matte: bool,
     /// Cache of placed structures, which all graphics processors share. Code that changes the list must empty this
     /// cache.
@@ -127,9 +126,7 @@ pub struct Share {
     pub(crate) list: Arc<DisplayList>,
     first: usize,
     step: usize,
-    /// Range of this share in the list of the graphics processor's triangles.
     triangles: Range<usize>,
-    /// Range of this share in the list of the graphics processor's spheres.
     spheres: Range<usize>,
 }
 
@@ -155,7 +152,6 @@ impl Share {
         Self { list, first: index, step: of, triangles, spheres }
     }
 
-    /// Returns the whole display list.
     #[must_use]
     pub fn list(&self) -> &Arc<DisplayList> {
         &self.list
@@ -168,7 +164,6 @@ impl Share {
         Self { list, ..self.clone() }
     }
 
-    /// Returns the numbers of primitives in the share.
     #[must_use]
     pub fn counts(&self) -> PrimitiveCounts {
         PrimitiveCounts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
@@ -202,7 +197,6 @@ impl Share {
         })
     }
 
-    /// Returns a share without primitives.
     #[must_use]
     pub fn nothing(&self) -> Self {
         Self { triangles: 0..0, spheres: 0..0, ..self.clone() }

@@ -1,5 +1,3 @@
-//! Names of boards, and descriptions of their events.
-
 use pxpl5_sim::Time;
 use pxpl5_sim::parameters::SettingError;
 use std::fmt;

@@ -1,5 +1,3 @@
-//! Configuration of a machine: boards, displays and all timing parameters.
-
 use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
@@ -124,7 +122,6 @@ impl MachineConfig {
         all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()
     }
 
-    /// Returns true for parameters of pipelines and of the i860, which names of experiments may omit.
     fn is_implied(&self, parameter: &Parameter) -> bool {
         let table = parameter.path.rsplit_once('.').map(|(table, _)| table);
         let of_i860 = self.i860.tables().map(|(name, _)| name);

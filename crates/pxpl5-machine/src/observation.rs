@@ -34,7 +34,7 @@ impl Arrival {
 pub struct Swap {
     /// The surface whose visible buffer changes.
     pub surface: SurfaceId,
-    /// The port of the display that swapped. A surface may have several ports.
+    /// The ring port whose visible buffer changes. A surface may have several ports.
     pub port: NodeId,
     /// Number of earlier swaps at this port.
     pub number: u64,
@@ -138,7 +138,8 @@ impl Observation {
 
     /// Returns the period in which each frame was first visible on all of the first `surfaces` surfaces.
     ///
-    /// The key counts the swaps of each surface from 0. Frames with discarded swaps are missing.
+    /// A key of the map is the number of a swap, which counts from 0 on each surface. Frames with discarded swaps are
+    /// missing.
     #[must_use]
     pub fn frames(&self, surfaces: usize) -> BTreeMap<u64, PeriodNumber> {
         let of = |surface| self.swaps_of(surface).map(|swap| (swap.number, swap.tick));

@@ -87,8 +87,8 @@ impl Traffic {
         self.transfers.extend(announced.map(|transfer| Transfer { end, ..transfer }));
     }
 
-    /// Records a message whose words arrive without a gap. The first word arrived before `end` by the time of all
-    /// words. `word` is the time of one word.
+    /// Records a message whose words arrive without a gap. `end` is the arrival of the last word, and `word` is the
+    /// time of one word.
     pub(crate) fn deliver(&mut self, message: &Message, end: Time, word: Span) {
         let begin = Time(end.0.saturating_sub((word * u64::from(message.words)).0));
         self.transfers.push(transfer(message, begin, end));

@@ -6,11 +6,11 @@ use pxpl5_sim::Time;
 /// Number of entries from one `Begin` to the next. A lookup decodes at most this number of entries.
 const BLOCK: u64 = 256;
 
-/// A compressed list of instants. Each instant has a number, such as the number of its view. The numbers ascend.
+/// A compressed list of instants. Each instant has a number, such as the number of its view, and the numbers ascend.
 ///
-/// Each entry stores the number of skipped numbers before it, and the difference from an expected instant. A step is
-/// the difference of two successive instants. The expected instant is the last instant plus the step before the last
-/// step. The difference is therefore 0, in one byte, if two steps alternate, for example two and three periods.
+/// An entry stores how many numbers were skipped before it, and the difference between its instant and an expected
+/// instant. A step is the difference of two successive instants. The expected instant is the last instant plus the
+/// second last step. If two steps alternate, for example two and three periods, the difference is 0 and takes one byte.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Instants {
     written: Vec<u8>,
@@ -26,7 +26,8 @@ struct Begin {
     next: usize,
 }
 
-/// A decoded entry: number, instant in picoseconds, and the last two steps before it, the older first.
+/// A decoded entry: number, instant in picoseconds, and the last two differences of successive instants, the older
+/// difference first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct At {
     number: u64,
@@ -66,7 +67,6 @@ impl Instants {
         self.count += 1;
     }
 
-    /// Returns the instant with the number `number`, or `None` if the list does not contain this number.
     pub(crate) fn of(&self, number: u64) -> Option<Time> {
         let block = self.begins.partition_point(|begin| begin.at.number <= number);
         let Begin { mut at, mut next } = *self.begins.get(block.checked_sub(1)?)?;

@@ -1,5 +1,3 @@
-//! A cache of tuned predictors, which several runs share.
-
 use crate::fingerprint::Fingerprint;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -20,8 +18,8 @@ pub struct Tunings {
 }
 
 impl Tunings {
-    /// Returns the tuned predictor from the cache, or tunes it. Threads that request the same predictor wait for one
-    /// result.
+    /// Returns the tuned predictor from the cache. If the cache does not contain the predictor, tunes the predictor
+    /// first. Threads that request the same predictor wait for one result.
     pub(crate) fn tuned(
         &self,
         motion: &(dyn Motion + Send + Sync),

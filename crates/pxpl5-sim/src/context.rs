@@ -35,12 +35,11 @@ impl<E, O> Context<E, O> {
         self.now
     }
 
-    /// Schedules an event for the same device.
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
         self.own.push((time, phase, event));
     }
 
-    /// Schedules an event for the same device at `span` after the current time, in phase `Work`.
+    /// Schedules an event for the same device at `span` after the current time, in the phase [`Phase::Work`].
     pub fn after(&mut self, span: Span, event: E) {
         self.schedule(self.now + span, Phase::Work, event);
     }
@@ -107,7 +106,6 @@ impl<E, O> TestBench<E, O> {
         &mut self.queue
     }
 
-    /// Schedules an event for the device.
     pub fn feed(&mut self, time: Time, phase: Phase, event: E) {
         self.queue.schedule(time, phase, event);
     }

@@ -7,7 +7,6 @@ pub(crate) trait Keyed: Copy {
     fn key(&self) -> u128;
 }
 
-/// A priority queue that returns the element with the least key first.
 #[derive(Debug)]
 pub(crate) struct QuadHeap<T> {
     items: Vec<T>,

@@ -1,4 +1,4 @@
-//! The event queue of the simulation. The first page of the crate's documentation states the order of events.
+//! The event queue of the simulation. The documentation of the crate states the order of events.
 
 use crate::heap::{Keyed, QuadHeap};
 use crate::{Time, mix};
@@ -197,7 +197,6 @@ impl<E> EventQueue<E> {
         self.events.iter().flatten().chain(&self.soon)
     }
 
-    /// Returns the time of the next event, or `None` if the queue is empty.
     #[must_use]
     pub fn next_time(&self) -> Option<Time> {
         if !self.soon.is_empty() {
@@ -229,13 +228,11 @@ impl<E> EventQueue<E> {
         self.popped
     }
 
-    /// Returns the number of waiting events.
     #[must_use]
     pub fn len(&self) -> usize {
         self.heap.len() + self.near.len() + self.soon.len()
     }
 
-    /// Returns true if no event waits.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

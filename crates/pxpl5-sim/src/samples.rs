@@ -37,7 +37,6 @@ impl Samples {
         Self { kept: Vec::new(), limit, moments: None }
     }
 
-    /// Adds a number to the collection.
     pub fn push(&mut self, value: f64) {
         if let Some(moments) = &mut self.moments {
             moments.push(value);
@@ -56,7 +55,6 @@ impl Samples {
         self.moments.as_ref().map_or(self.kept.len() as u64, |moments| moments.n)
     }
 
-    /// Returns the statistics of all added numbers.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         self.statistics_in(1.0)
@@ -98,7 +96,6 @@ impl IntoIterator for Samples {
     type Item = f64;
     type IntoIter = std::vec::IntoIter<f64>;
 
-    /// Iterates over the kept numbers.
     fn into_iter(self) -> Self::IntoIter {
         self.kept.into_iter()
     }

@@ -1,5 +1,3 @@
-//! Mean and spread of a list of numbers.
-
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -9,18 +7,14 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// null.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Statistics {
-    /// Count of numbers in the list.
     pub n: u64,
-    /// Mean of the list: the sum of the numbers divided by their count. NaN for an empty list.
     #[serde(deserialize_with = "number_or_nan")]
     pub mean: f64,
     /// Sample standard deviation, with n - 1 as divisor. NaN for fewer than two numbers.
     #[serde(deserialize_with = "number_or_nan")]
     pub sd: f64,
-    /// Smallest number of the list. NaN for an empty list.
     #[serde(deserialize_with = "number_or_nan")]
     pub min: f64,
-    /// Largest number of the list. NaN for an empty list.
     #[serde(deserialize_with = "number_or_nan")]
     pub max: f64,
 }
@@ -56,8 +50,8 @@ impl Serialize for Statistics {
 impl Statistics {
     /// Returns the statistics in the form for reports and tables, without effects of rounding.
     ///
-    /// If the numbers differ by at most a picosecond, the deviation becomes 0. The mean lies between the minimum and
-    /// the maximum.
+    /// If the numbers differ by at most a picosecond, the deviation becomes 0. The mean is limited to the range from
+    /// the minimum to the maximum.
     #[must_use]
     pub fn told(self) -> Self {
         if self.n == 0 {
@@ -99,10 +93,8 @@ impl Statistics {
 /// Statistics together with the definition of their numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DefinedStatistics {
-    /// Statistics of the numbers that `definition` describes.
     #[serde(flatten)]
     pub statistics: Statistics,
-    /// Definition of the numbers, in a sentence.
     pub definition: String,
 }
 

@@ -16,7 +16,6 @@ pub struct Time(pub u64);
 pub struct Span(pub u64);
 
 impl Time {
-    /// The start of simulated time.
     pub const ZERO: Self = Self(0);
 
     /// The end of simulated time (213 days), which no simulation reaches.
@@ -32,13 +31,11 @@ impl Time {
 impl Span {
     pub const ZERO: Self = Self(0);
 
-    /// Makes a duration of `ns` nanoseconds.
     #[must_use]
     pub const fn from_ns(ns: u64) -> Self {
         Self(ns.saturating_mul(1_000))
     }
 
-    /// Makes a duration of `us` microseconds.
     #[must_use]
     pub const fn from_us(us: u64) -> Self {
         Self(us.saturating_mul(1_000_000))

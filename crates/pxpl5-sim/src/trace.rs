@@ -38,7 +38,6 @@ impl TraceHash {
 impl FromStr for TraceHash {
     type Err = ParseIntError;
 
-    /// Parses a hash from the 16 hexadecimal digits that `Display` writes.
     fn from_str(text: &str) -> Result<Self, ParseIntError> {
         u64::from_str_radix(text, 16).map(Self)
     }

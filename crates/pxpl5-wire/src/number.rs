@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Declares a number type that counts from 0. Arithmetic combines only numbers of the same type. Text and data files
-/// contain only the number, without the name of its type.
+/// contain only the number, without the name of the type.
 macro_rules! count_from_zero {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
@@ -24,7 +24,6 @@ macro_rules! count_from_zero {
         pub struct $name(pub u64);
 
         impl $name {
-            /// The first number, 0.
             pub const FIRST: Self = Self(0);
 
             /// Returns the next number. The greatest number of the type is returned unchanged.
@@ -55,7 +54,6 @@ macro_rules! count_from_zero {
                 self.0.saturating_sub(earlier.0)
             }
 
-            /// Iterates over this number and all greater numbers.
             pub fn onwards(self) -> impl Iterator<Item = Self> {
                 (self.0..).map(Self)
             }

@@ -15,7 +15,7 @@ pub struct Frames {
     /// All ring ports of the frame buffers: the first port of each frame buffer, then the second port of each, and so
     /// on. The regions of an eye use the ports of the eye's frame buffer in turn.
     pub frame_buffer_ports: Vec<NodeId>,
-    /// Viewport, shading and layout of the picture of each eye.
+    /// Viewport, shading and layout of a picture, which are the same for all eyes.
     pub picture: Picture,
     /// Number of finished regions that a renderer may store in its backing store until the frame buffer is available.
     ///

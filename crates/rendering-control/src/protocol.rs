@@ -14,13 +14,13 @@ const TOKEN: Word = 6;
 const ACCEPTED: Word = 7;
 const EDITS_DONE: Word = 8;
 
-/// The token of a region, which passes from slave to slave. Its holder may send its bin of the region to a renderer.
+/// The token of a region, which passes from slave to slave. The slave that holds the token may send a bin of the region
+/// to a renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     pub(crate) drawing: Drawing,
     /// Number of the region. The numbers continue through all views of the drawing.
     pub(crate) region: RegionId,
-    /// Index of the renderer that draws the region.
     pub(crate) renderer: u16,
     /// Number of slaves that must still send their bins, including the holder of the token.
     pub(crate) slaves_left: u16,
@@ -133,7 +133,6 @@ fn numbered(tag: Word, number: u64) -> Vec<Word> {
     vec![tag, number as Word, (number >> 32) as Word]
 }
 
-/// Decodes the number in a message that `numbered` has encoded.
 fn number_of(words: &[Word]) -> Option<u64> {
     let [_, low, high] = *words.first_chunk()?;
     Some(u64::from(low) | u64::from(high) << 32)

@@ -40,7 +40,7 @@ impl Drawing {
     }
 }
 
-/// Progress of all stages: for each stage, the number of frames or drawings that have passed it.
+/// Progress of all stages: for each stage, the number of frames or drawings that have passed the stage.
 ///
 /// A drawing is the picture of one eye. Every stage processes frames and drawings in the order of their numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,8 +114,8 @@ impl Completed {
     /// Returns true if COPY of a drawing (the picture of one eye) may begin. The hidden buffer must be free, and COPY
     /// of the previous drawing must have finished.
     ///
-    /// Each frame buffer has its own ring port, so two copies could go on at once. The rule of TR94 nevertheless
-    /// permits only one at a time.
+    /// Each frame buffer has its own ring port, so the hardware could make two copies at the same time. The rule of
+    /// TR94 nevertheless permits only one copy at a time.
     #[must_use]
     pub const fn may_copy(&self, drawing: Drawing) -> bool {
         self.frame_buffer_available(drawing) && self.copied >= drawing.0

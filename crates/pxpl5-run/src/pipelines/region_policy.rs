@@ -61,7 +61,7 @@ pub type RegionAssignment = (RegionId, usize);
 /// }
 /// ```
 pub trait RegionPolicy: Debug + Send + Sync {
-    /// Returns the name of the policy. The hash of an experiment's settings covers the name.
+    /// Returns the name of the policy. The hash of an experiment's settings includes the name.
     fn name(&self) -> &str;
 
     /// Returns every region once with its renderer, in the order in which the regions are sent. Returns `None` to end

@@ -1,5 +1,3 @@
-//! The instant for which the view of a picture is predicted.
-
 use pxpl5_sim::Time;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +14,7 @@ pub struct LightTimes {
 }
 
 /// The instant for which the view of a picture is predicted. All pipelines use the same choice. The instant follows
-/// from the [`LightTimes`] of the picture, the times at which the display shows it.
+/// from the [`LightTimes`] of the picture, the times at which the display shows the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aim {

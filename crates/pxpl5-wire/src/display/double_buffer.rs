@@ -5,7 +5,6 @@ use image::{Rgb, RgbImage};
 use pxpl5_sim::Time;
 use std::collections::BTreeMap;
 
-/// A region of which at least one message has arrived.
 #[derive(Clone, Debug)]
 struct PartialRegion {
     pixels: RegionPixels,

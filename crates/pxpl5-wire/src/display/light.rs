@@ -1,5 +1,3 @@
-//! Order and duration in which the pixels of a surface are lit.
-
 use pxpl5_sim::Span;
 use serde::Serialize;
 

@@ -1,5 +1,3 @@
-//! Display lists with displaced vertices.
-
 use crate::cube::update::FaceUpdate;
 use pphigs::{DisplayList, ModelFrame};
 use pxpl5_wire::PictureNumber;

@@ -14,7 +14,7 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoadSchedule {
     scan: FaceScan,
-    /// Delay of a pixel through all stages of the display's pipeline.
+    /// Delay of a pixel in the hardware of the display.
     depth: Span,
     /// Time between two successive loads of the display's orientation register within a line.
     link: Span,
@@ -48,12 +48,10 @@ impl LoadSchedule {
         Some(Self { scan, depth, link, lines, loads, aim })
     }
 
-    /// Returns the number of lines of a field.
     fn height(&self) -> u32 {
         self.scan.height() / 2
     }
 
-    /// Returns the instant at which a pixel of a line of a field is lit.
     fn light(&self, x: u32, line: u32, field: PeriodNumber) -> Time {
         let y = 2 * line + FieldParity::of_field(field).first_line();
         self.scan.when(x, y, field).unwrap_or_else(|| self.scan.retrace(field))
@@ -89,14 +87,11 @@ impl LoadSchedule {
         self.aim.instant(&light)
     }
 
-    /// Returns the first pixel of a line that can use the load with the index `number` of the display's orientation
-    /// register.
     fn first_pixel(&self, line: u32, number: u32, field: PeriodNumber) -> u32 {
         let from = self.light(0, line, field) + self.link * u64::from(number);
         partition(self.scan.width() - 1, |x| self.light(x, line, field) < from)
     }
 
-    /// Returns the first load of the display's orientation register that is complete after an instant.
     pub(crate) fn next(&self, after: Time) -> Load {
         let mut field = self.scan.field_at(after);
         loop {
