@@ -68,7 +68,6 @@ impl Footprint {
 /// dividers and addresses.
 #[derive(Clone, Copy, Debug)]
 pub struct AddressUnit {
-    /// Size of the faces.
     pub geometry: FaceGeometry,
     /// Number of bits of the quotients that the dividers compute.
     pub quotient_bits: u64,
@@ -78,7 +77,6 @@ pub struct AddressUnit {
 }
 
 impl AddressUnit {
-    /// Returns the address unit of a display with the parameters `timing`.
     #[must_use]
     pub const fn new(timing: &ArpTiming) -> Self {
         let geometry = FaceGeometry { texels: timing.face_texels as u32, guard: timing.guard_texels as u32 };

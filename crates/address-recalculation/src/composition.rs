@@ -16,7 +16,6 @@ pub enum CompositionOrder {
 }
 
 impl CompositionOrder {
-    /// Both orders of depth comparison and interpolation, each with its name on the command line.
     pub const ALL: [(&str, Self); 2] =
         [("depth-first", Self::DepthFirst), ("interpolation-first", Self::InterpolationFirst)];
 }
@@ -24,7 +23,6 @@ impl CompositionOrder {
 /// Rules by which the texels of several memories give the colour of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Composition {
-    /// Order of the two steps depth comparison and interpolation.
     pub order: CompositionOrder,
     /// Colour of empty texels if there is no background memory, 0x00RRGGBB.
     pub background: u32,

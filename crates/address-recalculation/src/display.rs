@@ -60,7 +60,6 @@ pub struct AddressRecalculationPipeline {
 }
 
 impl AddressRecalculationPipeline {
-    /// Returns the configuration of the display.
     #[must_use]
     pub const fn config(&self) -> &ArpConfig {
         &self.optics.config
@@ -192,7 +191,6 @@ impl AddressRecalculationPipeline {
     }
 }
 
-/// Name of the display on the command line.
 const NAME: &str = "arp";
 
 impl Display for AddressRecalculationPipeline {

@@ -268,7 +268,6 @@ impl LensTable {
         Ok(Self::of_checked(lens, picture, vector_bits))
     }
 
-    /// Creates the table of viewing vectors for a lens that has already been checked.
     pub(crate) fn of_checked(lens: &Lens, picture: &LensPicture, vector_bits: u64) -> Self {
         let mut words = [Vec::new(), Vec::new(), Vec::new()];
         for y in 0..picture.height {
@@ -282,13 +281,11 @@ impl LensTable {
         Self { width: picture.width, height: picture.height, words }
     }
 
-    /// Returns the number of pixels in a line.
     #[must_use]
     pub const fn width(&self) -> u32 {
         self.width
     }
 
-    /// Returns the number of lines in a frame.
     #[must_use]
     pub const fn height(&self) -> u32 {
         self.height

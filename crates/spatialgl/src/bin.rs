@@ -45,7 +45,6 @@ pub enum Binning {
 }
 
 impl Binning {
-    /// All methods of binning, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 3] =
         [("off", Self::Off), ("two-planes", Self::TwoPlanes), ("all-planes", Self::AllPlanes)];
 }
@@ -59,8 +58,8 @@ pub enum BinTolerance {
     /// The distance by which the display's clip enlarges the slice volumes. With this tolerance, no fragment is lost.
     #[default]
     OfTheClip,
-    /// No tolerance, as in the SpatialGL paper. A vertex in the plane counts as lying only on the plane's positive
-    /// side. These codes lose fragments if the clip enlarges the slice volumes.
+    /// No tolerance, as in the SpatialGL paper. A vertex in a plane counts as lying only on the plane's positive side.
+    /// Fragments are lost if the clip enlarges the slice volumes.
     Codes,
     /// A fixed distance in pixels, which does not depend on the clip.
     Pixels(f64),
@@ -125,7 +124,7 @@ impl BinLayout {
 /// Signs of the plane equations in each sector, from +x to +z. The highest of the four binary digits is bit 3 (x + z).
 const SECTOR_SIGNS: [u32; 8] = [0b1111, 0b1011, 0b1001, 0b0001, 0b0000, 0b0100, 0b0110, 0b1110];
 
-/// Planes that bound each sector. Each of the sector's two planes has one bit.
+/// The two planes that bound each sector, as a bit mask, in the order of `SECTOR_SIGNS`.
 const SECTOR_BOUNDS: [u32; 8] = [0b0101, 0b0110, 0b1010, 0b1001, 0b0101, 0b0110, 0b1010, 0b1001];
 
 /// The combined codes of a primitive, with one bit per plane. A bit of `and` is set if the whole primitive lies on the

@@ -46,13 +46,10 @@ pub const DEFAULT_HYPERBOLIC_BIAS_PX2: f64 = 0.25;
 /// Half of the wedge that one slice represents: sine, cosine and tangent of d/2, where d is the angle between slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfWedge {
-    /// Sine of half the angle between slices, S = sin(d/2).
     pub sin: f64,
-    /// Cosine of half the angle between slices, C = cos(d/2).
     pub cos: f64,
-    /// Tangent of half the angle between slices, T = tan(d/2).
     pub tan: f64,
-    /// Radius of the display, which is half the width of the image, pixels.
+    /// Half the width of the image, in pixels.
     pub radius: f64,
 }
 
@@ -76,7 +73,6 @@ impl SliceClip {
         Self::Hyperbolic(DEFAULT_HYPERBOLIC_BIAS_PX2),
     ];
 
-    /// Returns the name of the method in options, tables and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -125,7 +121,6 @@ impl SliceClip {
         }
     }
 
-    /// Returns the slice volume that this method gives for a slice with the boundary planes `planes`.
     #[must_use]
     pub fn volume(self, planes: WedgePlanes, ties: TieRule, wedge: HalfWedge) -> SliceVolume {
         match self {

@@ -17,7 +17,6 @@ pub enum Combine {
 }
 
 impl Combine {
-    /// All rules for the colour, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 3] = [("last", Self::Last), ("max", Self::Max), ("add", Self::Add)];
 }
 
@@ -115,7 +114,6 @@ impl CommandBuffer {
         })
     }
 
-    /// Returns the same primitives with another rule for several fragments on one pixel.
     #[must_use]
     pub fn combining(&self, combine: Combine) -> Self {
         let mut combining = self.clone();

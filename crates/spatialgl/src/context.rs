@@ -101,7 +101,6 @@ pub struct DrawContext {
     pub line_width: f64,
     /// Light source of the scene. With `None`, colours stay unchanged.
     pub light: Option<TwoSidedLight>,
-    /// Rule for the colour of a pixel with several fragments.
     pub combine: Combine,
     recording: CommandBuffer,
 }

@@ -20,7 +20,6 @@ impl BitPlanes {
         Self { size, slices, words: vec![0; slices as usize * words_of_slice(size)] }
     }
 
-    /// Returns width and height of every slice in pixels.
     #[must_use]
     pub const fn size(&self) -> Size {
         self.size

@@ -37,7 +37,6 @@ pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
     (column & 1 | column >> 7 & 2 | column >> 14 & 4) as u8
 }
 
-/// Returns a packed word in which each byte has its eight pixels in the order `order`.
 #[must_use]
 pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     match order {

@@ -75,7 +75,6 @@ impl Projection {
         }
     }
 
-    /// Returns the name of the projection in options, tables and files.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {

@@ -32,26 +32,18 @@ pub enum Strobes {
 }
 
 impl Strobes {
-    /// Both choices of drawn slices, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("each", Self::Each), ("mirror", Self::Mirror)];
 }
 
 pxpl5_sim::parameters::named!(Strobes, "choice of strobes", Strobes::ALL);
 
-/// The settings for rendering a volume from recorded graphics commands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeConfig {
-    /// Method of sorting primitives into bins before slices are drawn.
     pub binning: Binning,
-    /// Distance from a plane within which a vertex counts as lying on both sides.
     pub bin_tolerance: BinTolerance,
-    /// Size of tiles, and number of slices per occlusion query.
     pub tiling: Tiling,
-    /// Conversion from eight bits to one bit per channel.
     pub halftone: Halftone,
-    /// Rule for the pixels of a slice that a primitive covers.
     pub coverage: Coverage,
-    /// Choice of the slices of a turn that are drawn.
     pub strobes: Strobes,
     /// True if the frame keeps the colours before halftoning.
     pub keeps_colours: bool,
@@ -118,7 +110,6 @@ pub fn render_volume(
     Ok(VolumeFrame { planes, stats, colours: config.keeps_colours.then_some(colours) })
 }
 
-/// Primitives that the slices of each group of slices draw.
 struct Bins {
     lists: BTreeMap<u64, Bin>,
     memberships: u64,
@@ -318,7 +309,6 @@ fn outside(display: &dyn SpatialDisplay, commands: &CommandBuffer) -> u64 {
     commands.primitives.iter().filter(|primitive| is_outside(primitive.corners())).count() as u64
 }
 
-/// Returns the drawn pixels of an image with their colours.
 fn samples(image: &SliceImage) -> Vec<ColourSample> {
     let width = image.size()[0];
     let mut samples = Vec::new();

@@ -26,7 +26,6 @@ pub enum TieRule {
 }
 
 impl TieRule {
-    /// All rules for points on a boundary, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 4] = [
         ("half-open", Self::HalfOpen),
         ("product-positive", Self::ProductPositive),
@@ -92,9 +91,7 @@ pub enum SliceVolume {
     Frustum,
     /// A slab low <= s < high parallel to the slice, where s is the distance from the slice in pixels.
     Slab {
-        /// Lower limit of the distance s in the slab, inclusive.
         low: f64,
-        /// Upper limit of the distance s in the slab, exclusive.
         high: f64,
     },
     /// A double wedge around the axis y: its planes, and its test.
@@ -147,7 +144,6 @@ impl SliceVolume {
         }
     }
 
-    /// Returns the test that samples must pass in one replay of the commands.
     pub(crate) fn test(&self, pass: u32) -> SampleTest {
         match *self {
             Self::Frustum => SampleTest::All,
@@ -206,7 +202,6 @@ impl SampleTest {
         }
     }
 
-    /// Returns the number of fraction bits to which the planes are rounded, or `None` without rounding.
     pub(crate) const fn fraction_bits(self) -> Option<u32> {
         match self {
             Self::All | Self::Slab | Self::Taper { .. } => None,
@@ -215,7 +210,6 @@ impl SampleTest {
         }
     }
 
-    /// Returns the same test for values that are already rounded.
     pub(crate) const fn without_rounding(self) -> Self {
         match self {
             Self::Plus(ties, _) => Self::Plus(ties, None),

@@ -16,7 +16,6 @@ pub struct SliceView {
     /// Matrix from the coordinates (u, v, s, 1) of the slice to clip coordinates, with depth 0 at the near plane and 1
     /// at the far plane.
     pub projection: DMat4,
-    /// Part of space that the slice represents.
     pub volume: SliceVolume,
     /// Bins whose primitives the slice draws, one bit for each group of regions of [`SpatialDisplay::bins`].
     pub bins: u64,
@@ -81,10 +80,8 @@ pub trait SpatialDisplay: Send + Sync {
     /// Returns the slices, in the order in which they are shown.
     fn views(&self) -> &[SliceView];
 
-    /// Returns the size of every slice's image.
     fn target_size(&self) -> Size;
 
-    /// Returns the colours that a pixel can show.
     fn pixel_format(&self) -> PixelFormat;
 
     /// Returns the planes and regions for sorting primitives. The default is a single bin for everything.

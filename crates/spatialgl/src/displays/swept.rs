@@ -22,13 +22,11 @@ pub enum Rotation {
 }
 
 impl Rotation {
-    /// Both directions of the turn, each with its name in options and files.
     pub const ALL: [(&'static str, Self); 2] = [("x-to-z", Self::XToZ), ("z-to-x", Self::ZToX)];
 }
 
 pxpl5_sim::parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
 
-/// The settings of a swept display.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweptConfig {
@@ -40,13 +38,11 @@ pub struct SweptConfig {
     /// Angle of slice 0, radians.
     pub phase: f64,
     pub rotation: Rotation,
-    /// Method of clipping the scene to the volume of a slice.
     pub clip: SliceClip,
     /// Rule for points that lie exactly in the planes between slices.
     pub ties: TieRule,
     /// Number of fraction bits to which values of boundary planes are rounded, or `None` for double precision.
     pub plane_fraction_bits: Option<u32>,
-    /// Projection that maps points near a slice to the slice's image.
     pub projection: Projection,
 }
 
@@ -74,7 +70,6 @@ impl SweptConfig {
         f64::from(self.width) / 2.0
     }
 
-    /// Returns half of the wedge (part of space) that one slice of this display represents.
     #[must_use]
     pub fn half_wedge(&self) -> HalfWedge {
         HalfWedge::new(self.slices, self.radius())

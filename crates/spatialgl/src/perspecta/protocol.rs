@@ -65,7 +65,6 @@ pub struct BatchMessages {
     pub tiles: Vec<TileMessage>,
 }
 
-/// The message of one tile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TileMessage {
     /// Index of the slice in the revolution.

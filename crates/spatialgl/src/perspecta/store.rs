@@ -23,7 +23,7 @@ pub(crate) struct FrameStore {
     scanned: Vec<Slice>,
     /// Tiles that were announced and have not arrived: slice, tile and tile size.
     missing: BTreeSet<(u32, u32, u32)>,
-    /// Arrival time of the last swap request, and the requested buffer.
+    /// Arrival time of the last swap request, and the number of the requested buffer.
     requested: Option<(Time, u8)>,
     pub(crate) tiles: u64,
 }
@@ -130,8 +130,6 @@ impl FrameStore {
         self.volumes[self.shown].get(slice).map(|words| words.as_slice())
     }
 
-    /// Returns the words of a slice of the store that was visible until the last strobe 0, the first flash of a
-    /// revolution.
     pub(crate) fn scanned(&self, slice: usize) -> Option<&[Word]> {
         self.scanned.get(slice).map(|words| words.as_slice())
     }

@@ -1,4 +1,4 @@
-//! All parameters of the display, with their sources.
+//! All parameters of the Perspecta display, with their sources.
 
 use crate::{Rotation, SweptConfig};
 use pxpl5_sim::parameters::{ParameterTable, SettingError};

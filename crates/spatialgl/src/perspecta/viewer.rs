@@ -24,7 +24,6 @@ pub struct Camera {
     pub distance: f64,
     /// Focal length of the picture, in pixels of the picture.
     pub focal: f64,
-    /// Width and height of the picture, in pixels.
     pub size: Size,
 }
 
@@ -96,7 +95,7 @@ pub struct ViewOptions {
 }
 
 impl ViewOptions {
-    /// Returns the angle of slice `k` in degrees from +x to +z, with its sine and cosine.
+    /// Returns the angle of slice `k` in degrees, from +x to +z, with the angle's sine and cosine.
     fn angle(&self, k: u32, slices: u32) -> (f64, f64, f64) {
         let is_forward = self.rotation == Rotation::XToZ;
         let steps = if is_forward { i64::from(k) } else { -i64::from(k) };

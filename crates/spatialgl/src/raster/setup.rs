@@ -161,7 +161,6 @@ impl Setup {
         Self::within(corners, bounds)
     }
 
-    /// Prepares a triangle for sampling, with bounds from [`bounds`].
     #[inline(always)]
     pub(super) fn within(corners: &[Corner; 3], bounds: Bounds) -> Option<Self> {
         let [a, b, c] = corners;
