@@ -20,9 +20,7 @@ pub enum Lens {
     ///
     /// rho is 1 at the left and right ends of the middle line.
     Radial {
-        /// Coefficient of rho^2.
         k1: f64,
-        /// Coefficient of rho^4.
         k2: f64,
     },
     /// A lens for which the viewing angle is proportional to the distance from the middle. Pictures can be up to 360
@@ -35,9 +33,7 @@ pub enum Lens {
 /// Size and viewing angle of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensPicture {
-    /// Number of pixels in a line.
     pub width: u32,
-    /// Number of lines in a frame.
     pub height: u32,
     /// Angle between the left and the right edge if there is no lens, in degrees.
     pub horizontal_deg: f64,

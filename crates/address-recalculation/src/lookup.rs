@@ -30,7 +30,6 @@ pub struct LookStats {
 }
 
 impl LookStats {
-    /// Adds the counts of another picture.
     pub const fn add(&mut self, other: Self) {
         self.split += other.split;
         self.conflicts += other.conflicts;
@@ -259,8 +258,8 @@ impl<'a> Lookup<'a> {
 /// Number of consecutive texels for which the nearest memory is selected in one step. The number is a divisor of 128.
 const PIECE: usize = 32;
 
-/// Colour of each texel, taken from the display memory with the smallest depth there. The colour is computed when a
-/// pixel first needs it.
+/// Colour of each texel, taken from the display memory in which the texel has the smallest depth. The colour is
+/// computed when a pixel first needs it.
 ///
 /// Neighbouring pixels share texels, so the depths of a texel are compared once instead of once per reading pixel.
 #[derive(Clone, Debug)]

@@ -23,7 +23,6 @@ pub(crate) struct StoredRegion {
 /// The regions of a buffer that have arrived in the current update. All other regions are empty.
 pub(crate) type Regions = BTreeMap<u16, Arc<StoredRegion>>;
 
-/// Properties of a memory: the size of its faces, the format of its texels, and the presence of depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MemoryKind {
     pub(crate) face_texels: u32,
@@ -97,7 +96,6 @@ struct SwapRequest {
     together: u8,
 }
 
-/// Counters of a display memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct MemoryStats {
     /// Number of complete regions that arrived.
@@ -139,7 +137,6 @@ impl DisplayMemory {
         Self { kind, buffers: Default::default(), shown: 0, request: None, late_since: None, stats }
     }
 
-    /// Returns the counters.
     #[must_use]
     pub const fn stats(&self) -> &MemoryStats {
         &self.stats
@@ -176,7 +173,7 @@ impl DisplayMemory {
         Arc::clone(&self.buffers[usize::from(self.shown)].valid)
     }
 
-    /// Begins an update of a buffer. All its regions are empty until they arrive.
+    /// Begins an update of a buffer. Each region of the buffer is empty until the region arrives.
     pub(crate) fn begin(&mut self, buffer: u8, regions: Vec<u16>) -> Result<(), &'static str> {
         if buffer == self.shown {
             return Err("an update of the buffer that is shown");

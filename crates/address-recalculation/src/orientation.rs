@@ -58,7 +58,6 @@ impl Orientation {
         ])
     }
 
-    /// Returns the rows of the matrix.
     #[must_use]
     pub const fn rows(&self) -> [Vector; 3] {
         self.rows
@@ -101,7 +100,7 @@ fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The orientations that have arrived, each with the time from which on it is valid.
+/// The orientations that have arrived, each with the time at which it became valid.
 ///
 /// A matrix that is not a rotation is refused and counted, and the previous matrix stays valid.
 #[derive(Clone, Debug)]

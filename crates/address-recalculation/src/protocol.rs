@@ -12,13 +12,10 @@ use pxpl5_sim::parameters::SettingError;
 use pxpl5_wire::{REGION_SIZE, RegionGrid, RegionId, Word, read_swap_request};
 use std::sync::Arc;
 
-/// First word of a message that begins an update of a buffer.
 const BEGIN: Word = 0x0041_5042;
 
-/// First word of a request to swap at the same retrace as other memories.
 const TOGETHER: Word = 0x0041_5054;
 
-/// First word of a message that sets the orientation.
 const MATRIX: Word = 0x0041_504D;
 
 /// Returns the division of six faces into regions of 128 x 128 texels. The faces lie one below the other, in the order

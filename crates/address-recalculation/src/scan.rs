@@ -23,7 +23,6 @@ pub enum Latch {
 pxpl5_sim::parameters::named!(Latch, "latch event", Latch::ALL);
 
 impl Latch {
-    /// All events before which an orientation can be read, each with its name on the command line.
     pub const ALL: [(&str, Self); 3] = [("field", Self::Field), ("line", Self::Line), ("pixel", Self::Pixel)];
 }
 

@@ -1,4 +1,4 @@
-//! All parameters of the display, with their sources.
+//! All parameters of the address recalculation display, with their sources.
 
 use pxpl5_sim::Span;
 use pxpl5_sim::parameters::{MAX, ParameterTable, SettingError, check};

@@ -36,7 +36,6 @@ pub struct ComparedRow {
     pub rates_hz: Vec<f64>,
     /// Number of segments (parts of objects) drawn per second.
     pub draws_per_s: f64,
-    /// Number of triangles drawn per second.
     pub triangles_per_s: f64,
     /// Percentage of draws saved, relative to drawing everything in every frame.
     pub saved_percent: f64,

@@ -29,7 +29,7 @@ pub struct WalkReport {
     pub frames: u64,
     /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,
-    /// Settings that the user chose, by path.
+    /// Settings that the user chose, by their path, for example `priority.cell_m`.
     pub settings: BTreeMap<String, String>,
 }
 
@@ -38,10 +38,8 @@ pub struct WalkReport {
 pub struct WalkOutcome {
     /// The scene after it was cut at the borders of cells.
     pub world: World,
-    /// Path through the scene.
     pub path: Walk,
     pub settings: WalkSettings,
-    /// Counters of the viewer's walk.
     pub tally: WalkTally,
     /// Report of the viewer's walk, including a view along the path at its end.
     pub report: WalkReport,

@@ -1,4 +1,4 @@
-//! Scaling of a hall, and routes of the viewer through it.
+//! Scaling of a hall, and routes of the viewer through the hall.
 
 use glam::{DVec3, Vec3};
 use pxpl5_scene::Scene;
@@ -6,7 +6,6 @@ use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 use tracking::motion::Walk;
 
-/// A route through a hall.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Route {
@@ -22,7 +21,6 @@ pub enum Route {
 }
 
 impl Route {
-    /// All routes, each with its name on the command line.
     pub const ALL: [(&str, Self); 4] =
         [("scene", Self::Scene), ("straight", Self::Straight), ("diagonal", Self::Diagonal), ("round", Self::Round)];
 }

@@ -26,7 +26,6 @@ pxpl5_sim::parameters::parameter_table! {
 /// `priority.theta_deg`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkPlan {
-    /// Speed and length of the viewer's walk.
     pub walk: WalkNumbers,
     chosen: WalkSettings,
     is_segmented: Option<bool>,
@@ -91,7 +90,8 @@ impl PathSettings for WalkPlan {
         "arp_scan": chosen.display.scan,
     }
 
-    /// Records the setting for the report. The policy and the display have the same number of memories.
+    /// Records the setting for the report. Sets the number of memories of both the policy and the display, which must
+    /// be equal.
     fn was_set(&mut self, path: &str, text: &str) {
         let memories = match path {
             "priority.memories" => Some(self.chosen.numbers.memories),

@@ -15,7 +15,6 @@ use std::collections::BTreeMap;
 /// Name and version of the layout of the report.
 pub const SCHEMA: &str = "pxpl5-arp/1";
 
-/// Results of a viewer's walk through a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArpReport {
     pub schema: &'static str,

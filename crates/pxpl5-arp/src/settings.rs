@@ -23,7 +23,6 @@ pub enum PolicyKind {
 pxpl5_sim::parameters::named!(PolicyKind, "policy", PolicyKind::ALL);
 
 impl PolicyKind {
-    /// All policies, each with its name on the command line.
     pub const ALL: [(&str, Self); 3] = [("full", Self::Full), ("objects", Self::Objects), ("cells", Self::Cells)];
 
     #[must_use]
@@ -68,7 +67,6 @@ pub struct WalkSettings {
     pub falloff: Falloff,
     /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,
-    /// Parameters of the policies.
     pub numbers: PriorityTiming,
     pub display: ArpConfig,
     pub source: SourceKind,
@@ -134,7 +132,6 @@ impl WalkSettings {
         Ok(())
     }
 
-    /// Returns the number of memories in use.
     #[must_use]
     pub const fn memories(&self) -> usize {
         match self.policy {

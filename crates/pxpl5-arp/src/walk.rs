@@ -8,7 +8,6 @@ use glam::DVec3;
 use pxpl5_sim::parameters::SettingError;
 use tracking::motion::Walk;
 
-/// Counters of one memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MemoryTally {
     /// Number of updates that were shown.
@@ -34,11 +33,9 @@ pub struct MemoryTally {
     drawn_in: u64,
 }
 
-/// Counters of a viewer's walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkTally {
     pub frames: u64,
-    /// Counters of each memory.
     pub memories: Vec<MemoryTally>,
     /// Number of times that cells (squares of the floor) were assigned to memories anew.
     pub redeals: u64,

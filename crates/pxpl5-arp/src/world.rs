@@ -15,11 +15,9 @@ pub struct Segment {
     pub object: usize,
     /// Cell that contains the segment.
     pub cell: Cell,
-    /// Triangles as indices into [`World::vertices`].
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// An object of the scene.
 #[derive(Clone, Debug)]
 pub struct Object {
     pub name: String,
@@ -57,7 +55,6 @@ pub struct World {
     pub colours: Vec<u32>,
     /// All segments, in the order of objects.
     pub segments: Vec<Segment>,
-    /// The objects of the scene.
     pub objects: Vec<Object>,
     /// Vertices that several segments of an object share.
     pub shared: Vec<SharedVertex>,

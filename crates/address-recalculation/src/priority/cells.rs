@@ -53,16 +53,13 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
 /// and all cells at the same distance from the home cell form a ring of cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
-    /// The home cell, which contained the eye at the time of the assignment and is the centre of all rings of cells.
     pub home: Cell,
-    /// Side of a cell (square of the floor) in metres.
     pub side_m: f64,
     /// Number of rings of cells around the home cell that memory 0 holds.
     pub inner_rings: u64,
     /// Number of rings of cells in a memory divided by the number in the previous memory, from memory 2 on. Memory 1
     /// holds one ring of cells, memory 2 holds `ring_growth` rings of cells, and so on.
     pub ring_growth: u64,
-    /// Number of memories.
     pub memories: usize,
 }
 

@@ -17,7 +17,6 @@ pub struct Objects {
 }
 
 impl Objects {
-    /// Creates the policy for a number of objects.
     #[must_use]
     pub fn new(timing: &PriorityTiming, objects: usize) -> Self {
         let memories = timing.memories as usize;

@@ -60,8 +60,8 @@ impl Segmentation {
         Ok(Self { vertices: cutter.vertices, cuts: cutter.cuts, segments })
     }
 
-    /// Returns the memory that must hold the uncut mesh: the most often drawn memory of all cells that the mesh
-    /// touches. Returns `None` for an empty mesh.
+    /// Returns the memory that must hold the uncut mesh. Of the memories whose cells the mesh touches, this memory is
+    /// drawn most often. Returns `None` for an empty mesh.
     #[must_use]
     pub fn fastest_memory(&self, dealing: &CellAssignment) -> Option<usize> {
         self.segments.keys().map(|cell| dealing.memory(*cell)).min()

@@ -7,11 +7,8 @@ use serde::{Deserialize, Serialize};
 pub struct Threshold {
     /// Largest accepted angular error in radians.
     pub angle: f64,
-    /// Rule for how far the eye may move before the direction of a point is wrong.
     pub translation: Translation,
-    /// Rule for the apparent size of an object.
     pub size: SizeRule,
-    /// Rule for measuring the distance to an object.
     pub distance: Distance,
 }
 

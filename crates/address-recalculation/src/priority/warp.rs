@@ -24,7 +24,6 @@ pub enum Falloff {
 pxpl5_sim::parameters::named!(Falloff, "falloff", Falloff::ALL);
 
 impl Falloff {
-    /// All variants with their command-line names.
     pub const ALL: [(&str, Self); 4] =
         [("none", Self::None), ("linear", Self::Linear), ("smoothstep", Self::Smoothstep), ("step", Self::Step)];
 

@@ -11,7 +11,6 @@ const RUN: usize = 64;
 /// Number of doubles in a vector register. Texels are computed in multiples of this number.
 const LANES: usize = 4;
 
-/// Colours of one triangle on a face.
 pub(crate) enum Shade {
     /// One colour for the whole triangle.
     Flat(u32),

@@ -6,7 +6,6 @@ use crate::cube_faces::rows::{OnFace, Shade, draw};
 use address_recalculation::{CubeFace, FaceGeometry, FaceSet};
 use glam::DVec3;
 
-/// A corner of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Position in the world in metres.
@@ -15,7 +14,6 @@ pub struct Corner {
     pub colour: u32,
 }
 
-/// Counts of triangles and texels of a drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DrawCounts {
     /// Number of triangles to draw, visible or not.
@@ -28,7 +26,6 @@ pub struct DrawCounts {
 }
 
 impl DrawCounts {
-    /// Adds the counts of another drawing.
     pub const fn add(&mut self, other: Self) {
         self.triangles += other.triangles;
         self.on_faces += other.on_faces;
@@ -39,10 +36,7 @@ impl DrawCounts {
 /// Size of the faces, and range of drawn depths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeView {
-    /// Number of texels along an edge of a face, and number of guard texels (a margin that repeats the neighbouring
-    /// face).
     pub geometry: FaceGeometry,
-    /// Distances of the near and far plane.
     pub depth: DepthRange,
 }
 

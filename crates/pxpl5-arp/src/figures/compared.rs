@@ -42,13 +42,13 @@ pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVe
     Ok(all.filter(|texel| composed(*texel) != one.texel(*texel)).count() as u64)
 }
 
-/// Number of frames after which the stalled renderer has drawn all memories once.
+/// Number of simulated frames, in which even the stalled (very slow) renderer draws all memories once.
 const FRAMES: u64 = 200;
-/// Triangles that the stalled renderer draws per second.
+/// Triangles that the stalled (very slow) renderer draws per second.
 const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 
-/// Counts the pixels that differ between the pictures of an ideal renderer and of a stalled renderer, while a head at a
-/// fixed position rotates.
+/// Counts the pixels that differ between the pictures of an ideal renderer and of a very slow renderer, while a head at
+/// a fixed position rotates.
 pub(super) fn turned_differ(world: &World, settings: &WalkSettings, eye: DVec3) -> Result<u64, SettingError> {
     // Simulate both renderers with the eye at rest until the slow one has drawn all memories.
     let ideal = small(settings);

@@ -407,8 +407,8 @@ fn sizes(text: &mut String, all: &Experiments) {
     }
 }
 
-/// Writes the ratios of size to distance that belong to statement A8 of the papers. For larger ratios, the growth of
-/// the object on the screen determines the validity period.
+/// Writes the ratios of size to distance that belong to statement A8 of the papers on priority rendering. For larger
+/// ratios, the growth of the object on the screen determines the validity period.
 fn size_limits(text: &mut String, limits: &[SizeLimit]) {
     text.push_str(
         "\nStatement A8, \"about ten times the distance\", leaves two questions open. One question is which angle describes the size\n\

@@ -23,7 +23,6 @@ pub const EXPERIMENT_FRAMES: u64 = 7_200;
 /// Settings and results of one simulated walk of the viewer.
 #[derive(Clone, Debug)]
 pub struct NamedWalk {
-    /// Name of the viewer's walk in tables and documents.
     pub name: &'static str,
     pub settings: WalkSettings,
     pub tally: WalkTally,

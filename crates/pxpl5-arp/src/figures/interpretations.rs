@@ -112,7 +112,6 @@ const COMPARED: [usize; 3] = [1, 2, 3];
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tried {
     pub rules: Rules,
-    /// Hall through which the viewer walks, and path of the viewer.
     pub situation: Situation,
     /// Results for every cell side that was tried.
     #[serde(skip)]

@@ -45,7 +45,6 @@ impl Rules {
         rules.collect()
     }
 
-    /// Returns the rules as text for tables.
     #[must_use]
     pub fn text(&self) -> String {
         let rings = if self.ring_growth == 1 { "equal rings" } else { "rings that double" };

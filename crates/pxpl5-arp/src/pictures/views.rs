@@ -13,11 +13,9 @@ use pxpl5_sim::parameters::SettingError;
 /// A view of the cube faces of all memories.
 #[derive(Clone, Debug)]
 pub struct MemoryViews<'a> {
-    /// Faces of all memories.
     pub faces: &'a WalkFaces,
     /// Orientation of the head.
     pub orientation: DQuat,
-    /// Lens through which the eye looks.
     pub lens: Lens,
 }
 

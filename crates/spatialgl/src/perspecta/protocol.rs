@@ -13,10 +13,8 @@ use crate::{BitPlanes, Size, TileGrid, Tiling};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
 use std::sync::Arc;
 
-/// First word of a map of tiles.
 const MAP: Word = 0x0050_4D41;
 
-/// First word of a tile.
 const TILE: Word = 0x0050_5449;
 
 /// Number of words in a message before the map's bits or the tile's pixels.
