@@ -35,10 +35,10 @@ impl Queue {
         self.0 |= (Self::ONE | board) << (Self::BITS * self.len());
     }
 
-    /// Returns the same copies in an order that alternates between left and right.
+    /// Returns the same copies in an order that alternates between the left and the right frame buffer.
     ///
-    /// If `begins_right` is true, the order begins with a right copy if there is one. Otherwise the first copy stays
-    /// the first.
+    /// If `begins_right` is true, the order begins with a copy to the right frame buffer, if any exists. Otherwise the
+    /// first copy stays the first.
     pub(super) fn alternated(self, begins_right: bool) -> Self {
         let copies = (0..self.len()).map(|n| self.0 >> (Self::BITS * n) & Self::RIGHT != 0);
         let mut left = [0; 2];
@@ -134,7 +134,7 @@ impl<const N: usize> Ports<N> {
         end
     }
 
-    /// Records the times of a copy, which may be earlier than the copies so far.
+    /// Extends the recorded begin and end of all copies by one more copy.
     #[inline(always)]
     fn note(&mut self, begin: Times<N>, end: Times<N>) {
         self.begins = self.begins.sooner(begin);

@@ -55,8 +55,8 @@ pub fn add_closed_forms(registry: &mut Registry) {
     registry.closed_form("slats", slats::CLOSED_FORM);
 }
 
-/// Returns the experiment's pipeline. Returns an error if the pipeline is not a `P`, or if a tracker reports the head's
-/// pose.
+/// Returns the experiment's pipeline. Returns an error if the pipeline does not have the type `P`, or if a tracker
+/// reports the head's pose.
 fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, ExperimentError> {
     experiment.config().check()?;
     if experiment.tracked_head().is_some() {

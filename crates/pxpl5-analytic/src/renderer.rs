@@ -136,8 +136,8 @@ pub(super) struct Commands<const N: usize> {
     drawing: Times<N>,
     /// Time from the start of the first command after the header until the FIFO has room for the last word.
     ///
-    /// The room comes from an earlier command: when it starts, the words one FIFO depth before the last word leave the
-    /// FIFO. The value is `f64::MIN` if this is a command of the previous message.
+    /// The FIFO gets this room when an earlier command starts and its words leave the FIFO. The value is `f64::MIN` if
+    /// the earlier command belongs to the previous message.
     room_after: Times<N>,
     /// Position of the command whose start makes room for the last word, as a number of commands before the end of the
     /// previous message. The value is infinite if a command of the same message makes the room.

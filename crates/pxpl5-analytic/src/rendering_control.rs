@@ -94,8 +94,8 @@ struct Renderers {
     /// Times until which the backing store of each renderer holds finished regions.
     stored_until_ns: Vec<Vec<f64>>,
     words: Vec<f64>,
-    /// Number of words before the region, start of the first command, and cost of all commands, for each of the latest
-    /// regions of each renderer.
+    /// Three values for each of the latest regions of each renderer: the number of words before the region, the start
+    /// of the first command, and the cost of all commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }
@@ -327,7 +327,7 @@ impl StereoModel {
         self.slaves * (2.0 * self.message_ns + self.transit_ns()) + senders * self.message_ns + handed_over_ns
     }
 
-    /// Returns the time at which the renderer has accepted a region's last word, and the time at which it has executed
+    /// Returns two times: when the renderer has accepted the last word of a region, and when the renderer has executed
     /// all commands.
     fn execute(&self, all: &mut Renderers, r: usize, token_ns: f64, arrived_ns: f64, bin: &[f64; 2]) -> (f64, f64) {
         let [triangles, spheres] = *bin;
@@ -351,7 +351,7 @@ impl StereoModel {
 
     /// Returns the time at which the FIFO has room for the last word.
     ///
-    /// This is the start of the command whose words lie one FIFO depth before the last word.
+    /// At this time, the command starts whose words lie one FIFO depth before the last word.
     fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
         let word = all.words[r] - 1.0 - self.fifo_words;
         let started = &mut all.started[r];
@@ -449,7 +449,8 @@ impl StereoModel {
         (0..self.eyes).map(|eye| (frame.shown_ns - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Counts the frames that are due and shown. A frame is due as often as the pixels of all eyes can be copied.
+    /// Counts the frames that are due and shown. Frames are due at the rate at which the pixels of all eyes can be
+    /// copied.
     fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);

@@ -15,6 +15,7 @@ pub struct Tears {
     pub after: Vec<f64>,
     /// Angles by which warping moves the vertices of a memory, in radians. Each vertex has one angle.
     pub stretch: Vec<f64>,
+    /// Width in radians of the widest displayed tear, and its vertex as an index into [`World::vertices`].
     pub widest: Option<(f64, u32)>,
 }
 

@@ -110,7 +110,6 @@ pub fn walk(
     Ok(walked(world, settings, frames, eye)?.1)
 }
 
-/// Walks through a world, and returns the final state of the simulation together with the counters.
 pub(crate) fn walked<'a>(
     world: &'a World,
     settings: &WalkSettings,

@@ -13,8 +13,8 @@ use std::ops::Range;
 pub struct Segment {
     /// Index of the object from which the segment was cut.
     pub object: usize,
-    /// Cell that contains the segment.
     pub cell: Cell,
+    /// Triangles as indices into [`World::vertices`].
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -60,7 +60,6 @@ pub struct World {
     pub shared: Vec<SharedVertex>,
     /// Background colour, 0x00RRGGBB.
     pub background: u32,
-    /// Meaning of the colours of drawn triangles.
     pub tint: Tint,
 }
 

@@ -53,7 +53,6 @@ pub enum RendererKind {
 
 /// A choice that has a name in options, files and reports.
 pub(crate) trait Named: Copy + PartialEq + 'static {
-    /// Names, each with the choice that it stands for.
     const NAMES: &'static [(&'static str, Self)];
 
     fn name(self) -> &'static str {

@@ -195,8 +195,6 @@ impl<'a> HeadComparison<'a> {
         })
     }
 
-    /// Returns the evenly spaced instants of a study. The first instant is one latency after the beginning of the
-    /// motion.
     fn instants(&self, question: &HeadStudyConfig) -> Result<Vec<u64>, SettingError> {
         let HeadStudyConfig { seconds, instants, .. } = *question;
         let wrong = |what, expected: &str, found: String| SettingError::value(what, expected, found);
@@ -392,7 +390,6 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// An accumulator for the mean and the maximum of errors.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     sum: f64,

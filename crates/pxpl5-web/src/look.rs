@@ -68,7 +68,6 @@ pub(crate) fn limits(stepper: &Stepper) -> Value {
     json!({"utilisation": Utilisation::so_far(stepper), "path": path})
 }
 
-/// Returns the message on each channel of the ring as JSON, with null for a free channel.
 pub(crate) fn channels(stepper: &Stepper) -> Value {
     let ports = stepper.record().ports();
     let on = stepper.channels();

@@ -10,7 +10,6 @@ use spatialgl::{
     SpatialDisplay, SweptDisplay, Tiling, Topology, VertexBuffer, VolumeConfig, VolumeStats, Workers, render_volume,
 };
 
-/// Returns all figures of the SpatialGL paper that are counted or measured.
 pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
     let mut rows = passes(workers)?;

@@ -10,11 +10,9 @@ use std::sync::Arc;
 /// because the machine has no occlusion query.
 #[derive(Clone, Debug)]
 pub struct SliceTraffic {
-    /// Width and height of a slice, pixels.
     pub(super) size: Size,
     /// Maps of the tiles that will be sent, one message each.
     pub(super) maps: Vec<Arc<[Word]>>,
-    /// Messages of each slice, in the order of the slices.
     pub(super) slices: Vec<SliceMessages>,
 }
 
