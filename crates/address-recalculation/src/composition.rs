@@ -30,11 +30,9 @@ pub struct Composition {
     pub weight_bits: u64,
 }
 
-/// Inputs for the computation of a pixel: four texels in each memory, their weights and the background.
 pub(crate) struct Gathered<'a> {
     /// Words of the upper left, upper right, lower left and lower right texel in each display memory.
     pub(crate) memories: &'a [[u64; 4]],
-    /// Background colours of the four texels.
     pub(crate) behind: [u32; 4],
     /// Weights in units of `4^-weight_bits`. `None` marks a texel beyond a corner. The mean of the other three texels
     /// replaces such a texel.

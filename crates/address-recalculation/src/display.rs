@@ -18,7 +18,6 @@ use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
 use std::collections::VecDeque;
 use std::sync::OnceLock;
 
-/// The display memories and the orientation register of one eye.
 #[derive(Debug)]
 struct EyeBoards {
     memories: Vec<DisplayMemory>,

@@ -27,7 +27,6 @@ use arithmetic::{Divider, multiply, multiply_unsigned, signed};
 use registers::Registers;
 use std::collections::VecDeque;
 
-/// A stage of the pipeline, which takes one clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Table,

@@ -216,7 +216,6 @@ impl<'a> Lookup<'a> {
         stats
     }
 
-    /// Computes a single pixel from its footprint, the four texels with their weights.
     fn pixel(&self, footprint: &Footprint) -> u32 {
         let words = |faces: &FaceSet| footprint.texels.map(|texel| texel.map_or(0, |texel| word(faces, texel)));
         let memories: Vec<[u64; 4]> = self.memories.iter().map(|faces| words(faces)).collect();

@@ -10,7 +10,6 @@ use std::sync::{Arc, OnceLock};
 
 const REGION_TEXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
 
-/// Number of words in a message that contains pixels.
 const MESSAGE_WORDS: u32 = 1_024;
 
 /// A region that has arrived. Its texels are computed only when the region is read.
@@ -123,7 +122,6 @@ pub struct DisplayMemory {
     stats: MemoryStats,
 }
 
-/// Effect of a message that contains pixels.
 pub(crate) enum PixelReceipt {
     /// The message completed a region. The value is the time at which the region's first message arrived.
     Region(Time),

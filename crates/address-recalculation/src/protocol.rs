@@ -67,7 +67,6 @@ pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ArpMessage {
-    /// Begins an update of a buffer with these regions.
     Begin { buffer: u8, regions: Vec<u16> },
     /// Requests to show a buffer at the same retrace as buffers of other memories. Bit k of `together` stands for
     /// memory k. If `together` is 0, the memory swaps alone.

@@ -102,7 +102,6 @@ impl<const N: usize> Clump<N> {
     }
 }
 
-/// Progress of the clumps (groups of triangles) that have been sent so far.
 struct Chain<const N: usize> {
     /// Time at which the graphics processor has finished its latest work.
     cpu: Times<N>,

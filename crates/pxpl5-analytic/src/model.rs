@@ -37,7 +37,6 @@ pub struct SlatsModel {
     pub(super) overhead_ns: f64,
     pub(super) hop_ns: f64,
     pub(super) gp: GpTiming,
-    /// Time before the first triangle of TRANSFORM, for both eyes, in nanoseconds.
     pub(super) begin_ns: f64,
     pub(super) message_ns: f64,
     pub(super) command: Cost,

@@ -30,7 +30,6 @@ impl Unit {
     }
 }
 
-/// A policy for updating memories, with its state.
 #[derive(Clone, Debug)]
 enum Policy {
     Full,

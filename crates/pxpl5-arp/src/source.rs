@@ -3,7 +3,6 @@
 
 use crate::content::Content;
 
-/// An update that is being drawn into a memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Job {
     pub(crate) content: Content,

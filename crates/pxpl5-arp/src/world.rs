@@ -40,9 +40,7 @@ pub enum Tint {
     /// The shaded colours of the scene.
     #[default]
     Shaded,
-    /// One colour per object.
     Objects,
-    /// One colour per cell.
     Cells,
 }
 

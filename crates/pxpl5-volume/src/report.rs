@@ -284,7 +284,6 @@ impl Volume {
     }
 }
 
-/// Returns the percentage of the bits in unpacked pixels that the projector does not use.
 fn waste_percent(bytes_unpacked: u64, settings: &VolumeSettings) -> f64 {
     let display = &settings.display;
     let slices = if settings.strobes == spatialgl::Strobes::Mirror { display.slices / 2 } else { display.slices };

@@ -64,13 +64,10 @@ impl VertexBuffer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Topology {
-    /// Each vertex is a point.
     Points,
-    /// Each pair of vertices is a line.
     Lines,
     /// Each vertex after the first ends a line that begins at the previous vertex.
     LineStrip,
-    /// Each group of three vertices is a triangle.
     Triangles,
     /// Each vertex from the third on forms a triangle with the two preceding vertices.
     TriangleStrip,

@@ -47,7 +47,6 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
     Some(found)
 }
 
-/// Calls `each` for every triangle that crosses the plane of a slice, with both ends of the intersection.
 fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: impl FnMut([[f64; 3]; 2])) {
     // Clusters away from the slice are skipped.
     let middle = view.volume.middle();
@@ -83,7 +82,6 @@ pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, f
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Counts all samples and the shown samples in each row of a slice's image.
 fn rows_of_slice(
     view: &SliceView,
     commands: &CommandBuffer,
@@ -158,7 +156,6 @@ impl Around {
     }
 }
 
-/// Returns the position of a point of the slice in the slice's image, in pixels from the top left.
 fn pixel_of(view: &SliceView, local: [f64; 3], size: [u32; 2]) -> [f64; 2] {
     let clip = view.projection * DVec3::from_array(local).extend(1.0);
     let [width, height] = size.map(f64::from);

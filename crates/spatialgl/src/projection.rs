@@ -20,7 +20,6 @@ pub enum Projection {
     Perspective {
         /// Horizontal and vertical position of the eye relative to the axis of the image, in pixels.
         eye: [f64; 2],
-        /// Distance of the eye from the plane of the slice, in pixels.
         distance: f64,
         /// Horizontal and vertical shear, in pixels per pixel of s, the distance from the slice.
         shear: [f64; 2],

@@ -23,7 +23,6 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strobes {
-    /// Each slice of the turn is drawn.
     #[default]
     Each,
     /// The slices of the first half turn are drawn. The slices of the second half turn are mirror images of these
@@ -155,7 +154,6 @@ impl SliceWords<'_> {
     }
 }
 
-/// The data that all batches of slices of a volume share.
 struct Volume<'a> {
     commands: &'a CommandBuffer,
     config: &'a VolumeConfig,
@@ -302,7 +300,6 @@ impl<'a> Volume<'a> {
     }
 }
 
-/// Counts the primitives with a corner outside the display's volume.
 fn outside(display: &dyn SpatialDisplay, commands: &CommandBuffer) -> u64 {
     let is_shown: Vec<bool> = commands.positions.iter().map(|p| display.shows(DVec3::from_array(*p))).collect();
     let is_outside = |corners: &[u32]| corners.iter().any(|i| !is_shown[*i as usize]);

@@ -68,9 +68,7 @@ impl SliceView {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PixelFormat {
-    /// One bit each for red, green and blue.
     Rgb1,
-    /// Eight bits each for red, green and blue.
     Rgb8,
 }
 
@@ -89,7 +87,6 @@ pub trait SpatialDisplay: Send + Sync {
         BinLayout::one()
     }
 
-    /// Returns true if any slice can show this point of the world.
     fn shows(&self, point: DVec3) -> bool;
 
     /// Returns true if the slice with index `view` (among [`Self::views`]) shows this point of the world.

@@ -91,7 +91,6 @@ pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[
     }
 }
 
-/// Rule for rounding a number when its lowest bits are removed.
 #[derive(Clone, Copy)]
 enum Rounding {
     Nearest,

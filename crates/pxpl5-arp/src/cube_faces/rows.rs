@@ -12,13 +12,11 @@ const RUN: usize = 64;
 const LANES: usize = 4;
 
 pub(crate) enum Shade {
-    /// One colour for the whole triangle.
     Flat(u32),
     /// Red, green and blue, each divided by w.
     Smooth([Linear; 3]),
 }
 
-/// A triangle on a face, prepared for drawing.
 pub(crate) struct OnFace {
     pub(crate) face: CubeFace,
     pub(crate) columns: Columns,
@@ -32,7 +30,6 @@ pub(crate) struct OnFace {
     pub(crate) shade: Shade,
 }
 
-/// Colours and depths of consecutive texels of a row.
 struct Run {
     colours: [u32; RUN],
     depths: [u32; RUN],

@@ -134,7 +134,6 @@ impl FaceView {
         [(row(range[0]) - 1.0).clamp(0.0, last).floor() as i64, (row(range[1]) + 2.0).clamp(0.0, last).ceil() as i64]
     }
 
-    /// Draws a triangle, and returns the number of texels that it covers.
     fn triangle(&self, places: [DVec3; 3], colours: [u32; 3], faces: &mut FaceSet) -> u64 {
         let Some(edges) = Edges::new(places) else { return 0 };
         let triangle = OnFace {

@@ -32,7 +32,6 @@ pub enum Situation {
 /// Number of cells along a side of every hall except the gallery.
 const CELLS_ACROSS: i64 = 7;
 
-/// Number of frames of the viewer's walk through the gallery.
 const GALLERY_FRAMES: u64 = 3_600;
 
 impl Situation {

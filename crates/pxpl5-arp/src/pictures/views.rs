@@ -90,7 +90,6 @@ impl MemoryViews<'_> {
     }
 }
 
-/// Returns the number of pixels per radian in the middle of a picture.
 fn pixels_per_radian(lens: &Lens, screen: &LensPicture) -> f64 {
     let view = |x: u32| DVec3::from_array(lens.view(screen, x.min(screen.width - 1), screen.height / 2));
     let middle = screen.width / 2;

@@ -94,7 +94,6 @@ enum Event {
     Made(usize),
 }
 
-/// A graphics processor, with the slices whose commands it still has to compute.
 #[derive(Debug, Default)]
 struct Processor {
     slices: VecDeque<usize>,

@@ -14,10 +14,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rotation {
-    /// The screen turns from +x to +z.
     #[default]
     XToZ,
-    /// The screen turns from +z to +x.
     ZToX,
 }
 

@@ -20,7 +20,6 @@ const TILE: Word = 0x0050_5449;
 /// Number of words in a message before the map's bits or the tile's pixels.
 const HEADER_WORDS: usize = 3;
 
-/// A message in the form that the frame store reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum StoreMessage<'a> {
     /// A map of the tiles that will arrive for each of `slices` slices, from slice `first` on. Bit i of `bits` is set

@@ -28,7 +28,6 @@ pub(crate) struct FrameStore {
     pub(crate) tiles: u64,
 }
 
-/// The effect of a message on the frame store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StoreReceipt {
     /// The message was the last announced tile of the slice with this index.
@@ -73,7 +72,6 @@ impl FrameStore {
         StoreReceipt::Part
     }
 
-    /// Makes the tiles of these slices dark, and notes which tiles will arrive.
     fn announce(&mut self, first: u32, slices: u32, tile: u32, bits: &[Word]) -> StoreReceipt {
         let Some(tiling) = tiling(tile) else { return StoreReceipt::Fault("tiles of a size that is no multiple of 8") };
         let grid = tiling.grid(self.size);

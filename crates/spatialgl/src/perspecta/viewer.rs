@@ -111,7 +111,6 @@ impl ViewOptions {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PictureLight {
     size: Size,
-    /// Light of each pixel of the picture: red, green and blue.
     sums: Vec<[u64; 3]>,
 }
 
@@ -274,7 +273,6 @@ struct Strobe {
     /// right, up and back along the eye's axes.
     across: [f64; 3],
     upward: [f64; 3],
-    /// Normal of the screen, in components along the eye's axes.
     normal: [f64; 3],
     distance: f64,
     focal: f64,

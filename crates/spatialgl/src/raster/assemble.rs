@@ -8,7 +8,6 @@ use crate::view::SliceView;
 /// Number of triangles that form the round end of a line.
 const CAP_TRIANGLES: usize = 12;
 
-/// The transformation of a view. Its matrices are stored as rows of numbers.
 #[derive(Clone, Debug)]
 pub(super) struct SliceTransform {
     pub(super) rows: [[f64; 4]; 3],
@@ -24,7 +23,6 @@ impl SliceTransform {
         Self { rows, window: view.window, volume: view.volume, magnification: view.magnification }
     }
 
-    /// Converts a point of the world to the coordinates of the slice.
     #[inline(always)]
     pub(super) fn local(&self, world: [f64; 3]) -> [f64; 3] {
         [along(&self.rows[0], world), along(&self.rows[1], world), along(&self.rows[2], world)]
@@ -41,7 +39,6 @@ impl SliceTransform {
         Corner { place: self.place(local), p, q, colour }
     }
 
-    /// Returns the homogeneous window coordinates of a point of the slice.
     #[inline(always)]
     pub(super) fn place(&self, local: [f64; 3]) -> Place {
         let [x, y, z, w] = &self.window;

@@ -57,7 +57,6 @@ impl<'a> Cluster<'a> {
     }
 }
 
-/// An iterator over the selected primitives of a cluster, in the order of drawing.
 pub(crate) struct ReachablePrimitives<'a> {
     rest: u64,
     primitives: &'a [u32],
@@ -102,7 +101,6 @@ impl Bin {
         &self.primitives
     }
 
-    /// Returns the primitives cluster by cluster.
     #[inline(always)]
     pub(crate) fn clusters(&self) -> impl Iterator<Item = Cluster<'_>> {
         let balls = self.balls.iter().zip(&self.each);

@@ -8,7 +8,6 @@ use crate::command::Shape;
 use crate::curve::plane_curve;
 use crate::image::SliceImage;
 
-/// A point on the curve in which a triangle intersects the slice: window coordinates and colour.
 #[derive(Clone, Copy)]
 struct CurvePoint {
     at: [f64; 2],

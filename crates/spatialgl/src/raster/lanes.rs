@@ -21,7 +21,6 @@ const SMALL: u32 = 64;
 /// Smallest width of a triangle, in pixels, for which the range of each row is computed before its pixels.
 const WIDE: u32 = 24;
 
-/// The number of generated fragments and of accepted fragments of a triangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fragments {
     pub(super) generated: u64,

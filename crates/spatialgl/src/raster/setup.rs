@@ -38,7 +38,6 @@ impl Corner {
         }
     }
 
-    /// Returns the corner, moved in the window by (dx, dy) pixels.
     pub(super) fn moved(&self, [dx, dy]: [f64; 2]) -> Self {
         let Place { x, y, z, w } = self.place;
         Self { place: Place { x: x + dx * w, y: y + dy * w, z, w }, ..*self }
@@ -130,7 +129,6 @@ pub(super) struct Bounds {
     pub(super) y: [u32; 2],
 }
 
-/// A triangle that is ready for sampling.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setup {
     /// Edges of the triangle. Edge i is opposite to corner i.
@@ -227,7 +225,6 @@ pub(super) fn weighted(weights: [f64; 3], values: [f64; 3]) -> f64 {
     weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2]
 }
 
-/// Returns a colour channel, interpolated and converted to 8 bits.
 #[inline(always)]
 pub(super) fn channel(weights: [f64; 3], values: [f64; 3], inverse_sum: f64) -> u8 {
     (weighted(weights, values) * inverse_sum + 0.5) as u8
