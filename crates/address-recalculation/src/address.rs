@@ -102,8 +102,8 @@ impl AddressUnit {
         (i64::from(self.geometry.guard) << self.quotient_bits) + quotient * inner + inner / 2 - half
     }
 
-    /// Returns the fraction of a texel in a position, from 0 to 1 inclusive, in `weight_bits` bits. Halves are rounded
-    /// up.
+    /// Returns the fractional part of a position in texels, from 0 to 1 inclusive, in `weight_bits` bits. Halves are
+    /// rounded up.
     pub(crate) const fn fraction(&self, place: i64) -> u32 {
         let below = self.quotient_bits - self.weight_bits;
         let fraction = place & ((1 << self.quotient_bits) - 1);

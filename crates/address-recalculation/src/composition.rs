@@ -3,7 +3,7 @@
 use crate::texel::{colour, nearness};
 use serde::{Deserialize, Serialize};
 
-/// Order of the two steps depth comparison and interpolation.
+/// Order of two steps: comparison of the memories' depths, and interpolation of texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompositionOrder {

@@ -13,7 +13,7 @@ use pxpl5_sim::parameters::{SettingError, check};
 /// Parameters, lens and options of an address recalculation pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArpConfig {
-    /// Word lengths, memories and stage time of the pipeline.
+    /// Word lengths, number of memories, and time per stage of the pipeline.
     pub timing: ArpTiming,
     pub scan: ScanTiming,
     pub lens: Lens,

@@ -1,4 +1,5 @@
-//! The display on the ring: a port for each memory, and for each eye an orientation register and a picture.
+//! The address recalculation display as a board on the ring: a port for each memory, and for each eye an orientation
+//! register and a picture.
 
 use crate::address::Footprint;
 use crate::config::ArpConfig;

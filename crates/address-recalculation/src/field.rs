@@ -1,4 +1,4 @@
-//! A scanned field, whose pixels are computed only when the field is read.
+//! One field of the display, whose pixels are computed only when the picture is read.
 
 use crate::address::{AddressUnit, Footprint};
 use crate::config::ArpConfig;

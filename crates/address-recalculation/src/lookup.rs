@@ -22,7 +22,7 @@ use std::cell::Cell;
 /// Counts of extra memory accesses for a picture, beyond one access per pixel and memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LookStats {
-    /// Number of pixels whose footprint (its four texels) has a texel on another face.
+    /// Number of pixels whose footprint (its four texels) extends beyond one face.
     pub split: u64,
     /// Number of pixels whose footprint (its four texels) has two texels in one bank and therefore needs a second
     /// access.
@@ -68,8 +68,8 @@ impl<'a> Addressing<'a> {
     /// Computes the footprints (the four texels and their weights) of up to [`BATCH`] pixels together, and returns
     /// true.
     ///
-    /// Returns false and computes nothing if the words have too many bits for exact results in doubles. The same holds
-    /// if there are so few pixels that a computation pixel by pixel is faster.
+    /// Returns false and computes nothing in two cases: if the words have too many bits for exact results in doubles,
+    /// or if a computation pixel by pixel is faster because there are few pixels.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;
         if is_worth_it {
@@ -116,7 +116,7 @@ impl<'a> Addressing<'a> {
     }
 }
 
-/// The fast model, which computes pixels from memories while their visible buffers stay the same.
+/// The fast model, which computes pixels from the visible buffers of all display memories.
 #[derive(Clone, Debug)]
 pub struct Lookup<'a> {
     addressing: Addressing<'a>,
@@ -170,8 +170,8 @@ impl<'a> Lookup<'a> {
         stats
     }
 
-    /// Finds for each pixel the memory whose colour is shown at the texel with the largest weight among the pixel's
-    /// four texels. A pixel gets `None` if all memories are empty at this texel.
+    /// Finds for each pixel the memory whose colour is shown. Only the texel with the largest weight among the pixel's
+    /// four texels is examined. A pixel gets `None` if all memories are empty at this texel.
     ///
     /// # Panics
     ///

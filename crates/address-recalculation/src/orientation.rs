@@ -8,8 +8,8 @@ use pxpl5_sim::parameters::SettingError;
 /// Largest accepted deviation from a rotation matrix, measured in the scalar products of the rows.
 const TOLERANCE: f64 = 1e-3;
 
-/// A rotation from head axes to world axes, checked to be a rotation. The columns of the matrix are the axes of the
-/// head.
+/// A matrix from head axes to world axes, which was checked to be a rotation. The columns of the matrix are the axes of
+/// the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
     rows: [Vector; 3],
@@ -148,7 +148,7 @@ impl OrientationLatch {
         self.loaded[after.saturating_sub(1)].1
     }
 
-    /// Discards matrices that the display cannot read any more at `time` or later.
+    /// Discards matrices that the display can no longer read at `time` or later.
     pub fn discard_before(&mut self, time: Time) {
         let after = self.loaded.partition_point(|(arrived, _)| *arrived <= time);
         self.loaded.drain(..after.saturating_sub(1));

@@ -50,7 +50,8 @@ pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[
     words.into()
 }
 
-/// Returns the message that requests to show a buffer at the first retrace at which all memories of a set can swap.
+/// Returns the message that requests to show a buffer together with buffers of other memories. All memories of the bit
+/// mask `memories` swap at the first retrace at which all are ready.
 ///
 /// Bit k of `memories` stands for memory k.
 #[must_use]

@@ -8,7 +8,7 @@ use pxpl5_scene::Scene;
 use pxpl5_sim::parameters::PathSettings;
 use serde::Serialize;
 
-/// Variants of a comparison. Each has a name, and the settings in which it differs from the plan of the comparison.
+/// Variants of a comparison. Each variant has a name and the settings that it changes.
 const VARIANTS: [(&str, &[(&str, &str)]); 9] = [
     ("full", &[("policy", "full")]),
     ("objects", &[("policy", "objects"), ("segment", "off")]),

@@ -13,13 +13,13 @@ use serde::{Deserialize, Serialize};
 pub struct BinRegion {
     /// Signs of the plane equations in the region: bit i is set if the region lies on the positive side of plane i.
     pub signs: u32,
-    /// Planes that bound the region: bit i is set if plane i is a bound.
+    /// Planes that bound the region: bit i is set if plane i bounds the region.
     pub bounds: u32,
-    /// Group of slices that draw the region, as a bit number of [`SliceView::bins`](crate::SliceView::bins).
+    /// Number of the bit in [`SliceView::bins`](crate::SliceView::bins) that stands for the slices of this region.
     pub group: u32,
 }
 
-/// The planes and regions by which primitives are sorted for a display.
+/// The planes and regions of space by which primitives are sorted into bins, with one bin for each group of slices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinLayout {
     /// Planes (a, b, c, d). A plane is positive at points with a x + b y + c z + d >= 0.
@@ -30,7 +30,7 @@ pub struct BinLayout {
     pub tolerance: f64,
 }
 
-/// Choice of the plane equations that decide if a primitive belongs to a bin.
+/// Choice of the planes by which primitives are sorted into bins (groups of slices).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Binning {
@@ -39,7 +39,7 @@ pub enum Binning {
     /// The test of a region uses only the two planes that bound the region, so a primitive gets into more bins than
     /// with all planes. This test is the first version in the SpatialGL paper.
     TwoPlanes,
-    /// The test of each region uses all planes of the layout.
+    /// Each primitive is tested against all planes of the layout.
     #[default]
     AllPlanes,
 }
@@ -80,7 +80,7 @@ impl BinLayout {
     }
 
     /// Returns a layout of eight sectors of 45 degrees around y. The planes z, x, x - z and x + z are bits 0 to 3.
-    /// Opposite sectors form one double wedge and therefore one group.
+    /// Opposite sectors form one double wedge, which one group of slices draws.
     #[must_use]
     pub fn double_wedges(tolerance: f64) -> Self {
         let planes = vec![[0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, -1.0, 0.0], [1.0, 0.0, 1.0, 0.0]];
@@ -163,9 +163,9 @@ impl Codes {
 /// Returns two booleans for one plane. The first is true if all of a primitive lies on the plane's positive side. The
 /// second is true if any part of the primitive lies on this side.
 ///
-/// With a tolerance, a primitive lies on one side only if it lies strictly beyond the tolerance. A triangle in a bin
-/// plane is therefore drawn by the slices on both sides of the plane. The rule for points on a boundary may assign the
-/// triangle to either side.
+/// If a primitive is nearer to the plane than the tolerance, the primitive counts as lying on both sides. A triangle in
+/// the plane is therefore drawn by the slices on both sides. This is necessary, because the rule for points on a
+/// boundary may assign the triangle to either side.
 fn sides(least: f64, most: f64, norm: f64, tolerance: BinTolerance, clip: f64, extra: f64) -> (bool, bool) {
     let pixels = match tolerance {
         BinTolerance::Codes => return (least >= 0.0, most >= 0.0),

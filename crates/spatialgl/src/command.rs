@@ -68,7 +68,7 @@ pub struct CommandBuffer {
     pub(crate) background: [u8; 3],
 }
 
-/// A triangle in the form that a renderer receives.
+/// A recorded triangle with its lit colours, in the form that a renderer receives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommandTriangle {
     /// Corners in world coordinates, pixels.
@@ -78,7 +78,7 @@ pub struct CommandTriangle {
 }
 
 impl CommandBuffer {
-    /// Returns the number of transformed and lit vertices.
+    /// Returns the number of recorded vertices, which are already transformed and lit.
     #[must_use]
     pub const fn vertices(&self) -> usize {
         self.positions.len()

@@ -1,5 +1,5 @@
-//! The programming interface: drawing state as in GL, vertices, and drawing. The interface does not depend on any
-//! display.
+//! The programming interface, which is similar to OpenGL: a drawing state, vertices and draw calls. The interface does
+//! not depend on any display.
 
 use crate::command::{Combine, CommandBuffer, Primitive, Shape};
 use glam::{DMat4, DVec3};
@@ -86,7 +86,7 @@ pub struct TwoSidedLight {
     pub diffuse: f64,
 }
 
-/// The drawing state, and the draw calls recorded since the last call of [`DrawContext::present`]. That function
+/// The drawing state, and the draw calls recorded since the last call of [`DrawContext::present`]. The method `present`
 /// returns the recorded draw calls and does not change the drawing state.
 #[derive(Clone, Debug)]
 pub struct DrawContext {

@@ -15,7 +15,7 @@ pub struct SliceImage {
 }
 
 impl SliceImage {
-    /// Creates a dark image. The width must be a multiple of 8, which displays guarantee.
+    /// Creates a dark image. The width must be a multiple of 8, and every display has such a width.
     #[must_use]
     pub fn new(size: Size) -> Self {
         let pixels = size[0] as usize * size[1] as usize;

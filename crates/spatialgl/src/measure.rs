@@ -186,8 +186,8 @@ pub fn innermost_lit_radius(planes: &BitPlanes) -> Option<u32> {
 /// Returns the radius in pixels of the display's dead zone around the axis. In the dead zone, no slice can show any
 /// point of any scene.
 ///
-/// A column of pixels is tested at its centre, at half of the volume's height, on both sides of the axis. The column
-/// belongs to the dead zone if no slice accepts either of the two points. Returns `None` if no slice accepts any
+/// Each column of pixels is tested at two points, one on each side of the axis, at half of the volume's height. The
+/// column belongs to the dead zone if no slice accepts either of the two points. Returns `None` if no slice accepts any
 /// column.
 #[must_use]
 pub fn dead_zone_radius(display: &dyn SpatialDisplay) -> Option<u32> {

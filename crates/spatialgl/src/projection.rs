@@ -35,11 +35,12 @@ pub enum Projection {
 pub struct Jitter {
     /// Seed of the random sequence. The seed is the same in all passes and volumes.
     pub seed: u64,
-    /// Distance of the eye from the slice in radii of the display. Assumed 4, 2 to 16.
+    /// Distance of the eye from the slice in radii of the display. The value 4 is assumed (2 to 16).
     pub eye_distance: f64,
-    /// Radius of the disc in which the eye lies, in radii of the display. Assumed 0.5, 0 to 1.
+    /// Radius of the disc in which the eye lies, in radii of the display. The value 0.5 is assumed (0 to 1).
     pub eye_radius: f64,
-    /// Greatest shift of a point by the shear, at the near or far plane of the slice, in pixels. Assumed 0.5, 0 to 1.
+    /// Greatest shift of a point by the shear, at the near or far plane of the slice, in pixels. The value 0.5 is
+    /// assumed (0 to 1).
     pub shear_px: f64,
 }
 

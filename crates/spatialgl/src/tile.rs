@@ -26,7 +26,7 @@ impl Tiling {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] names the number, the expected range and the value found.
+    /// [`SettingError`] names the invalid number, the expected range and the found value.
     pub fn check(self) -> Result<(), SettingError> {
         if let Some(tile) = self.tile {
             SettingError::require((8..=4096).contains(&tile), "tile.size", "8 to 4096", tile)?;

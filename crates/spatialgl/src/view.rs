@@ -17,9 +17,10 @@ pub struct SliceView {
     /// at the far plane.
     pub projection: DMat4,
     pub volume: SliceVolume,
-    /// Bins whose primitives the slice draws, one bit for each group of regions of [`SpatialDisplay::bins`].
+    /// Bins whose primitives the slice draws, as a bit mask. Bit g stands for the regions of [`SpatialDisplay::bins`]
+    /// with group g.
     pub bins: u64,
-    /// True if the nearest surface hides farther surfaces. This suits a display that is seen from one side only.
+    /// True if the nearest surface hides farther surfaces, as on a display that is seen from one side only.
     pub hides: bool,
     pub(crate) window: [[f64; 4]; 4],
     /// Slightly enlarged range of distances from the slice in which anything can be drawn, or `None` if the range is
@@ -30,7 +31,7 @@ pub struct SliceView {
 }
 
 impl SliceView {
-    /// Creates the view of a slice with an image of this size. The view draws the bins of group 0.
+    /// Creates the view of a slice with an image of this size. The slice draws the primitives of bin 0.
     #[must_use]
     pub fn new(view: DMat4, projection: DMat4, volume: SliceVolume, size: Size) -> Self {
         let window = window_of(&projection, size);
@@ -82,7 +83,7 @@ pub trait SpatialDisplay: Send + Sync {
 
     fn pixel_format(&self) -> PixelFormat;
 
-    /// Returns the planes and regions for sorting primitives. The default is a single bin for everything.
+    /// Returns the planes and regions for sorting primitives into bins. By default, one bin contains all primitives.
     fn bins(&self) -> BinLayout {
         BinLayout::one()
     }

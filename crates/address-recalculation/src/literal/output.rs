@@ -56,7 +56,7 @@ fn nearer(first: Candidate, second: Candidate) -> Candidate {
     nearest
 }
 
-/// Interpolates the four texels of each memory that the comparators have not yet eliminated.
+/// Interpolates the four texels of each memory that is still a candidate for the nearest memory.
 pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) {
     let Some(footprint) = registers.footprint else { return };
     let products = footprint.weights(composition.weight_bits);

@@ -33,13 +33,13 @@ impl Cell {
     }
 }
 
-/// Returns the coordinate at which the column of cells with index `number` begins, in metres.
+/// Returns the coordinate, in metres, at which the cells of column `number` begin.
 pub(crate) fn border(number: i64, side_m: f64) -> f64 {
     number as f64 * side_m
 }
 
-/// Returns the index of the column of cells that contains a coordinate. The result is the last column that begins at or
-/// before the coordinate.
+/// Returns the number of the column of cells that contains a coordinate. The result is the last column that begins at
+/// or before the coordinate.
 ///
 /// Comparisons correct the rounding errors of the division.
 pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
@@ -197,7 +197,7 @@ impl Cells {
         distances
     }
 
-    /// Computes one frame of the policy for an eye position. Returns the memories to draw.
+    /// Computes the updates of one frame for an eye position. Returns the memories to draw.
     pub fn frame(&mut self, eye: DVec3) -> Update {
         let memories = self.dealing.memories;
         let is_first = self.drawn_from[0].is_none();

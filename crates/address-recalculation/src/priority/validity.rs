@@ -56,8 +56,8 @@ pub struct ObjectView {
     pub speed: f64,
     /// Speed of the object's rotation about its own axis, in rad/s.
     pub turn: f64,
-    /// Duration for which the object's animation leaves an image right, in seconds. Infinite for an object without
-    /// animation.
+    /// Duration for which an image of the animated object stays right, in seconds. The duration is infinite for an
+    /// object without animation.
     pub animation_s: f64,
 }
 
@@ -157,8 +157,8 @@ fn time_of(way_m: f64, speed: f64) -> f64 {
     if speed == 0.0 { f64::INFINITY } else { way_m / speed.abs() }
 }
 
-/// Returns the index of the least often drawn of `memories` memories that can hold an image with the validity period
-/// `period_s`. Memory k is drawn every 2^k frames.
+/// Returns the index of the least often drawn memory that can hold an image with the validity period `period_s`. Of the
+/// `memories` memories, memory k is drawn every 2^k frames.
 #[must_use]
 pub fn level(period_s: f64, frame_s: f64, memories: usize) -> usize {
     let rests = |k: &usize| f64::from(1_u32 << k) * frame_s <= period_s;

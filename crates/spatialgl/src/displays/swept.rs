@@ -91,7 +91,7 @@ impl SweptConfig {
     }
 }
 
-/// A display whose slices are arranged around an axis: the published display, or a display with other numbers.
+/// A display whose slices are arranged around an axis, with any number of slices.
 #[derive(Clone, Debug)]
 pub struct SweptDisplay {
     config: SweptConfig,
@@ -104,7 +104,7 @@ impl SweptDisplay {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] names the number, the expected range and the value found.
+    /// [`SettingError`] names the invalid number, the expected range and the found value.
     pub fn new(config: SweptConfig) -> Result<Self, SettingError> {
         config.check()?;
         let bins = BinLayout::double_wedges(config.clip.tolerance(config.half_wedge()));

@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// The words of one slice. Both stores share the words until one store writes to the slice.
 type Slice = Arc<Vec<Word>>;
 
-/// Two volumes of N slices.
+/// A memory for two volumes of N slices each.
 ///
 /// Tiles go to the volume that is not shown. A swap request waits until every tile announced by a map has arrived, so a
 /// volume with a partly written slice is never shown.
@@ -21,7 +21,8 @@ pub(crate) struct FrameStore {
     shown: usize,
     /// Slices of the store that was visible until the last strobe 0 (the first flash of a revolution).
     scanned: Vec<Slice>,
-    /// Tiles that were announced and have not arrived: slice, tile and tile size.
+    /// Announced tiles that have not yet arrived: index of the slice, index of the tile, and side of the tile in
+    /// pixels.
     missing: BTreeSet<(u32, u32, u32)>,
     /// Arrival time of the last swap request, and the number of the requested buffer.
     requested: Option<(Time, u8)>,

@@ -28,7 +28,7 @@ impl PerspectaConfig {
     ///
     /// # Errors
     ///
-    /// [`SettingError`] names the number, the expected and the found value.
+    /// [`SettingError`] names the invalid number, the expected and the found value.
     pub fn check(&self) -> Result<(), SettingError> {
         ParameterTable::check(self).map_err(|error| error.in_table("perspecta"))?;
         SettingError::require(self.slices.is_multiple_of(2), "perspecta.slices", "an even number", self.slices)?;

@@ -5,8 +5,8 @@ use image::{Rgb, RgbImage};
 use pxpl5_sim::parameters::SettingError;
 use std::sync::{Mutex, PoisonError};
 
-/// Units of light of one lit pixel in one strobe (flash). With 256 x 256 units, the parts of the light for four
-/// neighbouring picture pixels are integers.
+/// Light of one lit pixel in one strobe (flash), in integer units. With 256 x 256 units, the parts of this light for
+/// four neighbouring picture pixels are integers.
 const FULL: u64 = 1 << 16;
 
 /// Number of slices whose light one task sums before it adds this sum to the total.
@@ -184,7 +184,7 @@ impl PictureLight {
     }
 }
 
-/// Returns the light of one revolution of a volume, as the display shows it after halftoning.
+/// Returns the light that an eye receives from a volume in one revolution of the screen, after halftoning.
 ///
 /// # Errors
 ///
@@ -210,8 +210,8 @@ pub fn view_planes(
     })
 }
 
-/// Returns the light of one revolution before halftoning, with all 256 levels. A comparison with [`view_planes`] shows
-/// the loss by the dither.
+/// Returns the light that an eye receives from a volume in one revolution, before halftoning, with all 256 levels. A
+/// comparison with [`view_planes`] shows the loss by the dither.
 ///
 /// Returns `None` if the frame was made without its colours.
 ///
@@ -331,7 +331,7 @@ fn is_cut(cut: Option<[f64; 2]>, angle: f64) -> bool {
 }
 
 /// Returns `frames` pictures from viewpoints on a circle around a volume. The first viewpoint is the camera's own, and
-/// all pictures have one exposure.
+/// all pictures have the same exposure.
 ///
 /// # Errors
 ///

@@ -36,8 +36,8 @@ pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut 
     added
 }
 
-/// Draws a line of pixels between two points where no fragment was drawn before. There is one pixel for each step along
-/// the longer axis. Returns the number of pixels drawn.
+/// Draws a line of pixels between two points, except pixels on which a fragment was drawn before. There is one pixel
+/// for each step along the longer axis. Returns the number of pixels drawn.
 fn line(from: CurvePoint, to: CurvePoint, image: &mut SliceImage) -> u64 {
     let Some([begin, end]) = inside(from.at, to.at, image.size()) else { return 0 };
     let mix = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
