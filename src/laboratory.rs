@@ -1,4 +1,4 @@
-//! Experiments in files, saved runs, and questions over many experiments.
+//! Experiments in files, saved runs, and studies of many experiments.
 
 /// ```
 /// use pxpl5::{Settings, prelude::*};

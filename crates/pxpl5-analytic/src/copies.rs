@@ -58,7 +58,7 @@ impl Queue {
     }
 }
 
-/// Times of the first and the last word of a set of copies.
+/// Begin and end of the copies of regions to the frame buffers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CopyTimes {
     /// Time of the first word of the first copy.

@@ -69,7 +69,7 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
 
 /// Smallest and largest number of fields that an estimate computes.
 ///
-/// In this time, a run reaches a steady state and shows several views of a moving head.
+/// In these fields, a run reaches a steady state and shows several views of a moving head.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
 /// Estimates the largest number of primitives for which all pictures are in time.

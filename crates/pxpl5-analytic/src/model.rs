@@ -77,8 +77,8 @@ pub struct PerTriangle {
 }
 
 impl SlatsModel {
-    /// Returns the parameters for a machine. If the machine runs i860 code, the times of this code are used. All
-    /// triangles form one structure.
+    /// Returns the model for a machine. If the machine runs i860 code, the times of this code are used. All triangles
+    /// form one structure.
     ///
     /// # Errors
     ///
@@ -134,7 +134,7 @@ impl SlatsModel {
         })
     }
 
-    /// Returns the parameters for a scene with several structures.
+    /// Returns the model for a scene with several structures.
     #[must_use]
     pub fn over(self, scene: &Scene) -> Self {
         let sphere_views = scene.structures().iter().filter(|structure| !structure.spheres.is_empty()).count();

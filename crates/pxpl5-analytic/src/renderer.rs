@@ -114,8 +114,8 @@ impl<const N: usize> Add for Costs<N> {
     }
 }
 
-/// A message to a renderer: a header of a few commands, then many equal commands. The fields are the times that do not
-/// depend on the arrival of the message.
+/// A message to a renderer: a header of a few commands, then many equal commands. This struct stores the times that do
+/// not depend on the arrival of the message.
 ///
 /// All later times follow from the arrival of the first word by sums and maxima. `max(a, b) + c` equals `max(a + c, b +
 /// c)` exactly, even with rounding. Sums are therefore computed before maxima, which shortens the chain of dependent
@@ -125,8 +125,8 @@ pub(super) struct Commands<const N: usize> {
     /// Time of the header on the ring. The header selects and clears the region.
     head_wire: Times<N>,
     head: Times<N>,
-    /// Time from the last word of the header to the start of the first command after it, if no earlier command is
-    /// running.
+    /// Time from the last word of the header to the start of the first command after the header, if no earlier command
+    /// is running.
     lead: Times<N>,
     count: f64,
     each: Times<N>,
@@ -192,7 +192,7 @@ impl<const N: usize> Commands<N> {
     }
 }
 
-/// A renderer between two messages: the times from which its parts are free.
+/// A renderer between two messages: the times at which its parts become free.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Array<const N: usize> {
     /// Time at which the renderer has executed all commands, or has ended a copy.

@@ -41,11 +41,12 @@ pub struct ComparedRow {
     pub saved_percent: f64,
     /// Distance between the eye and the position from which a memory was drawn, in mm, averaged over memories.
     pub eye_age_mm: f64,
-    /// Widths of the displayed tears (gaps between memories), in texels. Null in JSON if no memories meet in a cut.
+    /// Widths of the displayed tears (gaps between memories), in texels. Null in JSON if no cut lies between two
+    /// memories.
     pub tears: Option<TearWidths>,
     /// Angles by which warping moves vertices, in texels, as percentiles. Null in JSON without warping.
     pub stretch: Option<TearWidths>,
-    /// Number of times that cells (squares of the floor) were assigned to memories anew. With the policy `objects`,
+    /// Number of times that cells (squares of the floor) were assigned to memories anew. With the policy `objects`, the
     /// number of times that an object changed its memory.
     pub changes: u64,
     /// Number of retraces at which an update was incomplete, summed over all memories.

@@ -41,7 +41,7 @@ pub struct WalkOutcome {
     pub path: Walk,
     pub settings: WalkSettings,
     pub tally: WalkTally,
-    /// Report of the viewer's walk, including a view along the path at its end.
+    /// Report of the viewer's walk. The report includes a view along the path at the end of the walk.
     pub report: WalkReport,
 }
 

@@ -28,12 +28,11 @@ impl Route {
 /// Distance between routes and walls, as a fraction of the hall's side.
 const MARGIN: f64 = 0.015;
 
-/// Returns the path of a route through a scene.
+/// Returns the path of a route through a scene. The scene's own path defines the height of the eye.
 ///
 /// # Errors
 ///
-/// Returns a [`SettingError`] if the scene has no path of its own. The scene's path defines the height of the
-/// eye.
+/// Returns a [`SettingError`] if the scene has no path of its own.
 pub fn path_of(scene: &Scene, route: Route) -> Result<Walk, SettingError> {
     // The scene's own path defines the height of the eye.
     let own: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();

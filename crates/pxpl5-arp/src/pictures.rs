@@ -69,8 +69,8 @@ pub fn all(experiments: &Experiments) -> Result<Vec<ArpPicture>, SettingError> {
 /// are omitted if the view is too wide for a plane. All other pictures are drawn without lens distortion, unless the
 /// view is too wide for a plane.
 ///
-/// The chosen frame and direction uncover most of the scene behind the widest tear. If no memories meet in a cut, the
-/// view is along the path at the end of the walk.
+/// The chosen frame and direction uncover most of the scene behind the widest tear. If no cut lies between two
+/// memories, the view is along the path at the end of the walk.
 ///
 /// # Errors
 ///

@@ -44,7 +44,7 @@ pub struct WalkTally {
     /// Angles of the tears (gaps between memories) at shared vertices, over all frames.
     pub tears: Tears,
     /// Width in radians of the widest tear (gap between two memories) that each frame shows, and the index of the
-    /// tear's vertex. `None` if no memories meet.
+    /// tear's vertex. `None` for a frame in which no memories share a vertex.
     pub widest: Vec<Option<(f64, u32)>>,
     /// Memories that were due, showed an update, or missed the retrace, for each frame.
     pub outcomes: Vec<FrameOutcome>,

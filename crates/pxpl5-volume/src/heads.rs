@@ -137,7 +137,7 @@ impl<'a> HeadComparison<'a> {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the latency is out of range (0 to 10,000 ms) or missing.
+    /// Returns a [`SettingError`] if the latency is out of range (0 to 10,000 ms), or if it is missing.
     pub fn new(volume: &'a Volume, motion: &'a dyn Motion, latency_ms: Option<f64>) -> Result<Self, SettingError> {
         let wrong = |found: String| {
             let expected = "0 to 10000 ms, because no pipeline runs here that would give a latency";

@@ -184,7 +184,7 @@ pub struct ModelTimes {
 /// A setting whose number differs from the SpatialGL paper's value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Override {
-    /// Path of the number, as after `--set`.
+    /// Path of the setting, as written after `--set`.
     pub path: String,
     /// Value of the setting with which the volume was drawn.
     pub value: Value,

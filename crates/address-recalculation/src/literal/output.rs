@@ -75,8 +75,8 @@ pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) 
     registers.colour = registers.candidates.first().map_or(0, |candidate| candidate.colours[0]);
 }
 
-/// Returns the final colour of the pixel. If even the smallest depth of all display memories is the depth of an empty
-/// texel, the background is visible.
+/// Returns the final colour of the pixel. If depths were interpolated before the comparison, the nearest candidate may
+/// be empty, and then the background is visible.
 pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[BankedMemory]) -> u32 {
     let farthest = memories.first().map_or(0, BankedMemory::farthest);
     match (composition.order, registers.candidates.first()) {

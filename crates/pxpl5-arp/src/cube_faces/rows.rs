@@ -13,7 +13,7 @@ const LANES: usize = 4;
 
 pub(crate) enum Shade {
     Flat(u32),
-    /// Red, green and blue, each divided by w.
+    /// Red, green and blue as functions over the face, each divided by w, the distance along the face's axis.
     Smooth([Linear; 3]),
 }
 
@@ -23,7 +23,7 @@ pub(crate) struct OnFace {
     /// Number of texels in a row.
     pub(crate) texels: i64,
     pub(crate) crossings: [Crossing; 3],
-    /// 1/w as a function over the face.
+    /// 1/w as a function over the face, where w is the distance along the face's axis.
     pub(crate) reciprocal: Linear,
     /// Coefficients (a, b) of the depth a + b/w. The depth of a drawn texel is between 0 and 1.
     pub(crate) depth: [f64; 2],

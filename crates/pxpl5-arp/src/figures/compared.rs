@@ -42,9 +42,9 @@ pub(super) fn composite_differs(world: &World, settings: &WalkSettings, eye: DVe
     Ok(all.filter(|texel| composed(*texel) != one.texel(*texel)).count() as u64)
 }
 
-/// Number of simulated frames, in which even the stalled (very slow) renderer draws all memories once.
+/// Number of simulated frames. In this time, even the very slow renderer draws all memories once.
 const FRAMES: u64 = 200;
-/// Triangles that the stalled (very slow) renderer draws per second.
+/// Triangles that the very slow (stalled) renderer draws per second.
 const STALLED_TRIANGLES_PER_S: f64 = 700.0;
 
 /// Counts the pixels that differ between the pictures of an ideal renderer and of a very slow renderer, while a head at

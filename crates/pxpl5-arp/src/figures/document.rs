@@ -291,7 +291,7 @@ fn thresholds(text: &mut String, all: &Experiments) {
 }
 
 /// Writes two constraints on table 2 of the paper CPR05, which prints the number of segments in each memory. Both
-/// follow because the same segments are drawn with and without cutting, only in different memories.
+/// constraints follow from one fact: the same segments are drawn with and without cutting, only in different memories.
 fn conservation(text: &mut String, all: &Experiments) {
     let ours = [0, 2].map(|walk: usize| {
         let memories = all.walks[walk].report.memories.iter();

@@ -54,7 +54,8 @@ pub struct SlowRendererResult {
 /// Results of all simulated experiments.
 #[derive(Clone, Debug)]
 pub struct Experiments {
-    /// Two fits of the cell side in the gallery: with this project's rules, and with rings of cells of equal width.
+    /// Two fits of the cell side in the gallery: with this project's rules, and with one ring of cells in each memory
+    /// after memory 0.
     pub fits: [CellFit; 2],
     /// All interpretations of table 1 of the paper CPR05 (update rates).
     pub interpretations: Interpretations,
@@ -182,7 +183,8 @@ pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
 pub struct SizeRow {
     /// Diameter of the object, divided by the distance of its middle.
     pub size_over_distance: f64,
-    /// Time until translation changes the image by the threshold, computed from the distance of the middle, in seconds.
+    /// Time in seconds until the eye's translation makes the image wrong by the threshold. The time is computed with
+    /// the distance of the object's middle.
     pub translation_s: f64,
     /// Time until the growth of the object's image reaches the threshold, for a disc and for a sphere, in seconds.
     pub size_s: [f64; 2],

@@ -21,8 +21,8 @@ pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingEr
 }
 
 /// Width and height in pixels of the small slices on which passes are counted. At the rim, the exact volume of such a
-/// slice is thicker than a pixel. The tapered clip needs this, because it is a pixel thick at the axis and becomes
-/// thicker towards the rim.
+/// slice is thicker than a pixel. The tapered clip needs such slices, because its volume is a pixel thick at the axis
+/// and becomes thicker towards the rim.
 const SMALL: u64 = 192;
 
 /// Returns figure P5: the number of draws of one triangle per slice, without bins.

@@ -25,8 +25,8 @@ pub struct ShownStatement {
     pub holds: bool,
 }
 
-/// Tests all statements of the paper that have no numbers. If a statement needs a scene, the test uses the first of
-/// `scenes`.
+/// Tests all statements of the SpatialGL paper that have no numbers. If a statement needs a scene, the test uses the
+/// first of `scenes`.
 pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<ShownStatement>, SettingError> {
     let mut shown = vec![dead_zone(), dilation()];
     if let Some(scene) = scenes.first() {

@@ -36,7 +36,8 @@ pub struct SliceBounds {
     pub copies: u64,
 }
 
-/// The time of each part for certain numbers of boards. Each of these times is a lower bound of the time for a volume.
+/// The time that each part of a machine with certain numbers of boards needs for a volume. Each of these times is a
+/// lower bound of the time for the volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BoundRow {
     /// Number of renderers that share the slices.

@@ -417,9 +417,9 @@ fn words_of(body: &Body) -> u32 {
     if let Body::Words(words) = body { words.len() as u32 } else { 0 }
 }
 
-/// Returns the renderer's times for drawing slices. The programs for slices use the codes of other commands, so these
-/// codes get the times of the programs for slices. A slice triangle takes the place of a triangle, and a halftone takes
-/// the place of deferred shading.
+/// Returns the renderer's times for drawing slices. The programs for slices have the command codes of other programs,
+/// and these codes therefore get the times of the programs for slices. A slice triangle takes the place of a triangle,
+/// and a halftone takes the place of deferred shading.
 fn slice_timing(layout: &Layout) -> RendererTiming {
     RendererTiming {
         triangle_clocks: u64::from(SliceTriangle::clocks(layout)),
