@@ -138,7 +138,7 @@ impl AddressUnit {
         Footprint { texels: places.map(|place| self.texel_or_neighbour(face, place)), fractions, is_split }
     }
 
-    /// Returns the texel at a column and row that can lie beyond the edges of a face.
+    /// Returns the texel at this column and row, which can lie beyond the edges of the face.
     ///
     /// Beyond an edge, the result is the neighbouring face's texel in the same direction. Beyond a corner, the result
     /// is `None`.

@@ -1,4 +1,4 @@
-//! Composition of a pixel: selection of the nearest memory, and interpolation of four texels.
+//! Composition of a pixel from all display memories: selection of the smallest depth, and interpolation of four texels.
 
 use crate::texel::{colour, nearness};
 use serde::{Deserialize, Serialize};
@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompositionOrder {
-    /// First, the nearest memory is selected for each texel. Then the four texels are interpolated (assumed).
+    /// First, the memory with the smallest depth is selected for each texel. Then the four selected texels are
+    /// interpolated (assumed).
     #[default]
     DepthFirst,
-    /// First, the four texels of each memory are interpolated, including their depths. Then the nearest memory is
-    /// selected.
+    /// First, the four texels of each memory are interpolated, including their depths. Then the memory with the
+    /// smallest depth is selected.
     InterpolationFirst,
 }
 

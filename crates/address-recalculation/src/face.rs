@@ -178,8 +178,8 @@ impl FaceGeometry {
         Some(TexelAddress { face, column, row })
     }
 
-    /// Returns the face that a direction hits, and the position relative to the middles of its texels. Returns `None`
-    /// for the zero vector.
+    /// Returns the face that a direction hits, and the position relative to the middles of the face's texels. Returns
+    /// `None` for the zero vector.
     ///
     /// The integer parts of the position are column and row of the upper left texel. The fractions are the distances
     /// from this texel to the right and downwards.

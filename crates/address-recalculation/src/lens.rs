@@ -178,8 +178,8 @@ fn wrong_lens(expected: impl fmt::Display, found: impl fmt::Display) -> SettingE
     SettingError::value("arp.lens", expected, found)
 }
 
-/// Returns the error for a line of a file of viewing vectors, counted from 1. If data are missing, `line` is the number
-/// of lines plus 1.
+/// Returns the error for line `line` of a file of viewing vectors. Lines are counted from 1. If data are missing,
+/// `line` is the number of lines plus 1.
 fn wrong_table(line: usize, expected: &str, found: impl fmt::Display) -> FileError {
     FileError::new(FileErrorKind::Syntax, expected, found).at(format_args!("arp.lens table, line {line}"))
 }

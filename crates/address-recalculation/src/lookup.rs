@@ -41,7 +41,7 @@ impl LookStats {
     }
 }
 
-/// Smallest number of pixels for which the computation in groups is used.
+/// Smallest number of pixels that are computed as a group. Fewer pixels are computed one by one.
 const MIN_GROUP_PIXELS: usize = 4;
 
 /// The part of the fast model that finds the texels of each pixel.

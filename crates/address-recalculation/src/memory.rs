@@ -38,7 +38,7 @@ impl MemoryKind {
         words * REGION_TEXELS as u32 / MESSAGE_WORDS
     }
 
-    /// Computes the texels of a buffer's regions and writes them into `faces`. `wanted` has true for each region to
+    /// Computes the texels of a buffer's regions and writes them into `faces`. `wanted` is true for each region to
     /// write.
     pub(crate) fn draw(self, regions: &Regions, wanted: &[bool], faces: &mut FaceSet) {
         for (number, region) in regions.iter().filter(|(number, _)| wanted[usize::from(**number)]) {

@@ -26,7 +26,7 @@ pub const fn region_grid(face_texels: u32) -> RegionGrid {
     RegionGrid { width: face_texels, height, region_width: REGION_SIZE, region_height: REGION_SIZE }
 }
 
-/// Returns the index of the region in a column and row of a face's regions. Returns `None` outside the face.
+/// Returns the index of the region at a column and row of regions on a face. Returns `None` outside the face.
 #[must_use]
 pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32) -> Option<RegionId> {
     let across = face_texels / REGION_SIZE;

@@ -118,7 +118,7 @@ impl<const N: usize> Chain<N> {
         Self { cpu, accepted: Times::all(0.0), draining: Times::all(0.0) }
     }
 
-    /// Sends the messages of one clump, on several channels at a time.
+    /// Sends the messages of one clump. Several channels carry messages at the same time.
     #[inline(always)]
     fn send(&mut self, arrays: &mut [Array<N>], sending: &MessageCosts<N>, clump: &Clump<N>) {
         let mut channels = Channels::new(sending.source_channels);

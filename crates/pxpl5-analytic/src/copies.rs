@@ -124,7 +124,7 @@ impl<const N: usize> Ports<N> {
         Self { free: [Times::all(f64::MIN); 2], begins: Times::all(f64::INFINITY), ends: Times::all(f64::MIN) }
     }
 
-    /// Makes a copy that starts at `ready`, or later when the port becomes free. Returns the end of the copy.
+    /// Copies a region from the time `ready` on, or later when the port becomes free. Returns the end of the copy.
     #[inline(always)]
     fn copy(&mut self, ready: Times<N>, to_right: bool, region: Times<N>) -> Times<N> {
         let begin = self.free[usize::from(to_right)].later(ready);
@@ -141,7 +141,7 @@ impl<const N: usize> Ports<N> {
         self.ends = self.ends.later(end);
     }
 
-    /// Makes the remaining copies, in an order that may differ between machines.
+    /// Copies the remaining regions, in an order that may differ between machines.
     #[inline(always)]
     fn copy_apart(&mut self, arrays: &mut [Array<N>], queues: &[Queue; MAX_RENDERERS], region: Times<N>) {
         let never = [f64::INFINITY; N];
@@ -172,8 +172,8 @@ impl<const N: usize> Ports<N> {
         }
     }
 
-    /// Makes one copy on each machine, to the right frame buffer if the mask is set, otherwise to the left. Returns the
-    /// end times.
+    /// Copies one region on each machine, to the right frame buffer if the mask is set, otherwise to the left. Returns
+    /// the end times.
     #[inline(always)]
     fn copy_where(&mut self, ready: Times<N>, to_right: Mask<N>, region: Times<N>) -> Times<N> {
         let [left, right] = self.free;

@@ -161,7 +161,7 @@ impl SlatsModel {
         DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
     }
 
-    /// Returns the copies of each renderer, for the regions for which `wanted` returns true.
+    /// Returns the copies that each renderer makes, for the regions for which `wanted` returns true.
     pub(super) fn layout(&self, wanted: impl Fn(usize) -> bool) -> [Queue; MAX_RENDERERS] {
         let mut queues = [Queue::default(); MAX_RENDERERS];
         let per_half = REGIONS / 4;

@@ -180,7 +180,8 @@ impl StereoModel {
         self.overhead_ns + ORDER_WORDS * self.word_ns + self.hop_ns * self.slaves / 2.0
     }
 
-    /// Returns the time from one processor to another, including the software on both sides, in nanoseconds.
+    /// Returns the time of a message from one processor to another, including the software on both sides, in
+    /// nanoseconds.
     fn order_ns(&self) -> f64 {
         2.0 * self.message_ns + self.transit_ns()
     }

@@ -45,7 +45,8 @@ pub(super) struct Clumps {
     view_words: f64,
 }
 
-/// Number of words of a message with the view of two eyes: a number, two counts, and three matrices for each eye.
+/// Number of words of a message with the view of two eyes: a number of two words, two counts, and three matrices for
+/// each eye.
 const VIEW_WORDS: f64 = 4.0 + 2.0 * 3.0 * 16.0;
 
 impl Clumps {
@@ -361,7 +362,7 @@ impl<'a> Ring<'a> {
         heads.reduce(|first, head| if head.0 < first.0 { head } else { first }).map(|(_, place)| place)
     }
 
-    /// Sends a sender's next message. The message occupies the port of the renderer and channels until its last word is
+    /// Sends a sender's next message. The message occupies the renderer's port and ring channels until its last word is
     /// in the FIFO.
     fn grant(&mut self, sender: &mut Sender<'_>) {
         let model = self.model;

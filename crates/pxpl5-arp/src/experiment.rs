@@ -17,7 +17,7 @@ use tracking::motion::Walk;
 /// A report of a viewer's walk, with the scene and the settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WalkReport {
-    /// Counters of the viewer's walk, and results of the view at its end.
+    /// Counters of the viewer's walk, and results of the view at the end of the walk.
     #[serde(flatten)]
     pub report: ArpReport,
     pub scene: String,
@@ -46,7 +46,7 @@ pub struct WalkOutcome {
 }
 
 impl WalkOutcome {
-    /// Runs a walk. Calls `finished` with the number of finished frames and the number of all frames.
+    /// Simulates a walk. Calls `finished` with the number of finished frames and the number of all frames.
     ///
     /// # Errors
     ///

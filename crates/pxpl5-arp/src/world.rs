@@ -113,7 +113,7 @@ impl World {
         Ok(())
     }
 
-    /// Returns the cells that contain segments (parts of objects). A cell is repeated for each of its segments.
+    /// Returns the cells that contain segments (parts of objects). A cell is returned once for each of its segments.
     pub fn cells(&self) -> impl Iterator<Item = Cell> {
         self.segments.iter().map(|segment| segment.cell)
     }

@@ -133,7 +133,7 @@ impl PixelPlanesReport {
     }
 }
 
-/// The numbers of the display.
+/// Size, number of slices and rotation of the display.
 #[derive(Clone, Debug, Serialize)]
 pub struct DisplayReport {
     /// Name of the display in options and files.

@@ -229,8 +229,8 @@ impl WebMachine {
         look::misses_all(self.0.stepper())
     }
 
-    /// Returns, as JSON, the share of time for which each kind of board was busy up to now, and the waits that delayed
-    /// the last pictures. Shares are 0 to 1, and values that were not measured are null.
+    /// Returns, as JSON, the share of time for which each kind of board was busy, and the waits that delayed the last
+    /// pictures. Shares are 0 to 1, and values that were not measured are null.
     #[must_use]
     pub fn limits(&self) -> String {
         look::limits(self.0.stepper()).to_string()

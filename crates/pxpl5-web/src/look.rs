@@ -50,8 +50,8 @@ pub(crate) fn misses_all(stepper: &Stepper) -> bool {
     run.pictures().len() > WARM_UP_PICTURES && !run.pictures().iter().any(PictureTimes::is_shown)
 }
 
-/// Returns, as JSON, the share of time for which each kind of board was busy, and the waits that delayed the
-/// last pictures. Shares are 0 to 1. `utilisation` is null at time zero, and `path` is null before the first complete
+/// Returns, as JSON, the share of time for which each kind of board was busy, and the waits that delayed the last
+/// pictures. Shares are 0 to 1. `utilisation` is null at time zero, and `path` is null before the first complete
 /// picture.
 pub(crate) fn limits(stepper: &Stepper) -> Value {
     let path = CriticalPath::so_far(&stepper.so_far());

@@ -32,7 +32,7 @@ pub fn sin_cos_of_turn(numerator: i64, denominator: u32) -> (f64, f64) {
     }
 }
 
-/// Returns sine and cosine of `part / whole` of 45 degrees.
+/// Returns sine and cosine of the angle `part / whole` times 45 degrees.
 fn first_eighth(part: i64, whole: i64) -> (f64, f64) {
     if part == whole {
         return (FRAC_1_SQRT_2, FRAC_1_SQRT_2);

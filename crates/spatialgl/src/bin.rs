@@ -22,7 +22,7 @@ pub struct BinRegion {
 /// The planes and regions of space by which primitives are sorted into bins, with one bin for each group of slices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinLayout {
-    /// Planes (a, b, c, d). A plane is positive at points with a x + b y + c z + d >= 0.
+    /// Planes (a, b, c, d). A point is on the positive side of a plane if a x + b y + c z + d >= 0.
     pub planes: Vec<[f64; 4]>,
     /// Regions into which the planes divide space.
     pub regions: Vec<BinRegion>,
@@ -36,8 +36,8 @@ pub struct BinLayout {
 pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
-    /// The test of a region uses only the two planes that bound the region, so a primitive gets into more bins than
-    /// with all planes. This test is the first version in the SpatialGL paper.
+    /// Each primitive is tested only against the two planes that bound a region, so it gets into more bins than with
+    /// all planes. This test is the first version in the SpatialGL paper.
     TwoPlanes,
     /// Each primitive is tested against all planes of the layout.
     #[default]
@@ -111,8 +111,8 @@ impl BinLayout {
         touched.fold(0, |groups, region| groups | 1 << region.group)
     }
 
-    /// Returns the regions, one bit each in the layout's order, that a primitive with these corners may touch. The test
-    /// uses all planes of the layout.
+    /// Returns the regions that a primitive with these corners may touch, with one bit for each region of the layout.
+    /// The test uses all planes of the layout.
     #[must_use]
     pub fn touched_regions(&self, corners: &[[f64; 3]], tolerance: BinTolerance) -> u64 {
         let codes = Codes::of(self, corners, tolerance, 0.0);
@@ -121,7 +121,8 @@ impl BinLayout {
     }
 }
 
-/// Signs of the plane equations in each sector, from +x to +z. The highest of the four binary digits is bit 3 (x + z).
+/// Signs of the plane equations in each sector, from +x to +z. The binary digits stand for the planes x + z, x - z, x
+/// and z, in this order.
 const SECTOR_SIGNS: [u32; 8] = [0b1111, 0b1011, 0b1001, 0b0001, 0b0000, 0b0100, 0b0110, 0b1110];
 
 /// The two planes that bound each sector, as a bit mask, in the order of `SECTOR_SIGNS`.

@@ -90,7 +90,7 @@ impl CommandBuffer {
         self.primitives.len()
     }
 
-    /// Returns red, green and blue of pixels without a fragment.
+    /// Returns the colour of pixels without a fragment: red, green and blue.
     #[must_use]
     pub const fn background(&self) -> [u8; 3] {
         self.background

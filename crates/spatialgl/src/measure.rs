@@ -8,7 +8,7 @@ use crate::view::{SliceView, SpatialDisplay};
 use glam::DVec3;
 use serde::Serialize;
 
-/// Counts of samples along the curves in which the slices intersect a mesh.
+/// Counts of sample points along the curves in which the slices intersect a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Connected {
     /// Number of samples inside the image. Neighbouring samples are at most a pixel apart.
@@ -139,7 +139,7 @@ impl Around {
         Self { size, near }
     }
 
-    /// Calls `each` for every sample of a curve inside the image. The arguments of `each` are the row of the sample,
+    /// Calls `each` for every sample inside the image along a curve. The arguments of `each` are the row of the sample,
     /// and a boolean that is true if the sample is shown.
     fn samples(&self, view: &SliceView, ends: [[f64; 3]; 2], mut each: impl FnMut(u32, bool)) {
         let [from, to] = ends.map(|end| pixel_of(view, end, self.size));
@@ -162,8 +162,8 @@ fn pixel_of(view: &SliceView, local: [f64; 3], size: [u32; 2]) -> [f64; 2] {
     [(clip.x / clip.w + 1.0) * width / 2.0, (1.0 - clip.y / clip.w) * height / 2.0]
 }
 
-/// Returns the number of lit pixels of all slices in each ring around the axis. Rings are `ring` pixels wide, and the
-/// distance is measured from the middle column.
+/// Returns, for each ring around the axis, the number of lit pixels in all slices. Rings are `ring` pixels wide, and
+/// distances are measured from the middle column.
 #[must_use]
 pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
     let [width, _] = planes.size();

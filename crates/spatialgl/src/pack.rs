@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Number of three-bit pixels in one word of [`pack_dense`] (derived): 32 / 3, rounded down.
 pub const DENSE_PIXELS: usize = 10;
 
-/// Number of pixels in one word (published in the SpatialGL paper).
+/// Number of pixels in one word of the projector's memory (published in the SpatialGL paper).
 pub const PIXELS_PER_WORD: u32 = 8;
 
 /// The order of the eight pixels in a byte.

@@ -65,7 +65,7 @@ pub struct WedgePlanes {
     pub a: [f64; 2],
     /// Coefficients of x and z of plane B. Points of the positive lobe lie on its positive side.
     pub b: [f64; 2],
-    /// Fraction bits to which both planes are rounded at every sample, or `None` for double precision.
+    /// Number of fraction bits in the evaluation of both planes at every sample, or `None` for double precision.
     pub fraction_bits: Option<u32>,
 }
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct Tiling {
     /// Side of a tile in pixels, a multiple of 8. With `None` there are no tiles, and every pixel is packed and sent.
     pub tile: Option<u32>,
-    /// Number of slices that share a stencil clear and the queries of tiles.
+    /// Number of slices in a batch. The slices of a batch share one clear of the stencil and the queries of tiles.
     pub batch: u32,
 }
 

@@ -120,7 +120,7 @@ struct Cutter {
     side_m: f64,
     vertices: Vec<DVec3>,
     cuts: Vec<CutVertex>,
-    /// Indices of the vertices that cuts have created so far, by line, axis and border.
+    /// Indices of the vertices that cuts have created so far. The key has the cut line, the axis and the border.
     made: BTreeMap<([u32; 2], Axis, i64), u32>,
 }
 

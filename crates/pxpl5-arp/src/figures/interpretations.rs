@@ -261,8 +261,9 @@ pub const PIXEL_DEG: f64 = 60.0 / 640.0;
 /// Angle of a texel of an ideal face in degrees, averaged over an edge of the face.
 const TEXEL_DEG: f64 = 90.0 / 512.0;
 
-/// A threshold of the image error, with the cell side and the tears (gaps between memories) that follow. The product of
-/// threshold and cell side is fixed, because it fits the update rates in table 1 of the paper CPR05.
+/// A threshold of the image error, and the cell side and the tears (gaps between memories) that result from this
+/// threshold. The product of threshold and cell side is fixed, because it fits the update rates in table 1 of the paper
+/// CPR05.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThresholdRow {
     /// The threshold of the image error as text, in pixels of the display or texels of an ideal face.
@@ -279,8 +280,8 @@ pub struct ThresholdRow {
     pub frame_late_px: f64,
 }
 
-/// Returns several thresholds in pixels or texels, with their consequences. `fitted_cell_m` is the cell side that fits
-/// table 1 of the paper CPR05 at the default threshold.
+/// Returns the rows of several thresholds, which are given in pixels or texels. `fitted_cell_m` is the cell side that
+/// fits table 1 of the paper CPR05 at the default threshold.
 #[must_use]
 pub fn threshold_rows(fitted_cell_m: f64) -> Vec<ThresholdRow> {
     let product = fitted_cell_m * PriorityTiming::PAPERS.theta_deg;

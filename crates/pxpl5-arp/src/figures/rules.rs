@@ -8,11 +8,10 @@ use serde::Serialize;
 pub struct Rules {
     /// Number of rings of cells around the viewer's cell in memory 0.
     pub inner_rings: u64,
-    /// Number of rings of cells in a memory, divided by the number of rings of cells in the memory before it, which is
-    /// drawn more often.
+    /// Number of rings of cells in a memory, divided by the number in the previous memory, which is drawn more often.
     pub ring_growth: u64,
-    /// True if distances are measured to cells that hold segments (parts of objects). False if distances are measured
-    /// to the border of a block of cells.
+    /// True if the distance that makes a memory due is measured to cells with segments (parts of objects). False if
+    /// this distance is measured to the border of a block of cells.
     pub to_held_cells: bool,
     /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,

@@ -40,9 +40,9 @@ pub struct SliceBounds {
 /// lower bound of the time for the volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BoundRow {
-    /// Number of renderers that share the slices.
+    /// Number of renderers among which the slices are divided.
     pub renderers: u64,
-    /// Number of graphics processors that share the triangles.
+    /// Number of graphics processors among which the triangles are divided.
     pub processors: u64,
     /// Times in milliseconds: renderers, ring (both directions), the display's port, processors.
     pub ms: [f64; 4],

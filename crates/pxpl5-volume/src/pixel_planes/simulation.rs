@@ -43,9 +43,9 @@ use std::sync::Arc;
 /// The result of simulating one volume on a machine with certain numbers of boards.
 #[derive(Clone, Debug, Serialize)]
 pub struct SimulatedRow {
-    /// Number of renderers that share the slices.
+    /// Number of renderers among which the slices are divided.
     pub renderers: u64,
-    /// Number of graphics processors that share the slices.
+    /// Number of graphics processors among which the slices are divided.
     pub processors: u64,
     /// Time from the start of the first command to the arrival of the last tile, in milliseconds.
     pub ms: f64,

@@ -1,4 +1,5 @@
-//! The ring messages of a volume: the commands of every region of every slice, and the resulting packed tiles.
+//! The ring messages of a volume: the commands for every region of every slice, and the packed tiles that renderers
+//! send.
 
 use super::renderer::{PixelPlanesRenderer, SliceLoad};
 use pxpl5_wire::{REGION_SIZE, Word};

@@ -28,7 +28,7 @@ pxpl5_sim::parameters::named!(Rotation, "sense of rotation", Rotation::ALL);
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweptConfig {
-    /// Number of slices per turn, even.
+    /// Number of slices per turn, which must be even.
     pub slices: u32,
     /// Width of an image in pixels, a multiple of 8. Half of the width is the radius of the display.
     pub width: u32,
@@ -39,7 +39,7 @@ pub struct SweptConfig {
     pub clip: SliceClip,
     /// Rule for points that lie exactly in the planes between slices.
     pub ties: TieRule,
-    /// Number of fraction bits to which values of boundary planes are rounded, or `None` for double precision.
+    /// Number of fraction bits in the evaluation of boundary planes, or `None` for double precision.
     pub plane_fraction_bits: Option<u32>,
     pub projection: Projection,
 }

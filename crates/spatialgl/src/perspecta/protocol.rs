@@ -56,9 +56,9 @@ pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Wo
 /// The messages of one batch of slices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BatchMessages {
-    /// Map of the tiles that will arrive, sent before these tiles.
+    /// Message with the map of the tiles that will arrive. This message is sent before the tiles.
     pub map: Arc<[Word]>,
-    /// Occupied tiles, slice by slice.
+    /// Messages of the occupied tiles, slice by slice.
     pub tiles: Vec<TileMessage>,
 }
 
@@ -124,7 +124,7 @@ fn has_light(words: &[Word], size: Size, grid: &TileGrid, number: u32) -> bool {
     rows(size, grid, number).any(|row| words[row].iter().any(|word| *word != 0))
 }
 
-/// Returns the parts of a slice's words that make up a tile, one range of indices for each row.
+/// Returns the words of a slice that make up a tile, as one range of indices for each row of the tile.
 pub(crate) fn rows(size: Size, grid: &TileGrid, number: u32) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
     let [left, top, right, bottom] = grid.rectangle(number);
     let row_words = size[0] / 8;

@@ -61,7 +61,7 @@ impl PerspectaConfig {
     }
 
     /// Returns the number of volumes per second that an eye sees. There are two volumes per revolution, because the
-    /// screen passes every plane twice (D2).
+    /// screen passes every plane twice (figure D2).
     #[must_use]
     pub fn volume_hz(&self) -> f64 {
         2.0 * self.spin_rpm as f64 / 60.0

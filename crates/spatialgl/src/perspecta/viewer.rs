@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 /// four neighbouring picture pixels are integers.
 const FULL: u64 = 1 << 16;
 
-/// Number of slices whose light one task sums before it adds this sum to the total.
+/// Number of slices whose light one task sums up, before the task adds this sum to the total.
 const SLICES_PER_TASK: u32 = 33;
 
 /// The position of an eye in front of the display, and the size of the eye's picture. The eye looks at the middle of

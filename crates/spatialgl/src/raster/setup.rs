@@ -1,9 +1,9 @@
 //! Set-up of a triangle in the window of a slice, in homogeneous coordinates (Olano and Greer 1997).
 //!
-//! The triangle needs neither clipping nor a division. Each edge is a linear function of the window, positive inside.
-//! The three functions are the weights of the corners at every sample, except for one positive factor that they share.
-//! Behind the eye, all three are negative. Vertex attributes are interpolated by these weights. Corners behind the eye
-//! or 10^6 px away therefore need no special case.
+//! The triangle needs neither clipping nor a division. Each edge is a linear function of the position in the window,
+//! which is positive inside the triangle. The three functions are the weights of the corners at every sample, except
+//! for one common positive factor. Behind the eye, all three functions are negative. Vertex attributes are interpolated
+//! by these weights. Corners behind the eye or 10^6 px away therefore need no special case.
 
 /// A position in homogeneous window coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +44,7 @@ impl Corner {
     }
 }
 
-/// Returns the scalar product of a matrix row and (p, 1).
+/// Returns the scalar product of the matrix row `row` and the vector (p, 1).
 #[inline(always)]
 pub(super) fn along(row: &[f64; 4], p: [f64; 3]) -> f64 {
     row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]
