@@ -274,8 +274,8 @@ impl Composed {
         Self { colours: vec![0; all], is_done: vec![false; all.div_ceil(PIECE)] }
     }
 
-    /// Returns the buffer of this thread's previous lookup if the size matches. Reuse avoids new page faults on the
-    /// host.
+    /// Returns the buffer of this thread's previous lookup, or a new buffer if the size differs. Reuse avoids new page
+    /// faults on the host.
     fn spare(texels: u32) -> Self {
         let all = 6 * (texels * texels) as usize;
         match SPARE.take().filter(|spare| spare.colours.len() == all) {

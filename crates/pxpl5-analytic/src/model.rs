@@ -141,8 +141,8 @@ impl SlatsModel {
         Self { begin_ns: begin_ns(&self.gp, scene.structures().len(), sphere_views), ..self }
     }
 
-    /// Returns the parameters that determine the number and order of messages. Machines that are computed together must
-    /// have equal values.
+    /// Returns the parameters that determine the number and order of messages. Only machines with equal values of these
+    /// parameters can be computed together.
     pub(super) const fn structure(&self) -> (usize, usize, usize, bool) {
         (self.renderers, self.gps, self.source_channels, self.split)
     }

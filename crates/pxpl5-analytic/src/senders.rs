@@ -136,7 +136,8 @@ pub(super) fn render(model: &SlatsModel, arrays: &mut [Array<1>], clumps: &Clump
     [accepted_ns, ring.all_done_ns(&senders)]
 }
 
-/// The words of a command that has left a renderer's FIFO, and so made room for words one FIFO depth later.
+/// The words of a command that has left a renderer's FIFO. Their departure makes room for the words that follow one
+/// FIFO depth later.
 #[derive(Clone, Copy, Debug)]
 struct Departure {
     first_word: f64,

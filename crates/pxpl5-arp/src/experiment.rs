@@ -1,4 +1,4 @@
-//! A complete experiment: a viewer's walk through a scene, and the view at its end.
+//! A complete experiment: a viewer's walk through a scene, and the view at the end of the walk.
 
 use crate::hall::{path_of, scaled};
 use crate::look::WalkFaces;

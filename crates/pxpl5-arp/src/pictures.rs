@@ -180,7 +180,7 @@ const EVERY: u64 = 29;
 /// Returns the frame and orientation at which a tear (gap between two memories) shows the largest number of background
 /// pixels.
 ///
-/// Each tried frame is viewed towards its widest tear in an upright surface. Returns `None` if there is no tear.
+/// The view in each tried frame is towards the widest tear in an upright surface. Returns `None` if there is no tear.
 fn best_tear_view(
     world: &World,
     torn: &WalkSettings,

@@ -35,7 +35,8 @@ pub struct WalkPlan {
     given: BTreeMap<String, String>,
 }
 
-/// A threshold in pixels or texels. The threshold becomes an angle when the display's resolution is set.
+/// A threshold of the image error, in pixels or texels. The threshold becomes an angle when the display's resolution is
+/// set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ThresholdChoice {
     /// Threshold in pixels of the display. One pixel is the horizontal angle of view divided by the number of pixels in
@@ -55,7 +56,7 @@ impl ThresholdChoice {
     }
 }
 
-/// Parses a threshold such as `2px` or `2texels`.
+/// Parses a threshold of the image error, such as `2px` or `2texels`.
 fn threshold(text: &str) -> Result<ThresholdChoice, SettingError> {
     let expected = || SettingError::text("pixels of the display as 2px, or texels of a face as 2texels", text);
     let number = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);

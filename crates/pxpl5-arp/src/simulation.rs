@@ -1,5 +1,4 @@
-//! Simulation of a viewer's walk, frame by frame: which memories are due for an update, their drawing, and their
-//! display.
+//! Simulation of a viewer's walk, frame by frame: the updates that are due, and the drawing and display of memories.
 
 use crate::content::{Content, warp};
 use crate::settings::{PolicyKind, SourceKind, WalkSettings};

@@ -66,8 +66,8 @@ impl World {
     ///
     /// # Errors
     ///
-    /// Returns a [`SettingError`] if the scene has spheres, moving objects or objects fixed to the head, or if it
-    /// cannot be cut.
+    /// Returns a [`SettingError`] if the scene has spheres, moving objects or objects fixed to the head, or if the
+    /// scene cannot be cut.
     pub fn new(scene: &Scene, side_m: f64) -> Result<Self, SettingError> {
         check_is_static(scene)?;
         let mut world = Self {
@@ -118,8 +118,8 @@ impl World {
         self.segments.iter().map(|segment| segment.cell)
     }
 
-    /// Returns the triangles of some segments (parts of objects). `place` returns the position at which a vertex is
-    /// drawn.
+    /// Returns the triangles of the segments (parts of objects) with these indices. `place` returns the position at
+    /// which a vertex is drawn.
     pub fn triangles<'a>(
         &'a self,
         segments: &'a [usize],
@@ -144,8 +144,8 @@ impl World {
         }
     }
 
-    /// Returns the centre of the bounding box of some segments (parts of objects), and the distance to their farthest
-    /// vertex in metres.
+    /// Returns the centre of the bounding box of a range of segments (parts of objects), and the distance to their
+    /// farthest vertex in metres.
     #[must_use]
     pub fn bounding_sphere(&self, segments: Range<usize>) -> (DVec3, f64) {
         let corners = self.segments[segments].iter().flat_map(|segment| segment.triangles.iter().flatten());

@@ -42,7 +42,7 @@ pub const POINTS: usize = 512;
 
 const PS_PER_S: f64 = 1e12;
 
-/// Errors of both displays at one instant, over all points and both eyes.
+/// Errors of the volume and of the head-mounted display at one instant, over all points and both eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HeadSample {
     /// Time since the motion began, seconds.
@@ -79,11 +79,12 @@ pub struct HeadSample {
 pub struct HeadStudy {
     /// Name and version of the JSON layout of this data.
     pub schema: &'static str,
-    /// Name of the scene that both displays show.
+    /// Name of the scene that the volume and the head-mounted display show.
     pub scene: String,
     /// Latency of the head-mounted display, milliseconds.
     pub latency_ms: f64,
-    /// Origin of the latency: "the volume's" if both displays have the same latency, or "given" if the user chose it.
+    /// Origin of the latency: "the volume's" if the head-mounted display has the latency of the volume, or "given" if
+    /// the user chose the latency.
     pub latency_is: &'static str,
     /// Latency with which the volume shows changes of the scene, in milliseconds, or `None` if no GPU drew the volume.
     pub volume_latency_ms: Option<f64>,

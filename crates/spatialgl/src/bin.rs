@@ -36,8 +36,8 @@ pub struct BinLayout {
 pub enum Binning {
     /// No binning: every slice draws every primitive.
     Off,
-    /// Each primitive is tested only against the two planes that bound a region, so it gets into more bins than with
-    /// all planes. This test is the first version in the SpatialGL paper.
+    /// Each primitive is tested only against the two planes that bound a region, so the primitive gets into more bins
+    /// than with all planes. This test is the first version in the SpatialGL paper.
     TwoPlanes,
     /// Each primitive is tested against all planes of the layout.
     #[default]

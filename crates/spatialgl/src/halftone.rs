@@ -36,7 +36,7 @@ impl Halftone {
         self.size
     }
 
-    /// Returns the threshold at pixel (x, y). A channel's bit is set if its value exceeds the threshold.
+    /// Returns the threshold at pixel (x, y). The bit of a channel is set if the channel's value exceeds the threshold.
     #[must_use]
     pub fn threshold(&self, x: u32, y: u32) -> u8 {
         self.rows[(y % self.size) as usize][(x % self.size) as usize]

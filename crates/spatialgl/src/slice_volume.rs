@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TieRule {
-    /// Each boundary plane belongs to the slice that begins with this plane, so every point off the axis is in exactly
-    /// one slice. This rule is not from the SpatialGL paper.
+    /// Each boundary plane belongs to only one of the two slices at this plane, the slice that begins there. Every
+    /// point off the axis is therefore in exactly one slice. This rule is not from the SpatialGL paper.
     #[default]
     HalfOpen,
     /// The rule as printed in the SpatialGL paper: the product of the distances is positive. No slice contains its

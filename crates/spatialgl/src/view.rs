@@ -55,7 +55,8 @@ impl SliceView {
         self.view.transform_point3(world)
     }
 
-    /// Returns true if a point of the world belongs to the slice: between its near and far planes and in its volume.
+    /// Returns true if a point of the world belongs to the slice: between the slice's near and far planes, and in the
+    /// slice's volume.
     #[must_use]
     pub fn accepts(&self, world: DVec3) -> bool {
         let local = self.local(world);

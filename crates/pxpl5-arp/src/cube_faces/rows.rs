@@ -1,5 +1,5 @@
-//! Rasterization of a triangle on a face, row by row. Covered texels, their colours and depths are computed several at
-//! a time.
+//! Rasterization of a triangle on a face, row by row. Colours and depths of covered texels are computed for several
+//! texels at a time.
 
 use crate::cube_faces::edges::{Columns, Crossing, Linear};
 use address_recalculation::{CubeFace, DEPTH_FARTHEST, FaceSet, TexelAddress};

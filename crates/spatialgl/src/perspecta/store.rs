@@ -7,7 +7,7 @@ use pxpl5_wire::{Word, read_swap_request};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The words of one slice. Both stores share the words until one store writes to the slice.
+/// The words of one slice. Both frame stores share the words until one store writes to the slice.
 type Slice = Arc<Vec<Word>>;
 
 /// A memory for two volumes of N slices each.

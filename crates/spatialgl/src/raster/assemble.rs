@@ -122,8 +122,8 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     }
 }
 
-/// Returns the part of a line between the near and far planes as a range within 0..1. Returns `None` if no part lies
-/// there.
+/// Returns the part of a line between the near and far planes, as a range of positions from 0 (begin) to 1 (end).
+/// Returns `None` if no part lies there.
 fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     let from = &from.place;

@@ -55,7 +55,7 @@ fn line(from: CurvePoint, to: CurvePoint, image: &mut SliceImage) -> u64 {
     added
 }
 
-/// Returns the part of a line that lies inside the image, as a range within 0..1.
+/// Returns the part of a line that lies inside the image, as a range of positions from 0 (begin) to 1 (end).
 fn inside(from: [f64; 2], to: [f64; 2], size: [u32; 2]) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
     for axis in 0..2 {

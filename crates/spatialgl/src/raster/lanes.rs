@@ -296,7 +296,7 @@ impl Setup {
     }
 
     /// Reduces a range of pixels to the part where a weighted sum is not negative. Leaves the range unchanged if
-    /// rounding could move its limit by a pixel.
+    /// rounding could move the limit of this part by a pixel.
     fn narrow_by(&self, range: &mut [f64; 2], row: [f64; 3], values: [f64; 3]) {
         let mut slope = 0.0;
         let mut constant = 0.0;
