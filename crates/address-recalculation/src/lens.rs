@@ -10,7 +10,6 @@ use std::sync::Arc;
 /// Widest angle of a flat picture or a radial lens, in degrees. All displays with flat pictures have the same limit.
 const WIDEST_FLAT_DEG: f64 = 170.0;
 
-/// The lens between the picture and the eye.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Lens {
     /// No lens distortion: the pixels lie on a plane.
@@ -30,7 +29,6 @@ pub enum Lens {
     Table(Arc<[Vector]>),
 }
 
-/// Size and viewing angle of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensPicture {
     pub width: u32,

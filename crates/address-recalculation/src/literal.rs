@@ -66,7 +66,6 @@ pub struct ReferencePipeline {
 }
 
 impl ReferencePipeline {
-    /// Creates an empty pipeline with a table of viewing vectors.
     #[must_use]
     pub fn new(config: &ArpConfig, table: LensTable) -> Self {
         let timing = &config.timing;

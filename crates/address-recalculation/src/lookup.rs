@@ -49,7 +49,7 @@ const MIN_GROUP_PIXELS: usize = 4;
 pub(crate) struct Addressing<'a> {
     table: &'a LensTable,
     unit: AddressUnit,
-    /// True if doubles represent all intermediate values exactly for these word lengths.
+    /// True if doubles represent all intermediate values exactly for the word lengths of this display.
     is_exact: bool,
 }
 

@@ -128,7 +128,6 @@ fn video_of(config: &MachineConfig) -> Result<Video, SettingError> {
     display.video.video()
 }
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

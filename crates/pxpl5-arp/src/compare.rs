@@ -41,7 +41,7 @@ pub struct ComparedRow {
     pub saved_percent: f64,
     /// Distance between the eye and the position from which a memory was drawn, in mm, averaged over memories.
     pub eye_age_mm: f64,
-    /// Widths of the displayed tears (gaps between memories), in texels. Null in JSON if no cut lies between two
+    /// Widths of the displayed tears (gaps between memories), in texels. Null in JSON if no object is cut between two
     /// memories.
     pub tears: Option<TearWidths>,
     /// Angles by which warping moves vertices, in texels, as percentiles. Null in JSON without warping.
@@ -58,9 +58,7 @@ pub struct ComparedRow {
 pub struct ArpComparison {
     pub schema: &'static str,
     pub scene: String,
-    /// Length of the viewer's walk, in frames.
     pub frames: u64,
-    /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,
     /// Results of the variants that succeeded.
     pub rows: Vec<ComparedRow>,

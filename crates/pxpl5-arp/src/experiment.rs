@@ -27,7 +27,6 @@ pub struct WalkReport {
     pub segments: u64,
     /// Length of the viewer's walk, in frames of the most often drawn memory.
     pub frames: u64,
-    /// Speed of the viewer's walk, in m/s.
     pub m_per_s: f64,
     /// Settings that the user chose, by their path, for example `priority.cell_m`.
     pub settings: BTreeMap<String, String>,

@@ -63,7 +63,6 @@ pub use tears::{TearWidths, Tears};
 pub use walk::{MemoryTally, WalkTally, at_frames, walk};
 pub use world::{Object, Segment, SharedVertex, Tint, World};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -69,7 +69,7 @@ pub fn all(experiments: &Experiments) -> Result<Vec<ArpPicture>, SettingError> {
 /// are omitted if the view is too wide for a plane. All other pictures are drawn without lens distortion, unless the
 /// view is too wide for a plane.
 ///
-/// The chosen frame and direction uncover most of the scene behind the widest tear. If no cut lies between two
+/// The chosen frame and direction uncover most of the scene behind the widest tear. If no object is cut between two
 /// memories, the view is along the path at the end of the walk.
 ///
 /// # Errors

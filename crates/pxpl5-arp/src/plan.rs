@@ -19,7 +19,7 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-/// Settings of a walk by path. Some defaults depend on other settings.
+/// Settings of a walk. Each setting has a path such as `priority.theta_deg`. Some defaults depend on other settings.
 ///
 /// A *cascade* lets an update of a memory also update all more often drawn memories. By default, only walks with warped
 /// cells have a cascade, and only the policy `cells` cuts objects. `priority.threshold` in pixels or texels overrides
@@ -122,7 +122,7 @@ impl WalkPlan {
         }
     }
 
-    /// Returns the settings that the user gave explicitly, by path.
+    /// Returns the settings that the user gave explicitly, each with its path such as `priority.cell_m`.
     #[must_use]
     pub const fn given(&self) -> &BTreeMap<String, String> {
         &self.given

@@ -51,7 +51,6 @@ pub struct ArpReport {
     pub sampling_error_px: Option<f64>,
 }
 
-/// Results of one display memory.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WalkMemoryReport {
     /// Number of times per second that the memory shows a new update.

@@ -39,7 +39,6 @@ enum Policy {
 /// Memories that became due, were updated or missed the retrace in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameOutcome {
-    /// Position of the eye.
     pub eye: DVec3,
     /// Flag of each memory: true if it became due for an update.
     pub due: Vec<bool>,

@@ -27,7 +27,7 @@ pub struct MemoryTally {
     /// Age of the eye position from which the shown update was drawn, in frames. The ages are summed over all frames in
     /// which the memory showed an update.
     pub age_frames: u64,
-    /// Part of `age_frames` that passed before each update was first shown.
+    /// Part of `age_frames` that passed while the renderer drew the updates.
     pub drawing_frames: u64,
     /// Number of frames in which the renderer drew the shown update.
     drawn_in: u64,
@@ -51,7 +51,6 @@ pub struct WalkTally {
 }
 
 impl WalkTally {
-    /// Returns the number of updates per second for each memory.
     #[must_use]
     pub fn rates_hz(&self, frame_hz: f64) -> Vec<f64> {
         self.memories.iter().map(|memory| memory.updates as f64 * frame_hz / self.frames as f64).collect()

@@ -45,7 +45,6 @@ pub use spatialgl;
 pub use spatialgl::perspecta;
 pub use workers::Counted;
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -24,7 +24,6 @@ pub struct BinRegion {
 pub struct BinLayout {
     /// Planes (a, b, c, d). A point is on the positive side of a plane if a x + b y + c z + d >= 0.
     pub planes: Vec<[f64; 4]>,
-    /// Regions into which the planes divide space.
     pub regions: Vec<BinRegion>,
     /// Greatest distance in pixels from a slice's exact volume at which the slice still shows points.
     pub tolerance: f64,
@@ -39,7 +38,7 @@ pub enum Binning {
     /// Each primitive is tested only against the two planes that bound a region, so the primitive gets into more bins
     /// than with all planes. This test is the first version in the SpatialGL paper.
     TwoPlanes,
-    /// Each primitive is tested against all planes of the layout.
+    /// Each primitive is tested against all planes by which space is divided.
     #[default]
     AllPlanes,
 }

@@ -106,7 +106,6 @@ pub use timing::{GpuTiming, TimeModel, VolumeTime};
 pub use view::{PixelFormat, SliceView, SpatialDisplay};
 pub use workers::{OneThread, Task, Workers};
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

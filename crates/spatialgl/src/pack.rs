@@ -9,7 +9,6 @@ pub const DENSE_PIXELS: usize = 10;
 /// Number of pixels in one word of the projector's memory (published in the SpatialGL paper).
 pub const PIXELS_PER_WORD: u32 = 8;
 
-/// The order of the eight pixels in a byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BitOrder {

@@ -53,7 +53,6 @@ impl Jitter {
     }
 }
 
-/// The eye and the shear of one slice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliceEye {
     /// Position of the eye: horizontal and vertical position, and distance from the slice, in pixels. `None` for an eye

@@ -44,7 +44,6 @@ pub struct VolumeConfig {
     pub halftone: Halftone,
     pub coverage: Coverage,
     pub strobes: Strobes,
-    /// True if the frame keeps the colours before halftoning.
     pub keeps_colours: bool,
 }
 

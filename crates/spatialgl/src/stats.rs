@@ -5,7 +5,6 @@ use serde::Serialize;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct VolumeStats {
-    /// Number of transformed vertices.
     pub vertices: u64,
     /// Number of triangles, lines and points.
     pub primitives: u64,

@@ -1,4 +1,5 @@
-//! The interface between a display and the pipeline: views and slice volumes, without other properties of the display.
+//! The interface between a display and the pipeline. The pipeline uses only the views and the slice volumes of a
+//! display.
 
 use crate::bin::BinLayout;
 use crate::projection::{Size, window_of};
@@ -23,7 +24,7 @@ pub struct SliceView {
     /// True if the nearest surface hides farther surfaces, as on a display that is seen from one side only.
     pub hides: bool,
     pub(crate) window: [[f64; 4]; 4],
-    /// Slightly enlarged range of distances from the slice in which anything can be drawn, or `None` if the range is
+    /// Range of distances from the slice in which anything can be drawn, slightly enlarged. `None` if the range is
     /// unknown.
     pub(crate) reach: Option<[f64; 2]>,
     /// Number of samples along a side of a pixel. The number exceeds 1 while a supersampled image is drawn.
@@ -66,7 +67,6 @@ impl SliceView {
     }
 }
 
-/// The colours that a pixel of a display can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PixelFormat {

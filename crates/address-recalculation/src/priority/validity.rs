@@ -50,7 +50,6 @@ pub enum Distance {
 pub struct ObjectView {
     /// Distance between the eye and the middle of the bounding sphere, in metres.
     pub distance_m: f64,
-    /// Radius of the bounding sphere in metres.
     pub radius_m: f64,
     /// Speed of the object relative to the eye, in m/s.
     pub speed: f64,

@@ -25,7 +25,8 @@ pub(crate) struct OnFace {
     pub(crate) crossings: [Crossing; 3],
     /// 1/w as a function over the face, where w is the distance along the face's axis.
     pub(crate) reciprocal: Linear,
-    /// Coefficients (a, b) of the depth a + b/w. The depth of a drawn texel is between 0 and 1.
+    /// Coefficients (a, b) of the depth a + b/w, where w is the distance along the face's axis. The depth of a drawn
+    /// texel is between 0 and 1.
     pub(crate) depth: [f64; 2],
     pub(crate) shade: Shade,
 }

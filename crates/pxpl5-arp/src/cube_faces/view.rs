@@ -33,7 +33,6 @@ impl DrawCounts {
     }
 }
 
-/// Size of the faces, and range of drawn depths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubeView {
     pub geometry: FaceGeometry,

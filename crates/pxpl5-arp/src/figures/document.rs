@@ -103,7 +103,6 @@ const COLUMNS: [TableColumn<FigureRow>; 9] = [
     ("", |row| verdict(row).to_owned()),
 ];
 
-/// Returns the rows as a Markdown table with a heading.
 #[must_use]
 pub fn table(rows: &[FigureRow]) -> String {
     figures::table(&COLUMNS, rows)

@@ -32,7 +32,6 @@ pub struct NamedWalk {
 /// The side of a cell (square of the floor), fitted to one update rate in table 1 of the paper CPR05.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellFit {
-    /// Rules with which the cell side was fitted.
     pub rules: Rules,
     /// Fitted side of a cell, in metres.
     pub cell_m: f64,
@@ -40,10 +39,8 @@ pub struct CellFit {
     pub rates_hz: Vec<f64>,
 }
 
-/// Results with a renderer of limited speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlowRendererResult {
-    /// Triangles that the renderer draws per second.
     pub triangles_per_s: f64,
     /// Updates per second of each display memory.
     pub rates_hz: Vec<f64>,
@@ -51,7 +48,6 @@ pub struct SlowRendererResult {
     pub missed: Vec<u64>,
 }
 
-/// Results of all simulated experiments.
 #[derive(Clone, Debug)]
 pub struct Experiments {
     /// Two fits of the cell side in the gallery: with this project's rules, and with one ring of cells in each memory

@@ -131,20 +131,19 @@ pub struct RankedRules {
     pub mean_error_percent: f64,
     /// Mean cross-validation error over all halls and paths, in percent.
     pub mean_left_out_percent: f64,
-    /// Results for each hall and path.
     pub tried: Vec<Tried>,
 }
 
-/// An update rate, predicted by the fit that is best for the other two rates.
+/// The update rate of one memory, predicted by the fit that is best for the update rates of the other two memories.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeftOutRate {
     /// Index of the memory whose update rate was left out of the fit.
     pub memory: usize,
-    /// Rules of the best fit to the other two rates.
+    /// Rules of the fit that is best for the other two memories.
     pub rules: Rules,
-    /// Hall and path of the best fit to the other two rates.
+    /// Hall and path of the fit that is best for the other two memories.
     pub situation: Situation,
-    /// Cell side and update rates of the best fit to the other two rates.
+    /// Cell side and update rates of the fit that is best for the other two memories.
     pub trial: Trial,
     /// Relative error of the predicted update rate, in percent.
     pub error_percent: f64,
@@ -268,9 +267,7 @@ const TEXEL_DEG: f64 = 90.0 / 512.0;
 pub struct ThresholdRow {
     /// The threshold of the image error as text, in pixels of the display or texels of an ideal face.
     pub threshold: &'static str,
-    /// The threshold of the image error in degrees.
     pub theta_deg: f64,
-    /// Side of a cell in metres.
     pub cell_m: f64,
     /// Widest tear (gap between two memories) if each update is shown in the frame in which the update is due, in
     /// pixels of the display.

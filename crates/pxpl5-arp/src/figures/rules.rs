@@ -10,8 +10,8 @@ pub struct Rules {
     pub inner_rings: u64,
     /// Number of rings of cells in a memory, divided by the number in the previous memory, which is drawn more often.
     pub ring_growth: u64,
-    /// True if the distance that makes a memory due is measured to cells with segments (parts of objects). False if
-    /// this distance is measured to the border of a block of cells.
+    /// Way of measuring the distance that determines when a memory is due. True: to the nearest cell with segments
+    /// (parts of objects). False: to the border of a block of cells.
     pub to_held_cells: bool,
     /// True if an update of a memory makes all more often drawn memories due for an update.
     pub has_cascade: bool,

@@ -14,7 +14,6 @@ use pxpl5_sim::parameters::SettingError;
 #[derive(Clone, Debug)]
 pub struct MemoryViews<'a> {
     pub faces: &'a WalkFaces,
-    /// Orientation of the head.
     pub orientation: DQuat,
     pub lens: Lens,
 }

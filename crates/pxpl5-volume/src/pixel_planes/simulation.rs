@@ -367,8 +367,8 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Requests a swap of the display's stores, and shows the volume at the first strobe 0 (first flash of a turn)
-    /// after the last tile.
+    /// Requests a swap of the display's stores. The volume is shown at the first strobe 0 (first flash of a turn) after
+    /// the arrival of the last tile.
     fn swap(&mut self) {
         let body = Body::Words(swap_request(1));
         self.deliver(self.last_tile_at, body);

@@ -10,7 +10,6 @@ use glam::{DMat4, DVec3};
 use pxpl5_sim::parameters::SettingError;
 use serde::{Deserialize, Serialize};
 
-/// The direction in which the screen turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rotation {
@@ -169,8 +168,8 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
 /// Returns sine and cosine of an angle around the axis. The angle is counted from slice 0, in steps of half the angle
 /// between slices.
 ///
-/// Opposite directions are exact negatives of each other at every phase, because sine and cosine are computed for only
-/// one of the two directions.
+/// Sine and cosine are computed for only one of two opposite directions. Opposite directions are therefore exact
+/// negatives of each other, for every angle of slice 0.
 fn direction(config: &SweptConfig, half_slices: i64) -> (f64, f64) {
     let signed = if config.rotation == Rotation::XToZ { half_slices } else { -half_slices };
     if config.phase == 0.0 {

@@ -53,7 +53,6 @@ pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Wo
     Some(batches.into_iter().flat_map(in_order).collect())
 }
 
-/// The messages of one batch of slices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BatchMessages {
     /// Message with the map of the tiles that will arrive. This message is sent before the tiles.
@@ -64,7 +63,6 @@ pub struct BatchMessages {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TileMessage {
-    /// Index of the slice in the revolution.
     pub slice: u32,
     /// Index of the tile in the slice, row by row from the top left.
     pub tile: u32,

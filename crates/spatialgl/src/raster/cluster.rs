@@ -95,7 +95,6 @@ impl Bin {
         Self { primitives, balls, each }
     }
 
-    /// Returns the indices of the primitives in the command buffer.
     #[must_use]
     pub fn primitives(&self) -> &[u32] {
         &self.primitives

@@ -124,7 +124,8 @@ struct Pixels {
     /// Column of the first pixel, in the top row of the block of pixels.
     x: u32,
     y: u32,
-    /// Width of the block if its pixels follow each other row by row, or `u32::MAX` if all pixels are in one row.
+    /// Number of pixels in a row of the block, after which the next row begins. `u32::MAX` if all pixels are in one
+    /// row.
     width: u32,
 }
 
