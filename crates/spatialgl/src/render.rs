@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Choice of the slices of a turn that are drawn. All other slices are mirrored copies of drawn slices.
+/// Rule that selects the slices to draw in a turn of the screen. All other slices are mirrored copies of drawn slices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Strobes {

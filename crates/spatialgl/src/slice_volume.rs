@@ -60,10 +60,10 @@ impl TieRule {
 /// z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WedgePlanes {
-    /// Coefficients of x and z of plane A. Points of the positive lobe (half of the double wedge) lie on its positive
-    /// side.
+    /// Coefficients of x and z of plane A. Points of the positive lobe (half of the double wedge) lie on the positive
+    /// side of this plane.
     pub a: [f64; 2],
-    /// Coefficients of x and z of plane B. Points of the positive lobe lie on its positive side.
+    /// Coefficients of x and z of plane B. Points of the positive lobe lie on the positive side of this plane.
     pub b: [f64; 2],
     /// Number of fraction bits in the evaluation of both planes at every sample, or `None` for double precision.
     pub fraction_bits: Option<u32>,

@@ -74,8 +74,8 @@ pub enum PixelFormat {
     Rgb8,
 }
 
-/// A volumetric or flat display, in the form that the pipeline uses. A display does not depend on the triangles that it
-/// shows. The pipeline uses no other property of a display.
+/// A volumetric or flat display, reduced to the properties that the pipeline uses. A display does not depend on the
+/// triangles that it shows.
 pub trait SpatialDisplay: Send + Sync {
     /// Returns the slices, in the order in which they are shown.
     fn views(&self) -> &[SliceView];

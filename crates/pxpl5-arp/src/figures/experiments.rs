@@ -59,8 +59,8 @@ pub struct Experiments {
     pub thresholds: Vec<ThresholdRow>,
     /// Number of segments (parts of objects) into which the fitted cells cut the gallery.
     pub segments: usize,
-    /// Four walks with the fitted cells: objects cut without warping, cut with warping, uncut, and warped without a
-    /// cascade. In a cascade, an update of a memory also updates all more often drawn memories.
+    /// Four walks with the fitted cells. Objects are cut without warping, cut with warping, uncut, or cut with warping
+    /// but without a cascade. In a cascade, an update of a memory also updates all more often drawn memories.
     pub walks: Vec<NamedWalk>,
     /// Walks with renderers of decreasing speed.
     pub slowed: Vec<SlowRendererResult>,

@@ -193,7 +193,7 @@ impl Tried {
     }
 }
 
-/// Returns the indices of all memories whose update rates are compared with the paper, except `memory`.
+/// Returns the indices of all memories whose update rates are compared with the paper CPR05, except `memory`.
 fn others(memory: usize) -> Vec<usize> {
     COMPARED.into_iter().filter(|other| *other != memory).collect()
 }

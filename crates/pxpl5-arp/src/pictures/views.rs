@@ -10,7 +10,7 @@ use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 use pxpl5_sim::parameters::SettingError;
 
-/// A view of the cube faces of all memories.
+/// The cube faces of all memories, seen by an eye with an orientation and through a lens.
 #[derive(Clone, Debug)]
 pub struct MemoryViews<'a> {
     pub faces: &'a WalkFaces,
