@@ -90,7 +90,7 @@ impl<'a> Addressing<'a> {
             if is_filled {
                 batch.inside().for_each(|index| self.mark_square(index, touched));
             }
-            // The others are computed one by one.
+            // Compute all other footprints one by one.
             for i in (0..here.len()).filter(|i| !is_filled || batch.leaves(*i)) {
                 self.mark_footprint(vectors.map(|axis| axis[i]), matrix, touched);
             }

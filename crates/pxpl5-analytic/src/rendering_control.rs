@@ -455,7 +455,7 @@ impl StereoModel {
     fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
         let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
         let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);
-        // Frames after the last computed one are unknown.
+        // Frames after the last computed frame are unknown.
         let known = frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
         DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureResult::Shown)), every, known)
     }

@@ -55,7 +55,7 @@ impl Queue {
             Some(if may_swap { Ok(job.content.clone()) } else { Err(()) })
         });
         let outcomes: Vec<Option<Result<Content, ()>>> = outcomes.collect();
-        // The next waiting update takes the place of a shown one.
+        // The next waiting update takes the place of a shown update.
         for (memory, outcome) in outcomes.iter().enumerate() {
             if matches!(outcome, Some(Ok(_))) {
                 self.running[memory] = self.waiting[memory].take();

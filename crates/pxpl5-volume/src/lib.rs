@@ -17,8 +17,8 @@
 //!
 //! # Beyond the paper
 //!
-//! Connected coverage, mirrored strobes and the renderers of Pixel-Planes 5 are not in the SpatialGL paper. Every report
-//! lists the features beyond the paper that its volume uses ([`VolumeReport::beyond_paper`]).
+//! Connected coverage, mirrored strobes and the renderers of Pixel-Planes 5 are not in the SpatialGL paper. Every
+//! report lists the features beyond the paper that its volume uses ([`VolumeReport::beyond_paper`]).
 
 #![warn(missing_docs)]
 

@@ -221,7 +221,7 @@ impl Cells {
                 *due |= changed;
             }
         }
-        // With a cascade, all memories faster than a due one are due.
+        // With a cascade, all memories that are drawn more often than a due memory are due.
         if self.has_cascade
             && let Some(slowest) = due.iter().rposition(|due| *due)
         {

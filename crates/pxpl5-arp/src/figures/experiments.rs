@@ -162,7 +162,7 @@ const POINTS: usize = 20_000;
 #[must_use]
 pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
     let numbers = PriorityTiming { memories, theta_deg: THETA_DEG, ..PriorityTiming::PAPERS };
-    // A point is valid for the time the walker needs to exceed the threshold.
+    // The image of a point is valid until the walker's movement exceeds the threshold.
     let threshold = Threshold::of_degrees(numbers.theta_deg);
     let distances = (0..POINTS).map(|point| 100.0 * libm::sqrt((point as f64 + 0.5) / POINTS as f64));
     let periods: Vec<f64> = distances.map(|distance_m| threshold.way(distance_m) / speed).collect();
