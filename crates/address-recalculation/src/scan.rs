@@ -7,7 +7,8 @@ use pxpl5_wire::{PeriodNumber, Video};
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// The part of the video signal for which the display reads (latches) the newest orientation once.
+/// The part of the video signal for which the display uses one orientation. The newest orientation is read (latched)
+/// just before this part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Latch {

@@ -159,7 +159,7 @@ impl<const N: usize> Channels<N> {
         Self { soonest: free, others: [free; MAX_CHANNELS - 1], number: number - 1 }
     }
 
-    /// Makes the channel with the earliest time busy until `free`, and restores the ascending order.
+    /// Marks the channel that becomes free first as busy until `free`, and restores the ascending order.
     #[inline(always)]
     fn give_back(&mut self, free: Times<N>) {
         let mut here = free;

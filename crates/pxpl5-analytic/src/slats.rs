@@ -84,8 +84,8 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     }
 }
 
-/// Computes the copies of a field. `rendered` is the time at which the renderers have accepted all triangles, and `cpu`
-/// the time at which the first graphics processor is free.
+/// Computes the copies of a field. `rendered` is the time at which the renderers have accepted all triangles. `cpu` is
+/// the time at which the first graphics processor ends its work.
 #[inline(always)]
 fn end<const N: usize>(
     models: &[SlatsModel; N],

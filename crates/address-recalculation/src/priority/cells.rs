@@ -136,7 +136,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Creates the policy for a world. The scene lies in the cells of `occupied`.
+    /// Creates the policy for a scene. `occupied` lists the cells in which the scene has content.
     ///
     /// With `has_cascade`, an update of a memory makes all memories that are drawn more often due for an update as
     /// well. Warping requires such a cascade.

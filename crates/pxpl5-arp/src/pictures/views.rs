@@ -1,4 +1,4 @@
-//! Views that the eye sees, and pictures of their errors.
+//! Pictures of the views that the eye sees, and of the errors in these views.
 
 use super::colours::MEMORY_COLOURS;
 use crate::content::angle;

@@ -417,9 +417,8 @@ fn words_of(body: &Body) -> u32 {
     if let Body::Words(words) = body { words.len() as u32 } else { 0 }
 }
 
-/// Returns the renderer's times for drawing slices. The programs for slices have the command codes of other programs,
-/// and these codes therefore get the times of the programs for slices. A slice triangle takes the place of a triangle,
-/// and a halftone takes the place of deferred shading.
+/// Returns the renderer's times for drawing slices. A slice triangle has the command code of a triangle, and a halftone
+/// has the code of deferred shading. Both codes therefore get the times of the programs for slices.
 fn slice_timing(layout: &Layout) -> RendererTiming {
     RendererTiming {
         triangle_clocks: u64::from(SliceTriangle::clocks(layout)),
