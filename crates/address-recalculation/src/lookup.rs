@@ -68,8 +68,8 @@ impl<'a> Addressing<'a> {
     /// Computes the footprints (the four texels and their weights) of up to [`BATCH`] pixels together, and returns
     /// true.
     ///
-    /// Returns false and computes nothing in two cases: if the words have too many bits for exact results in doubles,
-    /// or if a computation pixel by pixel is faster because there are few pixels.
+    /// Returns false and computes nothing in two cases. In the first case, the words have too many bits for exact
+    /// results in doubles. In the second case, there are so few pixels that a computation pixel by pixel is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
         let is_worth_it = self.is_exact && vectors[0].len() >= MIN_GROUP_PIXELS;
         if is_worth_it {

@@ -95,7 +95,7 @@ struct Renderers {
     stored_until_ns: Vec<Vec<f64>>,
     words: Vec<f64>,
     /// Three values for each of the latest regions of each renderer: the number of words before the region, the start
-    /// of the first command, and the cost of all commands.
+    /// of its first command, and the cost of its commands.
     started: Vec<Vec<(f64, f64, Cost)>>,
     ports_ns: [f64; 2],
 }

@@ -123,7 +123,7 @@ fn unit(seed: u64, slice: u32, draw: u64) -> f64 {
 }
 
 impl SliceEye {
-    /// Returns the matrix from the coordinates (u, v, s, 1) of the slice to clip coordinates, with depth 0 at the near
+    /// Returns the matrix from the slice's coordinates (u, v, s, 1) to clip coordinates. The depth is 0 at the near
     /// plane and 1 at the far plane.
     #[must_use]
     pub fn clip_matrix(&self, size: Size, reach: f64) -> DMat4 {
@@ -147,8 +147,8 @@ impl SliceEye {
         matrix_of_rows(rows)
     }
 
-    /// Returns the matrix rows from the coordinates (u, v, s, 1) of the slice to homogeneous window coordinates: x to
-    /// the right and y down in pixels, depth, w.
+    /// Returns the rows of the matrix from the slice's coordinates (u, v, s, 1) to homogeneous window coordinates.
+    /// These coordinates are x to the right and y down, both in pixels, depth, and w.
     ///
     /// The result equals [`Self::clip_matrix`] followed by the viewport. This function avoids the rounding of a
     /// division by half the image's size and of a multiplication by the same number.

@@ -49,8 +49,8 @@ pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
     near.saturating_add(after - before)
 }
 
-/// Assignment of cells to memories by rings of cells. The home cell contained the eye at the time of the assignment,
-/// and all cells at the same distance from the home cell form a ring of cells.
+/// Assignment of cells to memories by rings of cells. The home cell contained the eye at the time of the assignment.
+/// All cells at the same distance from the home cell form a ring of cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellAssignment {
     pub home: Cell,
