@@ -44,7 +44,6 @@ impl LookStats {
 /// Smallest number of pixels that are computed as a group. Fewer pixels are computed one by one.
 const MIN_GROUP_PIXELS: usize = 4;
 
-/// The part of the fast model that finds the texels of each pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addressing<'a> {
     table: &'a LensTable,

@@ -71,7 +71,6 @@ impl MemoryKind {
     }
 }
 
-/// A region of which some messages have arrived, but not all.
 #[derive(Clone, Debug)]
 struct Arriving {
     pixels: RegionPixels,

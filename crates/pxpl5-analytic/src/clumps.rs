@@ -64,7 +64,6 @@ impl<const N: usize> MessageCosts<N> {
         }
     }
 
-    /// Returns the message that carries one region's part of a clump (group of triangles).
     #[inline(always)]
     fn commands(&self, head: Costs<N>, triangles: f64, each: PerTriangle) -> Commands<N> {
         Commands::new(&self.fifos, &head, triangles * each.entries / 10.0, &self.command)

@@ -145,7 +145,6 @@ pub(super) struct Commands<const N: usize> {
 }
 
 impl<const N: usize> Commands<N> {
-    /// Creates a message with the header `head` and `count` commands that each cost `each`.
     #[inline(always)]
     pub(super) fn new(fifos: &Fifos<N>, head: &Costs<N>, count: f64, each: &Costs<N>) -> Self {
         let (word_ns, counts) = (fifos.word_ns, Times::all(count));

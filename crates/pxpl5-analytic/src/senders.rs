@@ -34,7 +34,6 @@ use std::sync::Arc;
 struct Clump {
     /// Time of TRANSFORM for both eyes, in nanoseconds.
     transform_ns: f64,
-    /// Numbers of triangles and of spheres in each region.
     bins: [[f64; 2]; REGIONS],
 }
 
@@ -190,7 +189,6 @@ struct Message {
     runs: [(Cost, f64); 4],
 }
 
-/// A graphics processor that sends the messages of its clumps one after the other.
 #[derive(Debug)]
 struct Sender<'a> {
     gp: usize,
@@ -215,7 +213,6 @@ impl Sender<'_> {
     }
 }
 
-/// The channels of the ring and the renderers, which all senders share.
 struct Ring<'a> {
     model: &'a SlatsModel,
     renderers: Vec<Renderer>,

@@ -36,7 +36,6 @@ pub enum ArpPicture {
     Drawing(String, String),
 }
 
-/// Number of frames of the viewer's walk that the pictures show.
 const FRAMES: u64 = 1_800;
 
 /// Name of each experiment, the figures of the papers that the experiment redraws, and the names of the project's

@@ -200,7 +200,6 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the new contents of the memories that are due for an update.
     fn contents(&self, update: &Update, eye: DVec3) -> Result<Vec<(usize, Content)>, SettingError> {
         let mut segments = vec![Vec::new(); update.due.len()];
         for (number, unit) in self.units.iter().enumerate() {
@@ -226,7 +225,6 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Returns the index of the memory to which a unit (an object or a segment) currently belongs.
     fn memory(&self, unit: usize) -> usize {
         match &self.policy {
             Policy::Full => 0,

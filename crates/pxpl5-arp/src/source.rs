@@ -14,7 +14,6 @@ pub(crate) struct Job {
     pub(crate) together: u8,
 }
 
-/// Updates that are being drawn, and updates that wait until these updates are finished.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue {
     running: Vec<Option<Job>>,

@@ -51,7 +51,6 @@ pub enum RendererKind {
     PixelPlanes,
 }
 
-/// A choice that has a name in options, files and reports.
 pub(crate) trait Named: Copy + PartialEq + 'static {
     const NAMES: &'static [(&'static str, Self)];
 

@@ -6,7 +6,6 @@ use pxpl5_gp::Processor;
 use pxpl5_machine::Board;
 use pxpl5_run::Stepper;
 
-/// Number of instructions that the text shows before the program counter.
 const BEFORE: u32 = 8;
 const AFTER: u32 = 8;
 

@@ -159,11 +159,9 @@ struct Volume<'a> {
     renderer: &'a dyn SliceRenderer,
     bins: &'a Bins,
     size: Size,
-    /// Dark target images that no task uses at the moment.
     scratch: Mutex<Vec<SliceImage>>,
 }
 
-/// Slices that are drawn, queried and packed together, with their results.
 struct Batch<'a> {
     views: &'a [SliceView],
     words: Vec<SliceWords<'a>>,

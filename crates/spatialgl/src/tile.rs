@@ -73,7 +73,6 @@ impl TileGrid {
         u64::from((right - left) / 8) * u64::from(bottom - top)
     }
 
-    /// Sets `tiles` to true for each tile in which a fragment was drawn.
     pub(crate) fn mark(&self, image: &SliceImage, tiles: &mut [bool]) {
         let row_bytes = self.size[0] as usize / 8;
         let tile_bytes = self.tile as usize / 8;

@@ -39,7 +39,6 @@ impl SliceView {
         Self { view, projection, volume, bins: 1, hides: false, window, reach: None, magnification: 1.0 }
     }
 
-    /// Returns the same view for an image with `factor` samples along each side of a pixel.
     pub(crate) fn supersampled_view(&self, factor: u32) -> Self {
         let factor = f64::from(factor);
         let mut view = self.clone();

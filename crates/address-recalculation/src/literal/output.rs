@@ -6,7 +6,6 @@ use super::registers::{Candidate, Registers};
 use crate::composition::{Composition, CompositionOrder};
 use crate::face::TexelAddress;
 
-/// Reads the four texels of a pixel from the four banks of each memory.
 pub(super) fn read(
     registers: &mut Registers,
     memories: &[BankedMemory],
@@ -56,7 +55,6 @@ fn nearer(first: Candidate, second: Candidate) -> Candidate {
     nearest
 }
 
-/// Interpolates the four texels of each memory that is still a candidate for the nearest memory.
 pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) {
     let Some(footprint) = registers.footprint else { return };
     let products = footprint.weights(composition.weight_bits);

@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 /// Largest coordinate, in metres, of a mesh that [`Segmentation::new`] can cut.
 const FARTHEST_M: f64 = 1e6;
 
-/// Largest number of pieces that the triangles of one mesh may be cut into.
 const MOST_PIECES: f64 = 1e7;
 
 /// A vertex that a cut has created on the line between two other vertices. Each of these two vertices can itself come
@@ -92,7 +91,6 @@ fn check(vertices: &[DVec3], triangles: &[[u32; 3]], side_m: f64) -> Result<(), 
     Ok(())
 }
 
-/// Returns the number of cells that the bounding rectangle of a triangle can touch.
 fn most_pieces(corners: [DVec3; 3], side_m: f64) -> f64 {
     let [a, b, c] = corners;
     let size = (a.max(b).max(c) - a.min(b).min(c)) / side_m;

@@ -20,7 +20,6 @@ pub(crate) enum Shade {
 pub(crate) struct OnFace {
     pub(crate) face: CubeFace,
     pub(crate) columns: Columns,
-    /// Number of texels in a row.
     pub(crate) texels: i64,
     pub(crate) crossings: [Crossing; 3],
     /// 1/w as a function over the face, where w is the distance along the face's axis.

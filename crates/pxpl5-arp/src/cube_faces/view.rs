@@ -39,7 +39,6 @@ pub struct CubeView {
     pub depth: DepthRange,
 }
 
-/// One face: its axes, and the values that all triangles on it share.
 struct FaceView {
     face: CubeFace,
     axes: [DVec3; 3],

@@ -8,7 +8,6 @@ use address_recalculation::{CubeFace, FaceSet, TexelAddress};
 use glam::{DQuat, DVec3};
 use pxpl5_sim::parameters::SettingError;
 
-/// Number of texels along the edge of the compared faces.
 const TEXELS: u32 = 128;
 
 fn small(settings: &WalkSettings) -> WalkSettings {

@@ -235,7 +235,6 @@ fn best_of_all(all: &Interpretations) -> String {
     text
 }
 
-/// Returns the reasons for the rules that this project chose among the interpretations, as Markdown.
 fn chosen(all: &Interpretations) -> String {
     let place = all.usual().map_or_else(String::new, |(place, ranked)| {
         format!(

@@ -45,7 +45,6 @@ fn passes(workers: &dyn Workers) -> Result<Vec<FigureRow>, SettingError> {
     published.into_iter().map(count).collect()
 }
 
-/// Returns the draw call of the triangle [`TRIANGLE`], scaled to slices of [`SMALL`] pixels.
 fn small_triangle() -> Result<CommandBuffer, SettingError> {
     let scale = SMALL as f64 / PerspectaConfig::PAPERS.width as f64;
     let corner = |corner: [f64; 3]| ColouredVertex::new(corner.map(|coordinate| coordinate * scale).into(), [255; 3]);

@@ -154,7 +154,6 @@ impl PixelPlanesRenderer {
         spatialgl::SliceClip::Hyperbolic(self.bias).reach(self.wedge) + 1e-6
     }
 
-    /// Executes the commands of a region on an array and draws the resulting colours into the image.
     fn region(&self, [left, top]: [u32; 2], placed: &[Placed], image: &mut SliceImage) -> RendererWork {
         let [width, height] = image.size();
         let within = [REGION_SIZE.min(width - left), REGION_SIZE.min(height - top)];

@@ -5,7 +5,6 @@ use crate::command::{CommandBuffer, Primitive, Shape};
 use crate::slice_volume::SliceVolume;
 use crate::view::SliceView;
 
-/// Number of triangles that form the round end of a line.
 const CAP_TRIANGLES: usize = 12;
 
 #[derive(Clone, Debug)]
@@ -45,7 +44,6 @@ impl SliceTransform {
         Place { x: along(x, local), y: along(y, local), z: along(z, local), w: along(w, local) }
     }
 
-    /// Converts a primitive to triangles, and calls `draw` with each triangle in the order of drawing.
     pub(super) fn triangles(
         &self,
         commands: &CommandBuffer,

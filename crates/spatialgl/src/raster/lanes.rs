@@ -12,7 +12,6 @@ use crate::slice_volume::{SampleTest, hyperbolic, parallel, taper};
 /// Number of pixels in a vector, which is also the number of pixels in a byte of the stencil.
 const LANES: usize = 8;
 
-/// One value for each of the eight pixels of a vector.
 type EachLane = [f64; LANES];
 
 /// Largest number of pixels in the bounds of a triangle whose rows are drawn together, as one sequence of pixels.
@@ -27,7 +26,6 @@ pub(super) struct Fragments {
     pub(super) accepted: u64,
 }
 
-/// Settings that are the same for all fragments of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mode {
     pub(super) test: SampleTest,
@@ -119,7 +117,6 @@ fn small(
 /// Eight pixels, and the weights of the triangle's corners at each pixel.
 struct Pixels {
     weights: [EachLane; 3],
-    /// Number of valid pixels, at most eight.
     count: u32,
     /// Column of the first pixel, in the top row of the block of pixels.
     x: u32,

@@ -16,7 +16,6 @@ use std::sync::{Mutex, PoisonError};
 pub struct Supersampled<R> {
     inner: R,
     factor: u32,
-    /// Images with several samples per pixel that are not in use at the moment.
     scratch: Mutex<Vec<SliceImage>>,
 }
 
