@@ -84,8 +84,8 @@ fn begin<const N: usize>(models: &[SlatsModel; N], arrays: &mut [Array<N>]) {
     }
 }
 
-/// Computes the copies of a field. `rendered` is the time at which the renderers have accepted all triangles, and `cpu`
-/// the time at which the first graphics processor is free.
+/// Computes the copies of a field. `rendered` is the time at which the renderers have accepted all triangles. `cpu` is
+/// the time at which the first graphics processor ends its work.
 #[inline(always)]
 fn end<const N: usize>(
     models: &[SlatsModel; N],
@@ -109,7 +109,8 @@ fn end<const N: usize>(
     std::array::from_fn(|i| models[i].times(rendered.0[i], top[i], bottom.map(|times| times[i])))
 }
 
-/// Copies regions to the frame buffers. From `from` on, the renderers receive their copy commands one after the other.
+/// Copies regions to the frame buffers. From the time `from` on, the renderers receive their copy commands one after
+/// the other.
 #[inline(always)]
 fn copy<const N: usize>(
     models: &[SlatsModel; N],

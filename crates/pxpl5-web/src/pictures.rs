@@ -81,7 +81,6 @@ pub(crate) fn renderer(stepper: &Stepper, number: usize) -> Vec<u8> {
         .collect()
 }
 
-/// Colour in which an enabled pixel is shown.
 const ENABLED: [u8; 3] = [79, 209, 165];
 
 /// Number of pixels on each side of a cube face in the picture of all six faces.

@@ -28,8 +28,6 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    /// Creates the run of an experiment from settings, written one per line as in experiment files. `files` has the
-    /// contents of files that the settings name.
     pub(crate) fn new(settings: &str, files: &Files) -> Result<Self, String> {
         let mut file = ExperimentFile::new();
         for (name, contents) in &files.0 {
@@ -53,8 +51,6 @@ impl Session {
         Ok(Self { stepper, is_over: false, plan, moves })
     }
 
-    /// Adds poses to the motion of the head that the visitor of the page moves. The last row of `rows` must not be
-    /// earlier than the instant to which the machine runs next.
     pub(crate) fn moved(&self, rows: &str) -> Result<(), String> {
         let moves = self.moves.as_ref().ok_or("this head is not moved on the page")?;
         let more = Recording::read(rows.as_bytes()).map_err(|error| error.to_string())?;
@@ -141,7 +137,6 @@ impl Session {
         about(triangles, |triangles| query.reached(triangles)).ok().map(u64::from)
     }
 
-    /// Draws the scene of the experiment for the spinning volumetric display.
     pub(crate) fn volume(&self) -> Result<Volume, String> {
         Volume::draw(self.stepper.experiment().scene())
     }

@@ -30,13 +30,13 @@ impl Halftone {
         Ok(Self { size, rows })
     }
 
-    /// Returns the number of rows, which is also the number of columns, of the matrix.
+    /// Returns the number of rows of the matrix, which is also the number of columns.
     #[must_use]
     pub const fn size(&self) -> u32 {
         self.size
     }
 
-    /// Returns the threshold at pixel (x, y). A channel's bit is set if its value exceeds the threshold.
+    /// Returns the threshold at pixel (x, y). The bit of a channel is set if the channel's value exceeds the threshold.
     #[must_use]
     pub fn threshold(&self, x: u32, y: u32) -> u8 {
         self.rows[(y % self.size) as usize][(x % self.size) as usize]
@@ -62,8 +62,8 @@ fn bayer(size: u32, i: u32, j: u32) -> u32 {
     (0..levels).fold(0, |value, bit| value << 2 | digit(bit))
 }
 
-/// Compares eight channel values with eight thresholds, one per byte. The result for the leftmost pixel (lowest byte)
-/// is in bit 7.
+/// Compares eight channel values with eight thresholds. Each value and each threshold is one byte. The result for the
+/// leftmost pixel (lowest byte) is in bit 7.
 #[inline(always)]
 pub(crate) fn bits_above(values: u64, thresholds: u64) -> u8 {
     const HIGH: u64 = 0x8080_8080_8080_8080;

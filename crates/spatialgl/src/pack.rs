@@ -6,10 +6,9 @@ use serde::{Deserialize, Serialize};
 /// Number of three-bit pixels in one word of [`pack_dense`] (derived): 32 / 3, rounded down.
 pub const DENSE_PIXELS: usize = 10;
 
-/// Number of pixels in one word (published in the SpatialGL paper).
+/// Number of pixels in one word of the projector's memory (published in the SpatialGL paper).
 pub const PIXELS_PER_WORD: u32 = 8;
 
-/// The order of the eight pixels in a byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BitOrder {
@@ -37,7 +36,6 @@ pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
     (column & 1 | column >> 7 & 2 | column >> 14 & 4) as u8
 }
 
-/// Returns a packed word in which each byte has its eight pixels in the order `order`.
 #[must_use]
 pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
     match order {

@@ -65,7 +65,6 @@ impl ClipQuadratic {
         Some(Self::of_plane(slope, offset, wedge, bias))
     }
 
-    /// Returns the value of the quadratic at a sample.
     #[must_use]
     pub fn at(&self, u: f64, v: f64) -> f64 {
         self.uu * u * u + self.uv * u * v + self.vv * v * v + self.u * u + self.v * v + self.one

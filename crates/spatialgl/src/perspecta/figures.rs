@@ -10,8 +10,8 @@ use crate::{
 use pxpl5_sim::figures::{Definition, FigureRow, around};
 use pxpl5_sim::parameters::Provenance;
 
-/// Returns the row of a figure. A computed value agrees with the published value if the difference is at most
-/// `half_digit`.
+/// Returns the row that compares a figure's computed value with the published value. The values agree if their
+/// difference is at most `half_digit`.
 #[must_use]
 pub fn row(
     id: &'static str,
@@ -122,8 +122,8 @@ fn arithmetic(config: &PerspectaConfig) -> Vec<Definition> {
     ]
 }
 
-/// Returns figures P20 and D12. P20 states how fast processors improve. D12 is the CPU's percentage of the total time
-/// in 18 months, if CPU and GPU take equal times today.
+/// Returns figures P20 and D12. P20 states how fast processors improve. CPU and GPU are assumed to take equal times
+/// today. D12 is then the CPU's percentage of the total time after 18 months.
 fn doubling() -> Vec<Definition> {
     // In 18 months the CPU takes half of its time. A GPU that doubles every m months takes 2^(-18/m) of its time.
     let share = |months: f64| 100.0 / (1.0 + libm::exp2(1.0 - CPU_DOUBLES_MONTHS / months));
