@@ -9,7 +9,7 @@ pub(crate) fn whole<T: TryFrom<u64>>(low: u64, high: u64) -> impl Fn(&str) -> Re
     }
 }
 
-/// Parses a whole number of an experiment file. The experiment file checks the range of each key.
+/// Parses a whole number. The experiment file checks the range of each key.
 pub(crate) fn signed(text: &str) -> Result<i64, String> {
     text.parse().map_err(|_| format!("expected a whole number of at most {}, found {text}", i64::MAX))
 }

@@ -4,7 +4,7 @@ use clap::{Arg, ArgMatches, Command};
 use pxpl5::{KeyValues, Registry};
 use std::sync::{Arc, OnceLock};
 
-/// The pipelines and displays of this process. [`crate::main`] sets them before clap builds the options.
+/// The pipelines and displays of this process, which [`crate::main`] sets before clap builds the options.
 static REGISTRY: OnceLock<Arc<Registry>> = OnceLock::new();
 
 /// Sets the pipelines and displays that the options of this process accept.

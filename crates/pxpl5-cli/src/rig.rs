@@ -90,7 +90,6 @@ fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     Ok(file.resolve()?)
 }
 
-/// Name of a latency, with the function that reads it from the measurement from outside or inside.
 type Column = (&'static str, fn(&Side) -> &Statistics);
 
 fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {

@@ -78,7 +78,6 @@ fn pictures(folder: &mut OutputFolder, comparison: &VolumeComparison) -> Result<
     Ok(())
 }
 
-/// Name of a table column, with the function that formats the column's cell for a row.
 type Column = (&'static str, fn(&VariantRow) -> String);
 
 const COLUMNS: [Column; 16] = [
