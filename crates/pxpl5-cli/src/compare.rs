@@ -104,7 +104,7 @@ pub(crate) struct CompareArgs {
 const DEFAULTS: [(&str, &str); 4] =
     [("scene", "room"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic"), ("head.tracker", "optical")];
 
-/// Maximum speed of the option `--pan`, in degrees per second.
+/// Maximum speed in the option `--edge-pan`, in degrees per second.
 const FASTEST: f64 = 10_000.0;
 
 fn pan(text: &str) -> Result<f64, String> {

@@ -100,20 +100,18 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
 pub(crate) struct SweepCommand {
     /// Name of the command after `pxpl5`.
     pub(crate) name: &'static str,
-    /// Participle for the work at a point, such as "simulated".
+    /// Participle for the work at a point, for example "simulated".
     pub(crate) verb: &'static str,
-    /// Number of points in parallel.
+    /// Number of points that are computed in parallel.
     pub(crate) parallel: usize,
     pub(crate) threads: Option<u64>,
 }
 
 impl SweepFolderArgs {
-    /// Runs the points of a sweep that have no stored row yet, and stores their rows. Ctrl-C ends the sweep, and prints
-    /// the command that continues it.
+    /// Runs the points without a stored row, and stores their rows. Ctrl-C ends the sweep, and prints the command that
+    /// resumes it.
     ///
-    /// # Errors
-    ///
-    /// Fails if the folder cannot be used, and if no point can be simulated.
+    /// Fails if no point can be simulated.
     pub(crate) fn run(&self, sweep: &impl Swept, header: Header, command: &SweepCommand) -> Result<(), CliError> {
         // The store keeps finished rows, so that Ctrl-C loses only the points in progress.
         let mut store = Store::open(&self.out, header, self.resume)?;
@@ -149,8 +147,7 @@ impl SweepFolderArgs {
 }
 
 impl SweepArgs {
-    /// Returns an error if the estimated time or memory of a sweep exceeds the limits of the options. The check takes
-    /// place before the sweep starts.
+    /// Returns an error before the start if the estimated time or memory of a sweep exceeds the limits of the options.
     fn admit(&self, sweep: &Sweep, threads: usize) -> Result<(), CliError> {
         // The estimate of hundreds of points takes seconds, so a sweep without limits skips the estimate.
         if self.max_memory.is_none() && self.max_seconds.is_none() {
@@ -163,7 +160,7 @@ impl SweepArgs {
     }
 }
 
-/// Checks that the sweep is valid, and writes the scripts of `--slurm`.
+/// Checks the sweep and writes the scripts of `--slurm`.
 fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliError> {
     sweep.header()?;
     let threads = args.threads.unwrap_or(1);
@@ -173,7 +170,7 @@ fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliE
     if args.folder.quiet { Ok(()) } else { print(&written.text()) }
 }
 
-/// Returns the warnings about unsupported settings in the experiments at the first and the last point of the sweep.
+/// Returns the warnings about unsupported settings at the first and the last point of the sweep.
 fn supposed(sweep: &Sweep) -> Vec<String> {
     let ends = [0, sweep.space().points() - 1].map(|point| sweep.plan(point).map(|plan| plan.warnings()));
     let mut all: Vec<String> = ends.into_iter().flatten().flatten().collect();
@@ -184,8 +181,8 @@ fn supposed(sweep: &Sweep) -> Vec<String> {
 /// Exit code of a sweep that was ended by Ctrl-C: 128 plus the number of the signal, as in shells.
 const INTERRUPTED: i32 = 130;
 
-/// Installs a handler that ends the sweep on Ctrl-C and prints the command to resume it. Rows of finished points are
-/// already in the file.
+/// Installs a handler that ends the sweep on Ctrl-C and prints the command in `again`, which resumes the sweep. Rows of
+/// finished points are already in the file.
 fn install_interrupt_handler(again: String) -> Result<(), CliError> {
     let listening = ctrlc::set_handler(move || end_interrupted(&again));
     listening.map_err(|error| CliError::failure(format!("Ctrl-C cannot be handled: {error}")))
@@ -197,7 +194,7 @@ fn end_interrupted(again: &str) {
 }
 
 /// Prints the number of failed points of a shard (part of a sweep), and the error of the first failed point. Returns
-/// the number of failed points.
+/// this number.
 fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
     if let Some(point) = store.failed(shard).next() {

@@ -78,8 +78,7 @@ fn with_blocks(row: &ComparisonRow) -> String {
     format!("{}{}", row.pipeline, blocks.unwrap_or_default())
 }
 
-/// Returns sentences about the number of seeds of each row. The text is empty unless the option `--until-precision`
-/// added seeds.
+/// Returns sentences about the number of seeds of each row. The text is empty without the option `--until-precision`.
 fn imprecise(comparison: &Comparison) -> String {
     let Some(width) = &comparison.until_precision else { return String::new() };
     let rows = |precise: bool| {

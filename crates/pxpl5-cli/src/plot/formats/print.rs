@@ -1,4 +1,4 @@
-//! Converts a figure to PDF and PNG. The typeface is built in.
+//! Converters of a figure to PDF and PNG with a built-in typeface.
 
 use crate::error::CliError;
 use svg2pdf::usvg::{Options, Transform, Tree};
