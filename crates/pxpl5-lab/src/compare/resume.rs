@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 impl CompareQuery {
-    /// Opens or creates the folder of finished rows. If `resume` is true, the rows are kept; else the rows of a
-    /// complete comparison are replaced.
+    /// Opens or creates the folder of finished rows. If `resume` is true, the finished rows are kept. Otherwise, the
+    /// rows of a complete comparison are deleted.
     ///
     /// # Errors
     ///
