@@ -54,7 +54,7 @@ use thiserror::Error;
 pub struct FigureError {
     /// Number of the figure in ACCURACY.md.
     pub id: String,
-    /// Reason why the experiment yields no result.
+    /// Reason for the missing result.
     pub reason: String,
 }
 

@@ -1,4 +1,3 @@
-
 use super::PlotArgs;
 use super::question::{Group, text};
 use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesStyle};

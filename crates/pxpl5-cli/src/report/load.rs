@@ -1,4 +1,3 @@
-
 use super::files::Files;
 use crate::error::CliError;
 use crate::run::INCOMPLETE;
