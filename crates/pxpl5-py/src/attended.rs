@@ -28,7 +28,6 @@ impl Progress {
         self.stopped.stop();
     }
 
-    /// Returns the flag that is set after a call of [`Self::stop`].
     pub(crate) fn stop_flag(&self) -> StopFlag {
         self.stopped.clone()
     }
@@ -41,16 +40,13 @@ impl Progress {
 /// Time between two checks for new progress and Ctrl-C.
 pub(crate) const LOOK: Duration = Duration::from_millis(50);
 
-/// Runs `work` on a separate thread. `callback` receives the number of finished steps and the total number of steps.
-/// The callback is called at most twenty times a second, and only when the progress has changed.
+/// Runs `work` on a separate thread. `callback` gets the number of finished steps and the number of all steps. The
+/// callback is called at most twenty times a second, and only after a change.
 ///
 /// Ctrl-C or an exception of the callback asks the work to stop. If `waits` is true, the exception is raised after the
 /// work has stopped. If `waits` is false, the exception is raised immediately, and the result of the work is discarded.
 ///
-/// # Errors
-///
-/// Raises `KeyboardInterrupt`, any exception of the callback, or `RunError` if the work panics because of a bug in the
-/// emulator.
+/// A panic of the work, which is a bug of the emulator, raises `RunError`.
 pub(crate) fn attended<T: Send + 'static>(
     py: Python<'_>,
     callback: Option<&Bound<'_, PyAny>>,
@@ -102,7 +98,6 @@ fn end<T>(results: &mut Receiver<T>) -> Option<T> {
     results.recv().ok()
 }
 
-/// Calls the callback if the progress has changed since its last call.
 fn tell(callback: Option<&Bound<'_, PyAny>>, progress: &Progress, watch: &mut Option<(u64, u64)>) -> PyResult<()> {
     let now = (progress.done.load(Ordering::Relaxed), progress.of.load(Ordering::Relaxed));
     let Some(callback) = callback.filter(|_| now.1 > 0 && *watch != Some(now)) else { return Ok(()) };

@@ -320,7 +320,7 @@ pub(crate) fn rig<'py>(
     )
 }
 
-/// The recorded measurement of the speed and error of each level of modelling, as JSON.
+/// The recorded measurement of the speed and error of each level of detail, as JSON.
 const LEVELS: &str = include_str!("../../pxpl5-cli/src/levels.json");
 
 /// Compares the levels of modelling by error and speed. Without ``experiments`` the result is the measurement that is

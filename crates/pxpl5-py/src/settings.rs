@@ -1,4 +1,4 @@
-//! Settings of an experiment by path, such as the settings of an experiment file.
+//! Settings of an experiment by path, as in an experiment file.
 
 use crate::errors::wrong_setting;
 use pxpl5::{ExperimentFile, Plan};

@@ -18,8 +18,7 @@ use std::sync::Arc;
 
 pub(crate) struct Column {
     pub(crate) name: String,
-    /// Description of the column's values with their unit. The description becomes the metadata `about` of the Arrow
-    /// field.
+    /// Description of the column's values with their unit, for the metadata `about` of the Arrow field.
     pub(crate) about: String,
     pub(crate) values: ArrayRef,
 }
@@ -365,14 +364,14 @@ impl Table {
     }
 }
 
-/// Greatest number of rows that a notebook shows.
+/// Maximum number of rows in a notebook.
 const SHOWN_ROWS: usize = 40;
 
 pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Returns a value of a column as text. Real numbers have four significant digits, and a missing value has no text.
+/// Formats a value of a column. Real numbers have four significant digits, and a missing value has no text.
 fn text(column: &ArrayRef, row: usize) -> String {
     if column.is_null(row) {
         return String::new();

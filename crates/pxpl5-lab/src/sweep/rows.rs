@@ -1,5 +1,4 @@
-//! Access to a file of result rows through an index of byte positions. A row is read from the file only when the row is
-//! needed.
+//! Reader of a file of result rows through an index of byte positions. A row is read only when it is needed.
 
 use super::points::Points;
 use super::{Header, MAX_POINTS, Status, SweepRow};
@@ -18,7 +17,7 @@ pub(super) struct RowFile {
     places: Vec<u64>,
     finished: u64,
     failed: Points,
-    /// Length of the file in bytes, up to the end of the last complete line.
+    /// Length in bytes up to the end of the last complete line.
     whole_bytes: u64,
 }
 
@@ -73,7 +72,6 @@ impl RowFile {
         self.whole_bytes
     }
 
-    /// Returns the number of points (experiments) with a row.
     pub(super) const fn finished(&self) -> u64 {
         self.finished
     }
@@ -109,10 +107,10 @@ pub(super) struct Scan {
     path: PathBuf,
     file: BufReader<File>,
     text: Vec<u8>,
-    /// Number of the last line that was read from the file, counted from 1.
+    /// Number of the last read line, counted from 1.
     line: usize,
     points: u64,
-    /// Header of the file. `None` if the file does not contain a complete header.
+    /// Header of the file. `None` if the header is incomplete.
     pub(super) header: Option<Header>,
     /// Length in bytes up to the end of the last complete line that was read.
     pub(super) whole_bytes: u64,
@@ -160,7 +158,6 @@ impl Scan {
         Ok(is_whole)
     }
 
-    /// Parses the current line as JSON.
     fn parsed<T: DeserializeOwned>(&self) -> Result<T, FileError> {
         serde_json::from_slice(&self.text).map_err(|error| self.damaged(format!("{} ({error})", excerpt(&self.text))))
     }
@@ -183,12 +180,12 @@ pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError 
 pub(super) struct RowReader<'a> {
     rows: &'a RowFile,
     file: BufReader<File>,
-    /// Byte position in the file at which the next read begins.
+    /// Byte position at which the next read begins.
     at: u64,
 }
 
 impl RowReader<'_> {
-    /// Returns the row of a point, or `None` if the file has no row for the point.
+    /// Returns the row of a point, if the file has one.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, FileError> {
         let Some(place) = self.rows.place(point) else { return Ok(None) };
         let row = self.row_at(place).map_err(FileError::io(&self.rows.path, "cannot be read again"))?;
