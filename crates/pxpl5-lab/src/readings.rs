@@ -3,7 +3,7 @@
 //! ```text
 //!   Reading::all() --Bench with a Reading, analytic--> Fit of each --best of them, transaction--> Readings: ranked
 //!                                                   |
-//!                                                   +--without one figure in turn--> LeaveOneOut: prediction of this figure
+//!                                                   +--without one figure in turn--> LeaveOneOut: its prediction
 //! ```
 //!
 //! Among hundreds of combinations, some may fit a dozen figures by chance. Every figure is therefore also predicted by

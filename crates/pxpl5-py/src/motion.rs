@@ -36,6 +36,7 @@ enum Origin {
     Name,
     /// The text of a recording, with the user's names of the columns and the behaviour after the last sample.
     Text { text: Vec<u8>, columns: BTreeMap<String, String>, end: Option<String> },
+    /// A Python function.
     Callable,
 }
 
