@@ -39,7 +39,6 @@ pub(crate) const EARLY_CHECK_FIELDS: [u64; 6] = [1, 2, 4, 8, 16, 32];
 /// pipelines fill and caches are cold.
 const MIN_EXTRAPOLATED_SECONDS: f64 = 0.5;
 
-/// Bytes that a run must have allocated before its total memory is extrapolated.
 const MIN_EXTRAPOLATED_BYTES: f64 = 50e6;
 
 #[derive(Clone, Debug)]

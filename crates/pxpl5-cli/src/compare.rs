@@ -100,7 +100,6 @@ pub(crate) struct CompareArgs {
     quiet: bool,
 }
 
-/// Default settings of a comparison, as keys and values of an experiment file.
 const DEFAULTS: [(&str, &str); 4] =
     [("scene", "room"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic"), ("head.tracker", "optical")];
 
@@ -164,7 +163,6 @@ fn admit(budget: BudgetArgs, query: &CompareQuery, quiet: bool) -> Result<(), Cl
     budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// Returns the settings that all rows of the comparison share. Keys without a value get the defaults of a comparison.
 fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
     if let Some(place) = file.place_of("pipeline") {
         return Err(CliError::usage(format!(

@@ -36,7 +36,6 @@ pub(crate) struct DiffArgs {
 #[derive(Debug)]
 struct PictureDifference {
     name: String,
-    /// Width and height in pixels of both pictures.
     sizes: [[u32; 2]; 2],
     /// Number of pixels that differ. `None` if the pictures have different sizes.
     differing: Option<u64>,

@@ -87,7 +87,6 @@ fn with_resume(error: &impl Display) -> String {
     format!("{error} (--resume)")
 }
 
-/// Returns the exit code for an error of a file.
 const fn code_of(kind: FileErrorKind) -> u8 {
     match kind {
         FileErrorKind::Locked => BUSY,

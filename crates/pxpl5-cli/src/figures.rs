@@ -170,7 +170,6 @@ const fn provenance(basis: Basis) -> &'static str {
     }
 }
 
-/// Number of significant digits of the values in a table of figures.
 const DIGITS: i32 = 6;
 
 const CHART_MM: f64 = 165.0;

@@ -50,7 +50,6 @@ pub(crate) struct LevelsArgs {
     budget: BudgetArgs,
 }
 
-/// The recorded measurement of all levels of detail, as JSON.
 const RECORD: &str = include_str!("levels.json");
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {

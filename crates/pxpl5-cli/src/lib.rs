@@ -205,7 +205,6 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
     }
 }
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -333,7 +333,6 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
     )
 }
 
-/// Returns the keys of the pipeline with their values after defaults.
 fn settings(query: &LimitQuery) -> serde_json::Value {
     query.pipeline.settings().into_iter().map(|(key, value)| (key, value.to_string())).collect()
 }

@@ -17,7 +17,6 @@ pub(crate) fn registry() -> Arc<Registry> {
     Arc::clone(REGISTRY.get_or_init(pxpl5::registry))
 }
 
-/// The name of the pipeline and the values of its keys, from the command line.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PipelineOptions {
     /// Keys of the experiment file, each with the text from the command line.

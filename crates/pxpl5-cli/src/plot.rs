@@ -216,7 +216,6 @@ fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) ->
     folder.commit()
 }
 
-/// Describes the confidence intervals in words: confidence and statistical method.
 fn interval(args: &PlotArgs, kind: RowsKind) -> String {
     match kind {
         RowsKind::Sweep => {

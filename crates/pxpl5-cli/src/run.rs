@@ -117,7 +117,6 @@ fn more_text(more: &[WhatIf]) -> String {
     text
 }
 
-/// Returns the report as text. If `more` is present, the effects of 10 % more of each resource follow.
 fn with_more(report: &Report, more: Option<&[WhatIf]>) -> Result<String, CliError> {
     let Some(more) = more else { return json(report) };
     let mut value = serde_json::to_value(report).map_err(CliError::failure)?;

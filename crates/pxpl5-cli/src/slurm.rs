@@ -38,7 +38,6 @@ pub(crate) struct Jobs<'a> {
 const TASK_S: f64 = 900.0;
 /// Maximum number of tasks in an array: Slurm's default (`MaxArraySize` 1001).
 const MOST_TASKS: u64 = 1_000;
-/// Number of points whose cost is estimated, as a sample of the sweep.
 const SAMPLE: u64 = 300;
 /// Seconds to start a task and load its scenes. Assumed.
 const START_S: f64 = 60.0;
@@ -56,19 +55,15 @@ const MERGE_TASK_BYTES: f64 = 32e3;
 /// Memory in bytes of the merging process before the first row, rounded up.
 const MERGE_BYTES: f64 = 50e6;
 
-/// Estimated cost of a sweep, from a sample of its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sample {
     points: u64,
     /// Mean time to simulate a point, in seconds on one core.
     mean_s: f64,
-    /// Maximum time to simulate a point, in seconds on one core.
     most_s: f64,
-    /// Largest memory that a point needs, in bytes.
     most_bytes: f64,
 }
 
-/// Time and memory requested from Slurm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Resources {
     tasks: u64,
@@ -114,7 +109,6 @@ const fn common_factor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_factor(b, a % b) }
 }
 
-/// Estimates the cost of a whole sweep on `threads` threads from a sample of its points.
 pub(crate) fn estimate(sweep: &Sweep, threads: usize) -> Estimate {
     Sample::of(sweep).whole(threads)
 }

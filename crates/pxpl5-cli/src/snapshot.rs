@@ -41,7 +41,6 @@ pub(crate) struct How<'a> {
     pub(crate) quiet: bool,
 }
 
-/// Outcome of a run, with an error if the run was too short for statistics.
 #[derive(Debug)]
 pub(crate) struct Simulated {
     pub(crate) outcome: Outcome,
@@ -49,7 +48,6 @@ pub(crate) struct Simulated {
 }
 
 impl Simulated {
-    /// Converts the result of a run. A run that is too short for statistics still has an outcome.
     pub(crate) fn of(run: Result<Outcome, ExperimentError>) -> Result<Self, CliError> {
         match run {
             Ok(outcome) => Ok(Self { outcome, too_short: None }),

@@ -102,7 +102,6 @@ pub(crate) struct SweepCommand {
     pub(crate) name: &'static str,
     /// Participle for the work at a point, for example "simulated".
     pub(crate) verb: &'static str,
-    /// Number of points that are computed in parallel.
     pub(crate) parallel: usize,
     pub(crate) threads: Option<u64>,
 }
@@ -147,7 +146,6 @@ impl SweepFolderArgs {
 }
 
 impl SweepArgs {
-    /// Returns an error before the start if the estimated time or memory of a sweep exceeds the limits of the options.
     fn admit(&self, sweep: &Sweep, threads: usize) -> Result<(), CliError> {
         // The estimate of hundreds of points takes seconds, so a sweep without limits skips the estimate.
         if self.max_memory.is_none() && self.max_seconds.is_none() {
@@ -160,7 +158,6 @@ impl SweepArgs {
     }
 }
 
-/// Checks the sweep and writes the scripts of `--slurm`.
 fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliError> {
     sweep.header()?;
     let threads = args.threads.unwrap_or(1);

@@ -9,7 +9,6 @@ pub(crate) struct Comparison {
     pub(crate) quantity: String,
     pub(crate) published: f64,
     pub(crate) simulated: f64,
-    /// Name of the paper, optionally with the number of a figure.
     pub(crate) source: String,
 }
 
@@ -70,7 +69,6 @@ fn ends(report: &Report) -> String {
     of_due(report, |due| format!("{}, {}, {}", due.late, due.incomplete, due.missed))
 }
 
-/// Formats the range of display periods over which all results are computed.
 fn window(report: &Report) -> String {
     report.window.map_or_else(|| "-".to_owned(), |window| format!("{} to {}", window.first_period, window.last_period))
 }

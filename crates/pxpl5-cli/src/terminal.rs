@@ -24,14 +24,12 @@ pub(crate) fn print_error(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Prints warnings to standard error unless `quiet` is true.
 pub(crate) fn warn(warnings: &[String], quiet: bool) {
     if !quiet {
         warnings.iter().for_each(|warning| print_error(&format!("pxpl5: warning: {warning}\n")));
     }
 }
 
-/// Sets a progress bar to `done` of `of` steps.
 pub(crate) fn advance(bar: &ProgressBar, done: u64, of: u64) {
     bar.set_length(of);
     bar.set_position(done);

@@ -62,9 +62,7 @@ const SCENES: [&str; 3] = ["mig", "molecules", "head"];
 /// measured.
 const BOARDS: usize = 12;
 
-/// Number of head poses for which each scene is transformed.
 const VIEWS: u64 = 4;
-/// Picoseconds between two successive head poses.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 /// Size in metres of the triangles that measure the clipper. At a distance of 1 m, each triangle covers a square with

@@ -90,7 +90,6 @@ pub struct ExperimentFile {
     pub(crate) sweep: Option<Setting>,
     /// File and line of each key in the table `sweep`, by the path of the key.
     pub(crate) sweep_places: BTreeMap<String, String>,
-    /// Contents of files in memory, by file name.
     contents: BTreeMap<String, Arc<[u8]>>,
 }
 

@@ -45,7 +45,6 @@ const MEMORY_BYTES: u64 = 1 << 30;
 /// The length of a run is computed from these times.
 const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 
-/// Minimum number of shown frames in a run.
 const FRAMES: u64 = 30;
 
 /// Returns the number of display periods in which a run shows [`FRAMES`] stereo frames.

@@ -26,7 +26,6 @@ use serde::Serialize;
 /// Number of random machines in the joint set.
 pub const SAMPLES: u64 = 500;
 
-/// Seed of the random machines in the joint set.
 const SEED: u64 = 0x5EED_0F05;
 
 /// Number of seeds and of frames of the scene "mig" for each random machine.
@@ -245,7 +244,6 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
 }
 
 impl Interval {
-    /// Adds the figure's values under other interpretations of the papers to the interval.
     fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
         let reach = |value: f64| (value / self.nominal - 1.0).abs();
         // Interpretations without a visible effect are left out.

@@ -76,7 +76,6 @@ pub fn registry() -> Arc<Registry> {
     Arc::clone(&OF_PAPERS)
 }
 
-/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

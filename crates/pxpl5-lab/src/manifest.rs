@@ -44,7 +44,6 @@ impl ManifestEntry {
         Self { name: name.to_owned(), contents: Some(Fingerprint::of(bytes).to_string()) }
     }
 
-    /// Returns true if the contents match the hash in the entry.
     fn is_of(&self, bytes: &[u8]) -> bool {
         self.contents.as_ref().is_none_or(|contents| *contents == Fingerprint::of(bytes).to_string())
     }

@@ -237,7 +237,6 @@ fn foreign(file: &str, reason: impl Display) -> FileError {
     FileError::because(FileErrorKind::Foreign, reason).in_file(file)
 }
 
-/// The contents of a checkpoint's file: the checkpoint and its checksum.
 #[derive(Serialize, Deserialize)]
 struct Sealed {
     #[serde(flatten)]

@@ -98,7 +98,6 @@ impl Sweep {
         &self.base
     }
 
-    /// Returns the folder of the sweep's experiment file, to which relative file names in the settings refer.
     fn folder(&self) -> PathBuf {
         self.base.sweep.as_ref().map(|sweep| sweep.folder.clone()).unwrap_or_default()
     }

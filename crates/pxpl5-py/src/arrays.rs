@@ -82,7 +82,6 @@ fn as_rows<'py>(name: &str, array: &Bound<'py, PyAny>, columns: usize) -> PyResu
     }
 }
 
-/// Returns a shape as Python writes it.
 fn shape_text(shape: &[usize]) -> String {
     let sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
     if sizes.len() == 1 { format!("({},)", sizes[0]) } else { format!("({})", sizes.join(", ")) }

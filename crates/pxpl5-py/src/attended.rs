@@ -9,7 +9,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-/// Progress of a long computation, and a flag that stops the computation.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
     done: AtomicU64,
@@ -18,7 +17,6 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Stores that `done` of `of` steps are finished.
     pub(crate) fn report(&self, done: u64, of: u64) {
         self.of.store(of, Ordering::Relaxed);
         self.done.fetch_max(done, Ordering::Relaxed);

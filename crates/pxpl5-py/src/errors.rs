@@ -24,12 +24,10 @@ pub(crate) fn failed_run(error: impl Display) -> PyErr {
     raised("RunError", &error)
 }
 
-/// Returns the exception for a sweep whose folder cannot be used.
 pub(crate) fn failed_sweep(error: impl Display) -> PyErr {
     raised("SweepError", &error)
 }
 
-/// Returns the exception for i860 source text that cannot be assembled.
 pub(crate) fn not_assembled(error: impl Display) -> PyErr {
     raised("AssemblyError", &error)
 }

@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 #[derive(Clone, Default)]
 pub(crate) struct PythonFunctions {
-    /// Function that computes the head's motion, if any.
     pub(crate) motion: Option<Arc<CallableMotion>>,
     pub(crate) policy: Option<Arc<Asked>>,
 }

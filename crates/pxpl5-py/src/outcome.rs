@@ -66,7 +66,6 @@ impl Outcome {
         }
     }
 
-    /// Returns the identifier of the surface with this label (`left`, `right`) or number.
     fn surface(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceId> {
         let (outcome, _) = self.run(py)?;
         let all: Vec<(SurfaceId, &str)> =
@@ -381,7 +380,6 @@ impl Outcome {
     }
 }
 
-/// Returns column `i` of the table of pictures, with the values in `rows`.
 fn column_of(i: usize, column: &pxpl5::views::results::Column, rows: &[Vec<Option<u64>>]) -> Column {
     let values = rows.iter().map(|row| row[i].map(u64::cast_signed)).collect();
     Column::whole(&column.name, &column.definition, values)
@@ -391,10 +389,8 @@ fn numbers(stages: &[pxpl5::StageSpan], of: impl Fn(&pxpl5::StageSpan) -> Option
     stages.iter().map(of).collect()
 }
 
-/// Number of bits in the memory of one pixel.
 const BITS: usize = 208;
 
-/// Number of columns, and of rows, in the pixel array of a renderer.
 const SIDE: usize = 128;
 
 /// Returns all bits of a renderer's pixel memory, each as one byte.

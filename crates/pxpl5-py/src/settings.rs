@@ -72,7 +72,6 @@ impl Settings {
 }
 
 impl Settings {
-    /// Checks the settings and returns the experiment that they describe.
     pub(crate) fn plan(&self) -> PyResult<Plan> {
         self.file.resolve().map_err(wrong_setting)
     }

@@ -21,7 +21,6 @@ type Job = Box<dyn FnOnce(&mut Option<Native>) + Send>;
 /// A thread that owns a machine and executes jobs on it, one after the other.
 pub(crate) struct MachineThread {
     jobs: Mutex<Sender<Job>>,
-    /// Flag with which another thread ends a long job early.
     stop: StopFlag,
 }
 
@@ -115,7 +114,6 @@ fn run_to(stepper: &mut Native, time: Time, stop: &StopFlag) -> Pause {
     }
 }
 
-/// Returns the reason for the end of a step in words.
 fn pause_text(pause: &Pause) -> String {
     match pause {
         Pause::Reached => "reached".to_owned(),

@@ -45,7 +45,6 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Creates a table from columns of equal length.
     pub(crate) fn of(columns: Vec<Column>) -> PyResult<Self> {
         // A batch without columns needs its own constructor, because no column has the number of rows.
         if columns.is_empty() {
@@ -364,7 +363,6 @@ impl Table {
     }
 }
 
-/// Maximum number of rows in a notebook.
 const SHOWN_ROWS: usize = 40;
 
 pub(crate) fn escaped(text: &str) -> String {

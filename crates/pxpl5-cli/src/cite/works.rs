@@ -15,7 +15,6 @@ pub(super) enum Kind {
 pub(super) struct Work {
     /// Short name in the documents of the project, which is also the key in BibTeX.
     pub(super) key: &'static str,
-    /// Systems that the emulator models from this work.
     pub(super) systems: &'static str,
     pub(super) kind: Kind,
     pub(super) authors: &'static [Name],

@@ -43,7 +43,6 @@ pub(super) enum StepOf {
     Field,
 }
 
-/// A rectangular part of the debugger's screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pane {
     Time,

@@ -20,7 +20,6 @@ pub(super) enum Condition {
     Waits(Board, String),
 }
 
-/// A relation such as "at least", and the number to compare with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Comparison {
     relation: Relation,
@@ -76,7 +75,6 @@ impl Condition {
         }
     }
 
-    /// Returns an error if the condition names a board that the machine does not have.
     pub(super) fn check(&self, stepper: &Stepper) -> Result<(), String> {
         let renderers = stepper.record().renderers().len();
         // Only conditions with a board can be wrong for a machine.

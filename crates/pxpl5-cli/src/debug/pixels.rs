@@ -7,7 +7,6 @@ use pxpl5::snapshots::PixelArray;
 use pxpl5::{Stepper, SurfaceId};
 use std::fmt::Write as _;
 
-/// Number of columns, and of rows, of a renderer's pixel array.
 const SIDE: u64 = 128;
 
 fn array(stepper: &Stepper, renderer: u64) -> Result<(impl PixelArray, usize), String> {

@@ -53,7 +53,6 @@ pub(super) fn run(session: Session) -> io::Result<()> {
     result
 }
 
-/// Returns true if the user has pressed a key, which interrupts a run.
 fn key_waits() -> bool {
     event::poll(Duration::ZERO).unwrap_or(false)
 }

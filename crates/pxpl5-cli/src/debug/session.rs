@@ -17,7 +17,6 @@ pub(super) struct Session {
     /// Processors that hit a breakpoint at the most recent stop, with the addresses of the breakpoints.
     hits: Vec<BreakpointHit>,
     is_over: bool,
-    /// Callback that returns true when the user wants to interrupt the run.
     is_interrupted: fn() -> bool,
 }
 

@@ -40,7 +40,6 @@ pub(super) fn boards(stepper: &Stepper) -> String {
     lines.map(|(name, says)| format!("{name:<12} {says}\n")).collect()
 }
 
-/// Returns the state of one board as text.
 pub(super) fn board(stepper: &Stepper, board: Board) -> Result<String, String> {
     check(stepper, board)?;
     let Some(says) = stepper.says(board) else { return Ok(ring(stepper)) };
@@ -81,7 +80,6 @@ pub(super) fn ring(stepper: &Stepper) -> String {
     text
 }
 
-/// Maximum number of picture stages that the timeline shows.
 const STAGES: usize = 12;
 
 /// Returns the most recent stages of pictures, newest first. Stages with a start in the future are left out.

@@ -41,7 +41,6 @@ pub(super) fn number(what: &str, text: &str) -> Result<u64, String> {
     parsed.map_err(|_| format!("{what}: expected a whole number, found `{text}`"))
 }
 
-/// Parses a whole number that must be less than `bound`.
 pub(super) fn below(what: &str, text: &str, bound: u64) -> Result<u64, String> {
     let found = number(what, text)?;
     if found < bound {

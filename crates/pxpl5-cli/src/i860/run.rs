@@ -15,7 +15,6 @@ pub(super) struct RunOptions {
     pub(super) quiet: bool,
 }
 
-/// Default number of changed memory words that the report lists.
 const CHANGED_SHOWN: usize = 64;
 
 struct Span {

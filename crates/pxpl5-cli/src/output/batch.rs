@@ -28,7 +28,6 @@ struct Staged {
     lock: Option<File>,
 }
 
-/// A file with its final name, and a copy of the previous contents under another name.
 struct Placed {
     name: PathBuf,
     before: Option<PathBuf>,
@@ -43,7 +42,6 @@ fn beside(path: &Path, end: &str) -> PathBuf {
     path.with_file_name(format!("{TEMPORARY}{}-{number}.{end}", std::process::id()))
 }
 
-/// Returns true if a file name has the form that [`beside`] returns.
 fn is_temporary(name: &OsStr) -> bool {
     let parts = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY)?.rsplit_once('.'));
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
@@ -103,13 +101,11 @@ impl Batch {
         written
     }
 
-    /// Moves the last added file to the front of the list, so that it is renamed first.
     pub(super) fn rename_last_file_first(&mut self) {
         let last = self.files.pop();
         self.files.splice(..0, last);
     }
 
-    /// Schedules a file for removal after all new files have got their final names.
     pub(super) fn remove_on_commit(&mut self, path: PathBuf) {
         self.gone.push(path);
     }

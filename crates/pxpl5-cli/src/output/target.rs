@@ -20,7 +20,6 @@ pub(super) enum Target {
 const MOST_LINKS: usize = 40;
 
 impl Target {
-    /// Resolves a path to its target.
     pub(super) fn of(path: &Path, place: &Place) -> Result<Self, CliError> {
         match path.metadata() {
             Ok(found) if found.is_dir() => Err(place.refused(path, &"it is a folder")),

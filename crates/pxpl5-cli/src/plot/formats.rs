@@ -40,7 +40,6 @@ impl Format {
     }
 }
 
-/// Converts a figure from SVG to a file format, and returns the bytes of the file.
 pub(super) fn bytes(svg: &str, format: Format) -> Result<Vec<u8>, CliError> {
     match format {
         Format::Svg => Ok(svg.as_bytes().to_vec()),

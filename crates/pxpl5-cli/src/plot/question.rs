@@ -10,9 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 #[derive(Clone, Debug)]
 pub(super) struct Question {
-    /// Column whose values are on the x axis.
     pub(super) x: String,
-    /// Column whose numbers are on the y axis.
     pub(super) y: String,
     /// Columns that define the curves. Each combination of their values gives one curve.
     pub(super) by: Vec<String>,
@@ -20,7 +18,6 @@ pub(super) struct Question {
     pub(super) band: Vec<String>,
     /// Filters: the name of a column and the required value as text.
     pub(super) only: Vec<(String, String)>,
-    /// Confidence of intervals, between 0 and 1.
     pub(super) confidence: f64,
 }
 

@@ -40,7 +40,6 @@ pub(super) struct FiguresArgs {
     quiet: bool,
 }
 
-/// Scenes for the measurements of the paper's figures.
 const SCENES: [&str; 3] = ["mig", "head", "molecules"];
 
 pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {

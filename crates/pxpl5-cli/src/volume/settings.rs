@@ -74,7 +74,6 @@ pub(super) struct SettingOptions {
     pub(super) quiet: bool,
 }
 
-/// Advice for users of a volume that exceeds the budget.
 pub(super) const SMALLER: &str = "draw fewer or smaller slices (--set display.slices, display.width, display.height)";
 
 impl SettingOptions {
@@ -124,7 +123,6 @@ impl SettingOptions {
 }
 
 impl VolumeSettingArgs {
-    /// Returns the scene, reduced to the requested number of primitives.
     pub(super) fn load_scene(&self) -> Result<Arc<Scene>, CliError> {
         let scene = load(&self.scene, self.triangles)?;
         scenes::print_warnings(&scene, self.settings.quiet);

@@ -208,7 +208,6 @@ fn measure(value: Option<toml::Value>, place: &str) -> Result<Vec<String>, Setti
         .ok_or_else(|| SettingError::value("measure", "a list of names of the report's numbers", &value).at(place))
 }
 
-/// Returns the path of a key, or an error if there is no such key.
 fn known_key(keys: &[String], path: &str, place: &str) -> Result<String, SettingError> {
     let all = || keys.iter().map(String::as_str).chain(OWN);
     if all().any(|key| key == path) {

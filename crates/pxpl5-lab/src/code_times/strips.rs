@@ -11,13 +11,11 @@ use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, RegionGrid, RegionId, ViewNumber};
 
-/// Scene whose triangles are searched.
 const SCENE: &str = "mig";
 /// Number of boards that share the scene in the second measurement. In the first measurement, one board has the whole
 /// scene. The difference of both results gives the time of one triangle.
 const SMALLER: usize = 12;
 
-/// Picoseconds between two head poses: one NTSC field.
 const FIELD_PS: u64 = 16_683_333_333;
 
 /// Memory address at which the display list begins. Smaller addresses belong to the program. A part of an order message

@@ -177,7 +177,6 @@ fn block_length(series: &[f64]) -> usize {
     if length.is_finite() { length.ceil().clamp(1.0, most) as usize } else { most as usize }
 }
 
-/// Returns the covariance between each value of a series and the value `lag` places later.
 fn covariance(series: &[f64], lag: usize) -> f64 {
     let mean = series.iter().sum::<f64>() / series.len() as f64;
     let products = series.iter().zip(&series[lag..]).map(|(one, later)| (one - mean) * (later - mean));

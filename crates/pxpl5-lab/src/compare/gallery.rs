@@ -18,7 +18,6 @@ pub struct LastPicture {
     pub is_complete: bool,
 }
 
-/// Display surface of the first eye.
 const FIRST: SurfaceId = SurfaceId(0);
 
 impl LastPicture {

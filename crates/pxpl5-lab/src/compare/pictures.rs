@@ -32,7 +32,6 @@ pub struct EdgePictures {
 /// reports.
 const FIELD: PeriodNumber = PeriodNumber(40);
 
-/// Distance from the eye to the edge in metres.
 const DISTANCE_M: f32 = 2.0;
 
 /// Returns a scene with a white wall on the left of a vertical edge, and nothing on the right of the edge. The edge

@@ -10,7 +10,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub(super) struct Progress<'a> {
     done: AtomicU64,
     all: AtomicU64,
-    /// Flag with which another thread asks the comparison to stop.
     stop: &'a StopFlag,
     finished: &'a (dyn Fn(u64, u64) + Sync),
 }

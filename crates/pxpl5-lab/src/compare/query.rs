@@ -394,7 +394,6 @@ impl ComparedPipeline {
     }
 }
 
-/// Returns the error message for a row without a shown picture in the evaluated part of the run.
 fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     let could = row
         .triangles_possible

@@ -203,7 +203,6 @@ impl ComparisonRow {
     }
 }
 
-/// Number of the runs of a row, and their motions and confidence.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sampling {
     pub(super) seeds: usize,

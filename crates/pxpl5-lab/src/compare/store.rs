@@ -32,7 +32,6 @@ pub const ROWS_FOLDER: &str = "rows";
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Header {
     pub(super) schema: String,
-    /// Version of the program that wrote the rows.
     pub(super) version: String,
     pub(super) rows: Vec<String>,
     /// Keys and options with their values, and the hashes of files that appear as values.

@@ -81,7 +81,6 @@ impl NumberKey {
         info.map_or(KeyValues::NUMBER, |info| KeyValues::Real(in_file(info.limits.0), in_file(info.limits.1)))
     }
 
-    /// Returns the key with the range from a display's table.
     fn with_limits(&self, table: &dyn ParameterTable) -> Key {
         let is_number = matches!(self.key.values, KeyValues::Real(..));
         Key { values: if is_number { self.limits(table) } else { self.key.values }, ..self.key }
@@ -93,7 +92,6 @@ pub(super) fn keys() -> impl Iterator<Item = (&'static str, String)> {
     KEYS.iter().map(|key| (key.key.name, key.with_limits(&PanelConfig::PAPERS).help()))
 }
 
-/// Returns the unit of a display parameter, or `None` for any other key.
 pub(super) fn unit_of(name: &str) -> Option<&'static str> {
     KEYS.iter().find(|key| key.key.name == name).map(|key| key.key.unit)
 }
@@ -119,7 +117,6 @@ pub(super) fn read(file: &ExperimentFile) -> Result<Option<Box<dyn DisplayConfig
     Ok(Some(config))
 }
 
-/// Sets one parameter of the display to the value in the experiment file.
 fn set(
     file: &ExperimentFile,
     config: &mut dyn DisplayConfig,

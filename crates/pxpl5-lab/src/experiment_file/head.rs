@@ -169,7 +169,6 @@ fn replay(file: &ExperimentFile) -> Result<Replay, SettingError> {
     Ok(Replay { format, end: file.choice("head.end", &End::NAMES)?.unwrap_or_default() })
 }
 
-/// Returns an error if a key for recordings is set but the motion is no recording.
 fn refuse_recording_keys(file: &ExperimentFile, motion: &str) -> Result<(), SettingError> {
     let is_of_recordings = |path: &str| ["head.end", "head.axes"].contains(&path) || path.starts_with(COLUMNS);
     match file.settings.iter().find(|(path, _)| is_of_recordings(path) && !is_recording(motion)) {

@@ -209,13 +209,11 @@ const COMMON: &[Key] = &[
     Key::new("published.value", "published value of the quantity", KeyValues::NUMBER),
 ];
 
-/// Returns the key in [`COMMON`] with this name.
 pub(super) fn common(name: &str) -> Option<&'static Key> {
     COMMON.iter().chain(hmd::KEYS.iter().map(|(key, ..)| key)).find(|key| key.name == name)
 }
 
 impl ExperimentFile {
-    /// Returns the value of a key in [`COMMON`].
     fn common(&self, name: &str) -> Result<Option<KeyValue>, SettingError> {
         common(name).map_or(Ok(None), |key| self.value(key))
     }
@@ -282,7 +280,6 @@ pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     is_machine_parameter(registry, &long).then_some(long)
 }
 
-/// Returns true if the path is a key but not a machine parameter.
 fn is_key(registry: &Registry, path: &str) -> bool {
     common(path).is_some() || keys(registry).iter().any(|key| key.path == path)
 }

@@ -75,7 +75,6 @@ impl MotionChoice {
         Ok(Self { path, distance: file.number(DISTANCE)?, deg_per_s, sway: file.number(SWAY)? })
     }
 
-    /// Returns the keys with their values, without unset keys.
     pub(super) fn settings(&self) -> Vec<(&'static str, Value)> {
         let Self { path, distance, deg_per_s, sway } = *self;
         let numbers = [(DISTANCE, distance), (RATE, deg_per_s), (SWAY, sway)];
@@ -83,7 +82,6 @@ impl MotionChoice {
         std::iter::once((PATH, path.to_string().into())).chain(numbers).collect()
     }
 
-    /// Returns the head motion in front of a scene.
     pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, SettingError> {
         let own = scene.motion();
         // A replaced path loses the scene's own sway.

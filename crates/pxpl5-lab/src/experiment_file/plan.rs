@@ -160,7 +160,6 @@ impl ExperimentFile {
         Ok((entry, given))
     }
 
-    /// Returns an error for a key that belongs to another pipeline.
     fn refuse_keys_of_others(&self, entry: &PipelineEntry) -> Result<(), SettingError> {
         for (key, families) in self.registry().keys() {
             if let Some(setting) = self.get(key.name).filter(|_| !families.contains(&entry.family)) {

@@ -16,7 +16,6 @@ impl ExperimentFile {
         setting.value.as_str().map(Some).ok_or_else(|| wrong(key, setting, "text in quotes"))
     }
 
-    /// Returns the value of a key, or `None` if the key is not set.
     pub(super) fn value(&self, key: &Key) -> Result<Option<KeyValue>, SettingError> {
         let Some(setting) = self.get(key.name) else { return Ok(None) };
         let value = &setting.value;
@@ -85,7 +84,6 @@ pub(super) fn wrong(key: &str, setting: &Setting, expected: &str) -> SettingErro
     SettingError::value(key, expected, found).at(&setting.place)
 }
 
-/// Creates the error of a key whose value is not one of the valid names.
 pub(super) fn unknown<'a>(key: &str, setting: &Setting, valid: impl IntoIterator<Item = &'a str>) -> SettingError {
     let what = key.rsplit('.').next().unwrap_or(key);
     let found: String = plain(&setting.value).chars().take(60).collect();

@@ -11,7 +11,6 @@ use toml::Value;
 pub(super) const EVERY: &str = "head.reprojection.every";
 pub(super) const LATENCY: &str = "head.reprojection.latency_us";
 
-/// Key with the name of the raster.
 const RASTER: &str = "head.raster";
 
 /// The raster of a name: a raster without parameters, or a device that moves pictures.
@@ -65,7 +64,6 @@ fn refuse_numbers(file: &ExperimentFile) -> Result<(), SettingError> {
     Ok(())
 }
 
-/// Returns the keys and values of a raster for an experiment file.
 pub(super) fn settings(raster: Raster) -> Vec<(String, Value)> {
     let Raster::Reprojected(Reprojection { by, every, latency_us }) = raster else {
         return vec![(RASTER.to_owned(), Value::from(raster.to_string()))];

@@ -55,7 +55,6 @@ pub(super) fn is_tracking_parameter(path: &str) -> bool {
     path.starts_with(PREFIX) && tracking_parameters().iter().any(|parameter| parameter.path == path)
 }
 
-/// Returns the tables of tracking parameters, with the values that a file sets for a tracker.
 pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, SettingError> {
     let mut tables = Tables::PAPERS;
     // The function that builds the tracker refuses an unknown name.

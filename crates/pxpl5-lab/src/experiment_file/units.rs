@@ -66,7 +66,6 @@ fn value(number: f64) -> Value {
     Value::Float(number)
 }
 
-/// Returns the unit of a key, or `None` if the key has no unit.
 fn unit_of(registry: &Registry, key: &str) -> Option<String> {
     let own = keys::common(key).map(|key| key.unit).or_else(|| display::unit_of(key));
     if let Some(unit) = own {

@@ -63,10 +63,8 @@ impl<K: Ord + Clone, T> ByCapacity<K, T> {
     }
 }
 
-/// The cached value of one key, or `None` before the value is computed.
 type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 
-/// The cached values by key. A key is added when its value is first requested.
 type Places<K, T> = Mutex<BTreeMap<K, Place<T>>>;
 
 #[derive(Debug, Default)]

@@ -51,7 +51,6 @@ impl RigLines {
         Arc::clone(&self.measured[1].1)
     }
 
-    /// Returns the measurement with the photodiode under this line, or `None` if this line was not measured.
     pub(super) fn under(&self, line: u64) -> Option<Arc<RigMeasurement>> {
         let found = self.measured.iter().find(|(measured, _)| u64::from(*measured) == line);
         found.map(|(_, measured)| Arc::clone(measured))
@@ -66,7 +65,6 @@ fn photodiode_lines() -> [u32; 3] {
     range.map_or([assumed; 3], |(first, last)| [first as u32, assumed, last as u32])
 }
 
-/// Measures the latency with the photodiode under one line of the screen.
 pub(super) fn under_line(machine: &MachineConfig, of: (&Reading, &StopFlag), line: u64) -> Result<RigMeasurement> {
     let ([measured], _) = under_lines(machine, of, [u32::try_from(line).unwrap_or(u32::MAX)])?;
     Ok(measured)

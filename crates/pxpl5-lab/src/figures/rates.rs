@@ -209,7 +209,6 @@ fn rig_total(bench: &Bench) -> Result<FigureValue> {
 }
 
 const TURNS: u32 = 100;
-/// Number of multiply-adds in one iteration of the i860 loop.
 const MULTIPLY_ADDS: usize = 256;
 
 /// Measures the floating-point operations of the i860 in millions per second, at a clock of 40 MHz.

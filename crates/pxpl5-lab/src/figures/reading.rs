@@ -96,7 +96,6 @@ impl Reading {
         varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
     }
 
-    /// Returns the answers to the seven open questions in words.
     fn answers(&self) -> [String; 7] {
         let samples = if self.samples == LatencySamples::FirstEye { "first eye" } else { "each eye" };
         let fields = if self.fields == FieldCount::Exact { "exact" } else { "whole fields" };

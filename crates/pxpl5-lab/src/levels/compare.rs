@@ -93,7 +93,6 @@ pub fn compare_with(query: LevelQuery, finished: impl Fn(u64, u64) + Sync) -> Re
     })
 }
 
-/// Returns the random experiment `number` at one of the compared levels of detail.
 fn of_variant((level, times_of_code): (Level, bool), number: u64) -> Result<Experiment, ExperimentError> {
     let experiment = experiment(number)?.level(level);
     if !times_of_code || level == Level::Cycle {

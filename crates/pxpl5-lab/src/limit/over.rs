@@ -223,13 +223,11 @@ impl OverQuery {
     }
 }
 
-/// A search in progress, with the results of the tried values.
 struct Search<'a> {
     query: &'a OverQuery,
     trials: BTreeMap<u64, Trial>,
     /// The error of the last value with which no experiment could run.
     refused: Option<StudyError>,
-    /// The last loaded scene, with its settings.
     scene: Option<(crate::SceneChoice, Arc<Scene>)>,
 }
 
@@ -313,7 +311,6 @@ impl Search<'_> {
     }
 }
 
-/// Returns the closeness of a run to the goal, in the unit of the goal. A greater score is better.
 fn score(goal: Goal, summary: &pxpl5_run::Summary) -> f64 {
     let score = match goal {
         Goal::NoMissedRetrace => summary.due.map(|due| -(due.not_shown() as f64)),

@@ -55,7 +55,6 @@ pub enum Steps {
     Ranges(Vec<[i64; 3]>),
 }
 
-/// Maximum number of steps of an axis that the header lists one by one.
 const LISTED_STEPS: u64 = 1_000;
 
 impl Header {

@@ -16,7 +16,6 @@ use std::path::PathBuf;
 /// Number of bytes of a file of rows that are read at a time: some tens of rows.
 const BLOCK: usize = 16 << 10;
 
-/// Error text for a file that was read before and now cannot be read.
 const AGAIN: &str = "cannot be read again";
 
 #[derive(Debug)]
@@ -25,10 +24,8 @@ pub(super) struct Joined {
     files: Vec<RowBlocks>,
     /// Number of the file with the row of each point, counted from 1. 0 means that the point has no row.
     holders: Vec<u32>,
-    /// Byte position of the row of each point in its file.
     places: Vec<u64>,
     failed: Points,
-    /// Points with several equal rows.
     duplicates: Vec<u64>,
 }
 
@@ -95,7 +92,6 @@ impl Joined {
         (0..self.header.points).filter(|point| self.failed.holds(*point)).count() as u64
     }
 
-    /// Returns the points with several equal rows, in ascending order.
     pub(super) fn duplicates(&self) -> &[u64] {
         &self.duplicates
     }

@@ -51,7 +51,6 @@ impl RowFile {
         Ok(())
     }
 
-    /// Adds the byte position of a point's row to the index.
     pub(super) fn add(&mut self, row: &SweepRow, byte: u64) {
         let point = row.point as usize;
         if self.places.len() <= point {
@@ -80,7 +79,6 @@ impl RowFile {
         self.place(point).is_some()
     }
 
-    /// Returns true if a point has a row that states that the point could not be simulated.
     pub(super) fn is_failed(&self, point: u64) -> bool {
         self.failed.holds(point)
     }
@@ -94,7 +92,6 @@ impl RowFile {
         place.copied().filter(|place| *place > 0)
     }
 
-    /// Opens the file again to read rows at the positions in the index.
     pub(super) fn reader(&self) -> Result<RowReader<'_>, FileError> {
         let file = File::open(&self.path).map_err(FileError::io(&self.path, "cannot be read"))?;
         Ok(RowReader { rows: self, file: BufReader::new(file), at: 0 })
@@ -112,12 +109,10 @@ pub(super) struct Scan {
     points: u64,
     /// Header of the file. `None` if the header is incomplete.
     pub(super) header: Option<Header>,
-    /// Length in bytes up to the end of the last complete line that was read.
     pub(super) whole_bytes: u64,
 }
 
 impl Scan {
-    /// Opens a file and reads its header.
     pub(super) fn open(path: &Path) -> Result<Self, FileError> {
         let file = File::open(path).map_err(FileError::io(path, "cannot be read"))?;
         let (file, text) = (BufReader::new(file), Vec::new());
@@ -133,7 +128,6 @@ impl Scan {
         Ok(scan)
     }
 
-    /// Returns the next row and its byte position.
     pub(super) fn next(&mut self) -> Result<Option<(SweepRow, u64)>, FileError> {
         let begin = self.whole_bytes;
         if !self.read_line()? {
@@ -180,12 +174,10 @@ pub(super) fn contradiction(point: u64, first: &str, second: &str) -> FileError 
 pub(super) struct RowReader<'a> {
     rows: &'a RowFile,
     file: BufReader<File>,
-    /// Byte position at which the next read begins.
     at: u64,
 }
 
 impl RowReader<'_> {
-    /// Returns the row of a point, if the file has one.
     pub(super) fn row(&mut self, point: u64) -> Result<Option<SweepRow>, FileError> {
         let Some(place) = self.rows.place(point) else { return Ok(None) };
         let row = self.row_at(place).map_err(FileError::io(&self.rows.path, "cannot be read again"))?;

@@ -90,7 +90,6 @@ struct Work<'a, S> {
     next: AtomicU64,
     /// True after a row could not be written, so that no further row can be written.
     ended: AtomicBool,
-    /// Flag with which another thread stops the sweep.
     stop: &'a StopFlag,
 }
 

@@ -166,7 +166,6 @@ impl SweepSpace {
     }
 }
 
-/// Builder of error messages with the file and line of a key.
 struct Fault<'a> {
     sweep: &'a str,
     places: &'a BTreeMap<String, String>,

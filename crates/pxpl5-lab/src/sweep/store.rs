@@ -172,7 +172,6 @@ impl Store {
     }
 }
 
-/// Returns an error if the folder holds files of another command.
 pub(super) fn check_command(folder: &Path) -> Result<(), FileError> {
     match Manifest::read(folder)? {
         Some(manifest) if manifest.command() != Manifest::SWEEP => {
