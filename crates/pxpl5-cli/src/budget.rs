@@ -72,7 +72,7 @@ impl BudgetArgs {
         self.admit_estimate(whole, "simulate fewer fields")
     }
 
-    /// Returns an error if a fixed set of experiments would exceed the budget. `advice` tells the user how to reduce
+    /// Returns an error if a fixed set of experiments would exceed the budget. `advice` is a text about ways to reduce
     /// the work.
     pub(crate) fn admit_study(&self, study: Study, advice: &str) -> Result<(), CliError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);

@@ -90,7 +90,8 @@ pub(crate) fn primitives(scene: &Scene) -> u64 {
 }
 
 impl VolumeWork {
-    /// Returns the quantities for a volume that `threads` threads draw. The settings must be valid.
+    /// Returns the quantities that determine the cost of a volume, which `threads` threads draw. The settings must be
+    /// valid.
     pub(crate) fn of(settings: &VolumeSettings, scene: &Scene, threads: usize) -> Self {
         Self {
             slices: settings.display.slices,

@@ -80,7 +80,7 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     print(&text(&figures))
 }
 
-/// Measures and prints the figures with these numbers of the main table of ACCURACY.md.
+/// Measures and prints the figures with these numbers in the main table of ACCURACY.md.
 fn chosen(numbers: &[String]) -> Result<(), CliError> {
     let all = FIGURES.map(|figure| figure.id).join(", ");
     let find = |number: &String| {

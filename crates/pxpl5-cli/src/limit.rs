@@ -142,7 +142,7 @@ impl LimitArgs {
         self.over.as_deref().filter(|key| *key != "triangles")
     }
 
-    /// Returns the search over the values of a setting, and the experiment at the greatest of these values.
+    /// Returns the search over the values of the setting `key`, and the plan of the experiment at the greatest value.
     fn over_query(&self, key: &str) -> Result<(OverQuery, Plan), CliError> {
         let mut file = self.file()?;
         if let Some(scene) = self.test_scene() {

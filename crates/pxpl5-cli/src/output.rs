@@ -187,8 +187,7 @@ fn before(folder: &Path) -> Result<Option<Manifest>, CliError> {
     Ok(before)
 }
 
-/// Returns the relation to the manifest for files that derive from results, such as a report page. The files are added
-/// to the manifest only if they are written into the folder `results` itself.
+/// Returns [`Listing::Added`] if files are written into the folder `results` itself, otherwise [`Listing::None`].
 fn added_to(folder: &Path, results: &Path) -> Listing {
     let whole = |path: &Path| path.canonicalize().ok();
     match (whole(folder), whole(results)) {

@@ -28,7 +28,7 @@ pub(crate) struct Jobs<'a> {
     /// Settings shared by all points of the sweep, as `path=value`.
     pub(crate) sets: &'a [String],
     pub(crate) out: &'a Path,
-    /// Number of tasks in the Slurm array. `None` means a number from the estimated work.
+    /// Number of tasks in the Slurm array. `None` computes the number from the estimated work.
     pub(crate) tasks: Option<u64>,
     pub(crate) threads: u64,
 }

@@ -191,7 +191,7 @@ fn end_interrupted(again: &str) {
 }
 
 /// Prints the number of failed points of a shard (part of a sweep), and the error of the first failed point. Returns
-/// this number.
+/// the number of failed points.
 fn report_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
     let failed = store.failed(shard).count() as u64;
     if let Some(point) = store.failed(shard).next() {

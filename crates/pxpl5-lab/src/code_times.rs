@@ -58,8 +58,8 @@ use std::sync::Arc;
 
 const SCENES: [&str; 3] = ["mig", "molecules", "head"];
 
-/// Number of slaves that divide a scene's triangles, as in the preset `small-hmd`. Only the first slave's share is
-/// measured.
+/// Number of slaves among which a scene's triangles are divided, as in the preset `small-hmd`. Only the first slave's
+/// share is measured.
 const BOARDS: usize = 12;
 
 const VIEWS: u64 = 4;

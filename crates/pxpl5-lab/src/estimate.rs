@@ -93,7 +93,7 @@ const BLOCK: f64 = 100.0;
 const WINDOW: f64 = 240.0;
 /// Bytes for the pixel errors of one display field.
 const ERRORS: f64 = 1e3;
-/// Maximum number of display fields with their own pixel errors in a run.
+/// Maximum number of display fields in a run whose pixel errors are stored separately.
 const JUDGED: f64 = 20_971.0;
 
 /// Seconds to simulate a field, including its retrace and the samples of the head pose.
@@ -248,7 +248,7 @@ pub enum Study {
     },
     /// The comparison of the levels of detail ([`crate::levels`]).
     Levels {
-        /// Number of random experiments for the error relative to the cycle level.
+        /// Number of random experiments that measure the error relative to the cycle level.
         experiments: u64,
         /// True if the speed of the simulation is measured too.
         measures_speeds: bool,

@@ -66,7 +66,8 @@ pub(crate) struct Setting {
 }
 
 impl Setting {
-    /// Returns the origin of the setting together with its key. An option such as `--level` names its key already.
+    /// Returns the origin of the setting together with its key. An option such as `--level` stands alone, because it
+    /// names its key.
     fn place_of(&self, key: &str) -> String {
         match self.place.as_str() {
             "" => key.to_owned(),
@@ -119,9 +120,9 @@ impl ExperimentFile {
         &self.registry
     }
 
-    /// Returns the keys for the pipelines and displays of a registry. Two groups of keys are left out. A machine
-    /// parameter has the key `machine.` with a path of `MachineConfig::set`. [`tracking_parameters`] lists the keys of
-    /// trackers and predictors.
+    /// Returns the keys for the pipelines and displays of a registry. Two groups of keys are left out. The key of a
+    /// machine parameter is `machine.` followed by a path of `MachineConfig::set`. [`tracking_parameters`] lists the
+    /// keys of trackers and predictors.
     #[must_use]
     pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
         keys::keys(registry)

@@ -273,7 +273,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
-/// Smallest relative change of a figure for which the parameter is listed.
+/// Minimum relative change of a figure. Parameters and interpretations with smaller changes are not listed.
 const VISIBLE: f64 = 1e-3;
 
 fn effects(variations: &[Variation], ends: &[f64], nominal: f64) -> Vec<Effect> {

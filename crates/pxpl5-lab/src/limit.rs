@@ -86,15 +86,15 @@ impl Model {
     }
 }
 
-/// Field rate of NTSC divided by the rounded rate: 59.94 Hz to 60 Hz.
+/// Field rate of NTSC divided by the rounded rate: 59.94 Hz divided by 60 Hz.
 const NTSC: f64 = 0.999;
 
 /// Maximum number of triangles that a search tries.
 pub const CEILING: u32 = 1_000_000;
 
-/// Maximum number of scene sizes for which formulas compute the margin to the goal.
+/// Maximum number of scene sizes for which the closed form computes the margin to the goal.
 const MARGINS: u32 = 1_000;
-/// Maximum number of scene sizes that are tried because formulas predict a small margin to the goal.
+/// Maximum number of scene sizes that are tried because the closed form predicts a small margin to the goal.
 const DOUBTFUL: usize = 8;
 
 /// Estimated maximum number of simulated scene sizes: twice the number of bisection steps over all sizes.

@@ -53,7 +53,8 @@ pub struct Rig {
 pub const PASSES: usize = 24;
 
 impl Rig {
-    /// Creates a rig with `tracker` on the pendulum, and with the assumed pendulum, detection and photodiodes.
+    /// Creates a rig with `tracker` on the pendulum, and with the assumed settings of pendulum, detection and
+    /// photodiodes.
     #[must_use]
     pub fn assumed(tracker: TrackerConfig) -> Self {
         Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES, stop: StopFlag::default() }

@@ -8,7 +8,7 @@ use serde::Serialize;
 /// Effect of one changed resource of the machine on latency and update rate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WhatIf {
-    /// Name of the resource that the machine has more of.
+    /// Name of the increased resource.
     pub resource: &'static str,
     /// Key of the changed setting, such as `machine.n_gps`.
     pub key: &'static str,

@@ -1,4 +1,4 @@
-//! The Python functions that a run calls on its own thread, with the exceptions of these functions.
+//! The Python functions that a run calls on its own thread, and their exceptions.
 
 use crate::motion::CallableMotion;
 use crate::policy::Asked;
@@ -12,7 +12,7 @@ pub(crate) struct PythonFunctions {
 }
 
 impl PythonFunctions {
-    /// Raises the exception of a Python function during the run, if there is one.
+    /// Raises the exception that a Python function has raised during the run, if any.
     pub(crate) fn check(&self) -> PyResult<()> {
         self.motion.iter().try_for_each(|called| called.check())?;
         self.policy.iter().try_for_each(|asked| asked.check())

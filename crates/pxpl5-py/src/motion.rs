@@ -185,7 +185,7 @@ impl Motion {
 }
 
 impl Motion {
-    /// Raises the exception of the motion's Python function since the last check, if there is one.
+    /// Raises the exception that the motion's Python function has raised since the last check, if any.
     pub(crate) fn check(&self) -> PyResult<()> {
         match &self.called {
             Some(called) => called.check(),

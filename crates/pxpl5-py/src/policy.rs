@@ -27,7 +27,7 @@ impl Asked {
         self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Raises the exception of the policy, if there is one.
+    /// Raises the exception that the policy has raised, if any.
     pub(crate) fn check(&self) -> PyResult<()> {
         let raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
         raised.map_or(Ok(()), Err)

@@ -20,7 +20,7 @@ pub(super) struct Session {
     is_interrupted: fn() -> bool,
 }
 
-/// Number of events between two calls of `is_interrupted`.
+/// Number of events between two checks for an interrupt by the user.
 const EVENTS_BETWEEN: u64 = 10_000;
 
 impl Session {

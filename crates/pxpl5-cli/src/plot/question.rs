@@ -28,7 +28,7 @@ pub(super) struct Group {
     pub(super) x: Value,
     /// Number of rows with a number in the y column.
     pub(super) n: usize,
-    /// Number of rows without a number in the y column, because the run failed or nothing was evaluated.
+    /// Number of rows without a number in the y column, because the run failed or no pixel was evaluated.
     pub(super) missing: usize,
     /// Mean of the numbers in the y column. NaN if `n` is 0.
     pub(super) mean: f64,
@@ -43,7 +43,7 @@ pub(super) struct Group {
 /// Sums of counts over all rows of a group. A sum is `None` if no row contains the count.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counts {
-    /// Number of pictures with a retrace at which they had to be shown.
+    /// Number of due pictures, each of which had to be shown at a certain retrace.
     pub(super) due: Option<u64>,
     pub(super) not_shown: Option<u64>,
     pub(super) samples: Option<u64>,
@@ -124,7 +124,7 @@ impl Question {
         Ok(Group { by, x, n: numbers.len(), missing, mean: of_all.mean, sd, interval, counts })
     }
 
-    /// Returns a group with one row of a comparison, which already holds a mean over seeds and an interval.
+    /// Returns the group for one row of a comparison. This row already holds a mean over seeds and an interval.
     fn of_row(&self, by: Vec<String>, x: Value, rows: &[&Row], missing: usize) -> Group {
         let row = rows[0];
         let number = |name: &str| value(row, name).and_then(Value::as_f64);

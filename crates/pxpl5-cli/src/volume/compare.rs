@@ -99,8 +99,8 @@ const COLUMNS: [Column; 16] = [
     ("volumes_hz_overlapped", |row| format!("{:.2}", row.volumes_hz_overlapped)),
 ];
 
-/// Formats the brightness of a volume divided by the brightness with exact clipping, as a mean over some rings around
-/// the axis. Rings in which exact clipping lights no pixel are left out.
+/// Formats the brightness of a volume divided by the brightness with exact clipping, as a mean over the rings `rings`
+/// around the axis. Rings in which exact clipping lights no pixel are left out.
 fn over_exact(row: &VariantRow, rings: std::ops::Range<usize>) -> String {
     let rings = row.brightness_over_exact.get(rings).unwrap_or_default();
     let known: Vec<f64> = rings.iter().flatten().copied().collect();

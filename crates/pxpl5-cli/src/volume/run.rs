@@ -1,4 +1,4 @@
-//! The command `pxpl5 volume run`, which draws one volume and reports its counts of primitives and voxels.
+//! The command `pxpl5 volume run`, which draws one volume and prints a report about the volume.
 
 use super::settings::{VolumeSettingArgs, png};
 use crate::error::CliError;

@@ -36,7 +36,8 @@ pub(super) fn token_entry_ns(scenes: &[Traffic]) -> f64 {
 }
 
 impl Traffic {
-    /// Returns the mean time of a message in nanoseconds, without `token_entry_ns` for each entry of a sent bin.
+    /// Returns the mean time of a message in nanoseconds. `token_entry_ns` is first subtracted for each entry of a sent
+    /// bin.
     pub(super) fn message_ns(&self, token_entry_ns: f64) -> f64 {
         let [entries, ns] = self.handed.iter().fold([0.0; 2], |[n, sum], [entries, ns]| [n + entries, sum + ns]);
         (self.span.0 as f64 / 1e3 + ns - token_entry_ns * entries) / self.messages as f64

@@ -18,8 +18,8 @@ const SMALLER: usize = 12;
 
 const FIELD_PS: u64 = 16_683_333_333;
 
-/// Memory address at which the display list begins. Smaller addresses belong to the program. A part of an order message
-/// at this address or above is the commands of a bin entry.
+/// Memory address at which the display list begins. Smaller addresses belong to the program. An order message consists
+/// of pieces of memory. A piece at this address or above holds the commands of a bin entry.
 const COMMANDS: u32 = 1 << 20;
 
 /// Sizes in words of four kinds of orders: a strip, a strip with a head pose, blocks of pixels with a head pose, and a

@@ -12,7 +12,7 @@ use distrs::{Normal, StudentsT};
 use pxpl5_sim::mix;
 use serde::{Deserialize, Serialize};
 
-/// Number of random series that are drawn from the values.
+/// Number of random series that a bootstrap draws from one series of values.
 pub const RESAMPLES: usize = 2_000;
 
 /// Minimum number of values for an interval (assumed). A shorter series does not show how its values depend on each

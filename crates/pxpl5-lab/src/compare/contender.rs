@@ -45,7 +45,7 @@ impl ComparedPipeline {
 /// so that it cannot be ranked with the errors of other rows.
 pub(super) const DELAYED_VIDEO: &str = "delayed-video";
 
-/// Choice of the rows that a comparison runs, which are pipelines with settings.
+/// Choice of the rows of a comparison. A row is a pipeline with settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum RowChoice {
     /// One or two rows for each family of pipelines ([`Registry::is_usual`]), and all rows with variants of a pipeline.

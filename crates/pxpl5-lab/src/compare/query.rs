@@ -25,8 +25,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// memory, because it evaluates the errors of the run in several ways.
 const MOST_FIELDS: u64 = 250_000;
 
-/// Maximum difference between the first evaluated display periods of two rows. A row with a larger difference starts
-/// late. A small difference is normal, because due pictures can be several periods apart.
+/// Delay in display periods from which on the evaluation of a row counts as late. Smaller delays are normal, because
+/// due pictures can be several periods apart.
 const MOST_PERIODS_APART: u64 = 4;
 
 /// Minimum number of seeds for meaningful confidence intervals.
@@ -53,7 +53,8 @@ pub struct CompareQuery {
     pub pictures: bool,
     /// Confidence of all intervals, between 0 and 1; usually [`CONFIDENCE`](super::CONFIDENCE).
     pub confidence: f64,
-    /// Precision until which seeds are added to a row. `None` runs only the seeds in [`CompareQuery::seeds`].
+    /// Precision of the mean error, for which seeds are added to rows. `None` runs only the seeds in
+    /// [`CompareQuery::seeds`].
     pub until: Option<UntilPrecise>,
 }
 
@@ -406,7 +407,7 @@ fn nothing_shown(row: &ComparisonRow, fields: u64) -> String {
     }
 }
 
-/// Returns, in words, the criterion by which a number of triangles is drawn in time.
+/// Returns, in words, the criterion for drawing a number of triangles in time.
 fn definition(plan: &Plan) -> String {
     let goal = match plan.limit.goal {
         Goal::NoMissedRetrace => "with no retrace missed".to_owned(),

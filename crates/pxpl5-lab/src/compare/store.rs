@@ -66,7 +66,7 @@ struct Rows {
 #[derive(Debug)]
 pub struct CompareStore {
     folder: PathBuf,
-    /// Rows from an earlier process.
+    /// Finished rows of an earlier process.
     found: Vec<ComparisonRow>,
     rows: Mutex<Rows>,
     /// Lock of the folder. No other process can open the folder while this object exists.
@@ -103,13 +103,13 @@ impl CompareStore {
         Ok(Self { folder: folder.to_owned(), found, rows: Mutex::new(rows), _lock: lock })
     }
 
-    /// Returns the number of rows from an earlier process.
+    /// Returns the number of finished rows of an earlier process.
     #[must_use]
     pub const fn found(&self) -> usize {
         self.found.len()
     }
 
-    /// Returns the row with this name from an earlier process, if any.
+    /// Returns the finished row of an earlier process with this name, if any.
     #[must_use]
     pub fn row(&self, name: &str) -> Option<&ComparisonRow> {
         self.found.iter().find(|row| row.pipeline == name)

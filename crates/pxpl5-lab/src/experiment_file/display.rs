@@ -15,7 +15,7 @@ const OWN: &str = "panel";
 struct NumberKey {
     key: Key,
     parameter: &'static str,
-    /// Value in the display's table that is equal to 1 in the file.
+    /// Factor that converts a value in the file to the unit of the display's table.
     per_unit: f64,
 }
 

@@ -245,8 +245,8 @@ pub(super) fn renamed(path: &str) -> &str {
     RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now)
 }
 
-/// Returns all keys except those of machine parameters. A machine parameter has the key `machine.` with a path of
-/// [`MachineConfig::set`].
+/// Returns all keys except those of machine parameters. The key of a machine parameter is `machine.` followed by a path
+/// of [`MachineConfig::set`].
 #[must_use]
 pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
     let pipelines: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();

@@ -13,7 +13,7 @@ pub(super) const LATENCY: &str = "head.reprojection.latency_us";
 
 const RASTER: &str = "head.raster";
 
-/// The raster of a name: a raster without parameters, or a device that moves pictures.
+/// A value of the key `head.raster`: a raster without parameters, or a device that moves pictures.
 #[derive(Clone, Copy)]
 enum Named {
     Raster(Raster),

@@ -69,8 +69,8 @@ impl SceneChoice {
         self.prepared_by(whole, |n| decimated.decimated(n))
     }
 
-    /// Returns the scene as [`prepared`](Self::prepared) does. `decimated` reduces the whole scene to a number of
-    /// primitives.
+    /// Prepares the scene as [`prepared`](Self::prepared) does, but reduces the number of primitives with the function
+    /// `decimated`.
     pub(crate) fn prepared_by(
         &self,
         whole: Arc<Scene>,

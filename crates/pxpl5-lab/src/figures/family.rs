@@ -27,7 +27,7 @@ pub struct FigureFamily {
     pub rows: Vec<FigureRow>,
 }
 
-/// Triangle counts of the spheres that experiment E1 draws. The papers' diagram ends at 1,000 triangles.
+/// Triangle counts of the spheres in experiment E1 (`turning`). The papers' diagram ends at 1,000 triangles.
 const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 
 /// Duration of an NTSC field in ms. Rendering Control shows pictures at retraces, so a smaller growth of latency may be
@@ -35,14 +35,14 @@ const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
 const FIELD_MS: f64 = 1001.0 / 60.0;
 
 const FIELDS: u64 = 60;
-/// Number of latencies of head rotations in each run of experiment E1. The number must be the same for all runs,
-/// because the runs are compared field by field.
+/// Number of compared rotation latencies in each run of experiment E1 (`turning`). All runs must have the same number,
+/// because they are compared field by field.
 const COMPARED: usize = 55;
 
 impl FigureFamily {
-    /// Runs the experiments on address recalculation, priority rendering and region warping. E1 runs on Pixel-Planes 5,
-    /// E2 to E9 run with an ideal renderer. Results that follow from the papers' tables by arithmetic are stated only
-    /// in the document `document`.
+    /// Runs the experiments on address recalculation, priority rendering and region warping. Experiment E1 runs on
+    /// Pixel-Planes 5, experiments E2 to E9 run with an ideal renderer. Results that follow from the papers' tables by
+    /// arithmetic are stated only in the document `document`.
     ///
     /// # Errors
     ///

@@ -57,7 +57,7 @@ const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_
 
 /// Number of head poses for each scene when the regions under triangles are counted (row 8 of ACCURACY.md).
 const VIEWS: u64 = 40;
-/// Picoseconds between two of these head poses.
+/// Picoseconds between two head poses for row 8 of ACCURACY.md.
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 impl Bench {
@@ -81,7 +81,7 @@ impl Bench {
         Self { seeds, frames, ..self }
     }
 
-    /// Returns the same settings with a flag with which another thread stops the measurements.
+    /// Returns the same settings with the flag `stop`, with which another thread stops the measurements.
     #[must_use]
     pub fn with_stop(self, stop: StopFlag) -> Self {
         Self { stop, ..self }
@@ -256,7 +256,8 @@ impl Bench {
         }
     }
 
-    /// Returns the measurement of the pendulum rig under the chosen line, or under the assumed line without a choice.
+    /// Returns the measurement of the pendulum rig with the photodiode under the chosen line, or under the assumed line
+    /// if no line is chosen.
     pub(super) fn rig_measurement(&self) -> Result<Arc<RigMeasurement>> {
         let lines = self.rig_lines()?;
         let Some(line) = self.photodiode_line() else { return Ok(lines.assumed()) };

@@ -175,8 +175,8 @@ fn triangle_rate(bench: &Bench, preset: &str, shading: Shading) -> Result<Figure
     Ok(FigureValue::with(TRIANGLES as f64 * hz, vec![detail("frames a second", hz, "Hz")]))
 }
 
-/// Measures the number of commands that a renderer executes in a second of pixel array work. All but 80 of the 26,000
-/// commands of a frame are triangles.
+/// Measures the rate at which a renderer executes commands, over the time in which its pixel array works. All but 80 of
+/// the 26,000 commands of a frame are triangles.
 fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     let machine = MachineConfig { n_renderers: 1, ..bench.machine("small-hmd")? };
     let outcome = drawn(machine, shading, TRIANGLES / 2, 2 * FIELDS)?;
@@ -188,7 +188,8 @@ fn renderer_rate(bench: &Bench, shading: Shading) -> Result<FigureValue> {
     Ok(rates.sum::<f64>().into())
 }
 
-/// Measures the number of triangles that a processor transforms in a second of TRANSFORM. The first frame is left out.
+/// Measures the rate at which a processor transforms triangles, over the time of TRANSFORM. The first frame is left
+/// out.
 fn processor_rate(bench: &Bench) -> Result<FigureValue> {
     let triangles = 2_000;
     let machine = MachineConfig { n_gps: 2, ..bench.machine("small-hmd")? };

@@ -34,7 +34,8 @@ const SLATS: &str = "Slats";
 const HEAD: &str = "from head to light";
 const FREE: Basis = Basis::Free;
 
-/// Creates a figure without a cause of a difference. The method `because` adds a cause.
+/// Creates a figure without a known difference between model and paper. The method `because` adds the cause of a
+/// difference.
 const fn figure(
     id: &'static str,
     (paper, section): (&'static str, &'static str),

@@ -12,7 +12,7 @@ pub const SCHEMA: &str = "pxpl5-levels/2";
 pub struct LevelRecord {
     /// Name and version of the JSON layout.
     pub schema: String,
-    /// Number of random experiments behind each [`LevelReport::from_cycle_percent`].
+    /// Number of random experiments that give each [`LevelReport::from_cycle_percent`].
     pub experiments: u64,
     /// Remarks for the reader, such as missing values.
     pub note: Option<String>,
@@ -36,7 +36,7 @@ pub struct LevelReport {
     pub published_error_percent: Option<f64>,
     /// Absolute deviations from the cycle level, in percent, over random experiments.
     pub from_cycle_percent: Option<Spread>,
-    /// Speeds for each choice of computed pixels, which does not change simulated times.
+    /// Speeds for each choice of computed pixels. The choice does not change simulated times.
     pub speeds: Vec<LevelSpeed>,
 }
 

@@ -13,7 +13,8 @@ pub struct Limit {
     pub first_miss: Option<u32>,
     /// Largest tried number of triangles above the first miss that nevertheless reached the goal, if any.
     pub island: Option<u32>,
-    /// Smallest size from which on all sizes up to `triangles` were tried. Only some smaller sizes were tried.
+    /// Smallest number of triangles from which on all sizes up to `triangles` were tried. Only some smaller sizes were
+    /// tried.
     pub unbroken_from: u32,
     /// Number of simulated scene sizes.
     pub tried: usize,

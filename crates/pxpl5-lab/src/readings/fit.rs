@@ -45,10 +45,10 @@ pub struct Fit {
     pub unexplained: Vec<&'static str>,
 }
 
-/// Largest error of an explained mean in percent, chosen by this project.
+/// Largest error in percent at which an interpretation still explains a mean. This project chose the limit.
 const EXPLAINED_PERCENT: f64 = 8.0;
 
-/// Largest relative error of an explained standard deviation.
+/// Largest relative error at which an interpretation still explains a standard deviation.
 const EXPLAINED_SD: f64 = 0.25;
 
 /// Relative uncertainty of the model itself, because some of its clocks and costs are not in any paper.

@@ -35,7 +35,7 @@ impl Sweep {
     }
 }
 
-/// Returns the hash of each file that an experiment file names, by the file's name there.
+/// Returns the hash of each file that an experiment file names, by the name of the file.
 pub(crate) fn inputs_of(experiment: &ExperimentFile) -> BTreeMap<String, Fingerprint> {
     let mut inputs = BTreeMap::new();
     for file in &KEYS {

@@ -33,7 +33,7 @@ pub struct Store {
     end: u64,
     rows_file: File,
     times_file: File,
-    /// True after this process has appended a row, and has removed the plots and pages of fewer rows.
+    /// True after this process has appended a row, and has removed the plots and pages that were made from fewer rows.
     is_renewed: bool,
     /// Lock of the folder. No other process can open the folder while this object exists. The operating system releases
     /// the lock after a crash.
@@ -182,7 +182,8 @@ pub(super) fn check_command(folder: &Path) -> Result<(), FileError> {
     }
 }
 
-/// Rewrites the folder's manifest with only the files of the sweep. Plots and pages of fewer rows are removed.
+/// Rewrites the folder's manifest with only the files of the sweep. Plots and pages that were made from fewer rows are
+/// removed.
 pub(super) fn renew_manifest(folder: &Path) -> Result<(), FileError> {
     let mut manifest = Manifest::new(Manifest::SWEEP);
     [ROWS_FILE, TIMES_FILE, RESULTS_FILE].into_iter().for_each(|name| manifest.add_growing(name));
@@ -274,7 +275,8 @@ fn whole_lines(path: &Path) -> u64 {
     whole
 }
 
-/// Returns an error with the first difference between the header of a file and the header of this sweep, if any.
+/// Returns an error if the header of a file differs from the header of this sweep. The error names the first
+/// difference.
 pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header>) -> Result<(), FileError> {
     let Some(found) = found.filter(|found| *found != expected) else { return Ok(()) };
     let pairs = [
