@@ -138,7 +138,7 @@ fn comparison(text: &str) -> Result<ResultRows, String> {
 /// object in a list appears by the value of its member `cause` or `kind`.
 fn flatten(path: &str, value: Value, row: &mut Row) {
     match value {
-        // A row without a bootstrap keeps the column of rows.csv.
+        // Without a bootstrap the column stays, because rows.csv has it for every row.
         Value::Null if path == "error.bootstrap" => row.push((format!("{path}.block_fields"), Value::Null)),
         Value::Object(inner) => {
             for (key, value) in inner {

@@ -155,7 +155,7 @@ pub fn intervals(bench: &Bench) -> Vec<Interval> {
     if bench.stop.is_stopped() {
         return Vec::new();
     }
-    // Collect the designs for each figure. A missing value counts as the value for the presets.
+    // Collect the results for each figure. A missing value counts as the value for the presets.
     let mut intervals = Vec::new();
     for (index, figure) in FIGURES.iter().enumerate().filter(|(_, figure)| !WITHOUT_CLOSED_FORM.contains(&figure.id)) {
         let nominal = nominal[index].unwrap_or(f64::NAN);

@@ -53,7 +53,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
         (false, true) => {}
         (false, false) => print(&text(&comparison))?,
     }
-    // A variant that cannot be walked is named, and the command fails after all others were walked.
+    // The command names each variant whose walk failed, and fails after all walks.
     for (variant, reason) in &comparison.failed {
         print_error(&format!("pxpl5: {variant}: {reason}\n"));
     }

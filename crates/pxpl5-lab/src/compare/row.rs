@@ -306,7 +306,7 @@ fn mean_of_fields(evaluated: &[&Trial]) -> Vec<f64> {
 /// that is at least as large as p % of all numbers.
 fn hundredths(sorted: &[f64]) -> Vec<f64> {
     let Some(least) = sorted.first() else { return Vec::new() };
-    // Position of the smallest number that the given percentage does not exceed.
+    // Position of the smallest number that is at least as large as `percent` % of all numbers.
     let place = |percent: usize| (sorted.len() * percent).div_ceil(100).max(1) - 1;
     std::iter::once(*least).chain((1..=100).map(|percent| sorted[place(percent)])).collect()
 }

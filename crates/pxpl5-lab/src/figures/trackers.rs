@@ -58,7 +58,7 @@ fn polling(bench: &Bench) -> Result<FigureValue> {
     let patched = TrackerConfig::fastrak();
     let polled = patched.clone().with_polling_by(&Tables::PAPERS);
     let mut waits_ms = Vec::new();
-    // Each seed gives the kernel another phase relative to the tracker.
+    // Each seed gives the timer of the operating system another phase relative to the tracker.
     for seed in 1..=SEEDS {
         let arrivals = |config: &TrackerConfig| {
             let reports: Vec<TrackerReport> =
