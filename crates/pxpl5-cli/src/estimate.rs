@@ -34,7 +34,6 @@ pub(crate) struct VolumeWork {
     pub(crate) samples: u64,
     pub(crate) primitives: u64,
     pub(crate) threads: u64,
-    /// True if simulated renderers of Pixel-Planes 5 draw the volume.
     pub(crate) is_pixel_planes: bool,
 }
 

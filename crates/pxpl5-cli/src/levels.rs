@@ -80,7 +80,6 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&record)? } else { text(&record) })
 }
 
-/// Measures all levels of detail now, and adds the date and a description of this computer.
 fn measured(args: &LevelsArgs) -> Result<LevelRecord, CliError> {
     let study = Study::Levels { experiments: args.experiments, measures_speeds: !args.errors_only };
     args.budget.admit_study(study, "take fewer --experiments")?;

@@ -99,7 +99,6 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
 
-/// Searches for the values of the setting `key` that reach a goal, and prints the result.
 fn over(args: &LimitArgs, key: &str) -> Result<(), CliError> {
     let (query, plan) = args.over_query(key)?;
     let bar = progress(USUAL_VALUES, "values", args.quiet);
@@ -295,7 +294,6 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
     format!("{object:#}\n")
 }
 
-/// Returns the name of the scene that is drawn with different numbers of triangles.
 fn scene(query: &LimitQuery) -> String {
     query.model.as_ref().map_or_else(|| query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned())
 }

@@ -1,6 +1,5 @@
 //! Parsers and formatters of whole numbers. An error message states the range that was expected.
 
-/// Returns a parser of whole numbers from `low` to `high`.
 pub(crate) fn whole<T: TryFrom<u64>>(low: u64, high: u64) -> impl Fn(&str) -> Result<T, String> + Clone {
     move |text| {
         let number = text.parse().ok().filter(|number: &u64| (low..=high).contains(number));
@@ -35,7 +34,6 @@ pub(crate) fn confidence(text: &str) -> Result<f64, String> {
     found.ok_or_else(|| format!("expected a number between 0 and 1, such as 0.95, found {text}"))
 }
 
-/// Formats a TOML value in the syntax of `--set`.
 pub(crate) fn plain(value: &toml::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

@@ -19,7 +19,6 @@ pub(crate) fn registry() -> Arc<Registry> {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PipelineOptions {
-    /// Keys of the experiment file, each with the text from the command line.
     pub(crate) given: Vec<(&'static str, String)>,
 }
 

@@ -108,7 +108,6 @@ impl OutputFolder {
         fs::create_dir_all(&self.path).map_err(|error| self.place.refused(&self.path, &error))
     }
 
-    /// Removes the folders that were created for this output and are still empty.
     fn unmake(&mut self) {
         for folder in self.made.drain(..).rev() {
             let _ = fs::remove_dir(folder);

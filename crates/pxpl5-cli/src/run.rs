@@ -253,7 +253,6 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     Ok(path)
 }
 
-/// Suffix of the file name for a picture that was not complete in time.
 pub(crate) const INCOMPLETE: &str = "-incomplete";
 
 /// Writes the last displayed picture of each surface. Each file name starts with `prefix`.

@@ -168,7 +168,6 @@ impl Written {
     }
 }
 
-/// Writes the three scripts `submit.sh`, `array.sh` and `merge.sh` into a folder.
 pub(crate) fn write(sweep: &Sweep, jobs: &Jobs, folder: &Path) -> Result<Written, CliError> {
     let sample = Sample::of(sweep);
     let resources = Resources::of(sample, jobs.tasks, jobs.threads);

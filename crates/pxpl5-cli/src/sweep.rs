@@ -98,7 +98,6 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
 /// Words and numbers that differ between the commands `pxpl5 sweep` and `pxpl5 volume sweep`.
 #[derive(Debug)]
 pub(crate) struct SweepCommand {
-    /// Name of the command after `pxpl5`.
     pub(crate) name: &'static str,
     /// Participle for the work at a point, for example "simulated".
     pub(crate) verb: &'static str,

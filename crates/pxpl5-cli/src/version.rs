@@ -2,7 +2,6 @@
 
 pub(crate) use pxpl5::measure::program::VERSION;
 
-/// Version and shortened commit, as shown to users.
 pub(crate) const LONG_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("PXPL5_SHORT_COMMIT"), ")");
 
 /// Returns the commit of the sources, or `None` if the build script found none.

@@ -55,11 +55,11 @@ pub enum StudyError {
     OtherSettings {
         /// Path of the file of finished rows.
         path: String,
-        /// First key, or setting of the comparison, with a different value.
+        /// First setting with a different value.
         key: String,
-        /// Value of `key` in this comparison.
+        /// Value of the setting in this comparison.
         expected: String,
-        /// Value of `key` in the file.
+        /// Value of the setting in the file.
         found: String,
     },
     /// The folder holds rows of an interrupted comparison, and the user did not allow a resume.

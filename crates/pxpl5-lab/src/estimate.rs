@@ -93,7 +93,7 @@ const BLOCK: f64 = 100.0;
 const WINDOW: f64 = 240.0;
 /// Bytes for the pixel errors of one display field.
 const ERRORS: f64 = 1e3;
-/// Maximum number of display fields in a run whose pixel errors are stored separately.
+/// Maximum number of display fields for which a run stores separate pixel errors.
 const JUDGED: f64 = 20_971.0;
 
 /// Seconds to simulate a field, including its retrace and the samples of the head pose.

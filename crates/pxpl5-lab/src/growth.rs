@@ -128,7 +128,6 @@ pub struct Application {
     pub frames: usize,
 }
 
-/// Number of seeds of the head motion for each application scene.
 const SEEDS: u64 = 30;
 /// Number of display fields in a run of an application scene: the warm-up and 300 frames at 30 Hz.
 const FIELDS: u64 = 616;

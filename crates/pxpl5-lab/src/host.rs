@@ -78,7 +78,6 @@ fn start_thread(waiting: Receiver<Arc<dyn PixelSource>>) -> JoinHandle<u64> {
     std::thread::spawn(move || compute_all(&waiting))
 }
 
-/// Computes the pixels of regions until the queue closes, and returns the number of these regions.
 fn compute_all(waiting: &Receiver<Arc<dyn PixelSource>>) -> u64 {
     waiting.iter().fold(0, |regions, region| {
         let _ = region.pixels();

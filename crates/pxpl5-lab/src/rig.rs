@@ -97,7 +97,6 @@ impl Rig {
         }
     }
 
-    /// Compares the light under one photodiode with the pendulum and with the system's own time stamps.
     fn compared(
         &self,
         tracker: &TrackerModel,

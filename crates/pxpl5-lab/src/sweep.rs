@@ -65,7 +65,6 @@ use std::sync::Arc;
 pub struct Sweep {
     base: ExperimentFile,
     space: SweepSpace,
-    /// Loaded scenes, which all clones of the sweep share.
     scenes: Arc<SceneCache>,
 }
 

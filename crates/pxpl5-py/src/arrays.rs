@@ -50,7 +50,6 @@ pub(crate) fn reals1<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<PyR
     Ok(array.call_method1("astype", ("float64",))?.extract()?)
 }
 
-/// Converts a value to a NumPy array with numbers of any type as elements.
 fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let numpy = value.py().import("numpy")?;
     let array = numpy.call_method1("asarray", (value,)).map_err(|error| {

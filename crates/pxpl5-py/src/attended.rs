@@ -35,7 +35,6 @@ impl Progress {
     }
 }
 
-/// Time between two checks for new progress and Ctrl-C.
 pub(crate) const LOOK: Duration = Duration::from_millis(50);
 
 /// Runs `work` on a separate thread. `callback` gets the number of finished steps and the number of all steps. The

@@ -14,12 +14,10 @@ pub(crate) fn raised(name: &str, error: &impl Display) -> PyErr {
     })
 }
 
-/// Returns the exception for an invalid setting, name, file or array.
 pub(crate) fn wrong_setting(error: impl Display) -> PyErr {
     raised("SettingError", &error)
 }
 
-/// Returns the exception for a run that ended early, or for a machine that cannot continue.
 pub(crate) fn failed_run(error: impl Display) -> PyErr {
     raised("RunError", &error)
 }

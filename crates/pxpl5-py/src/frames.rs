@@ -83,7 +83,6 @@ fn next<T>(pictures: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
     pictures.recv_timeout(Duration::from_millis(50))
 }
 
-/// Writes a film on a separate thread and returns its bytes (animated PNG).
 pub(crate) fn film_bytes(
     py: Python<'_>,
     film: Film,

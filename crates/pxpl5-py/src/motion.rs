@@ -32,7 +32,7 @@ pub(crate) struct Motion {
 
 /// The origin of a motion, from which the Python module `pickle` rebuilds the motion.
 enum Origin {
-    /// A name with all numbers of the motion.
+    /// The name of the motion, which contains all its numbers, for example `pan:200`.
     Name,
     /// The text of a recording, with the user's names of the columns and the behaviour after the last sample.
     Text { text: Vec<u8>, columns: BTreeMap<String, String>, end: Option<String> },

@@ -80,7 +80,6 @@ impl Outcome {
     }
 }
 
-/// Returns the outcome of a run, or raises the exception for its error.
 pub(crate) fn outcome_of_run(
     py: Python<'_>,
     result: Result<pxpl5::Outcome, Box<ExperimentError>>,

@@ -33,7 +33,6 @@ impl Asked {
         raised.map_or(Ok(()), Err)
     }
 
-    /// Calls the policy with a dictionary that describes the frame, and converts the answer to assignments.
     fn ask(&self, py: Python<'_>, frame: &PolicyFrame) -> PyResult<Vec<RegionAssignment>> {
         let about = PyDict::new(py);
         about.set_item("frame", frame.frame.0)?;

@@ -85,7 +85,6 @@ pub(crate) struct Processor {
 }
 
 impl Processor {
-    /// Returns the address of `place`, which is a label of the program or an address.
     fn place(&self, place: &Bound<'_, PyAny>) -> PyResult<u32> {
         let Ok(name) = place.extract::<String>() else { return place.extract() };
         self.program.symbol(&name).ok_or_else(|| {
@@ -98,7 +97,6 @@ impl Processor {
     }
 }
 
-/// Largest memory of a processor in bytes: 1 GiB.
 const MOST_MEMORY: usize = 1 << 30;
 
 #[pymethods]

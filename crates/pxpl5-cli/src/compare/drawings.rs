@@ -141,7 +141,6 @@ fn rows_csv(comparison: &Comparison) -> String {
     csv_table(columns.collect::<Vec<String>>(), rows)
 }
 
-/// Returns a name as it is spelled in the JSON output.
 fn written(name: serde_json::Result<Value>) -> String {
     name.ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
 }

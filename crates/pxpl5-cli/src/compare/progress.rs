@@ -73,7 +73,6 @@ impl CompareProgress {
     }
 }
 
-/// Returns the name of a row, its mean error, and the number of due pictures that were not shown.
 fn result(row: &ComparisonRow) -> String {
     let error = row.error.mean_px.mean;
     let error = if error.is_finite() { format!("error {error:.2} px") } else { "no error".to_owned() };

@@ -14,7 +14,6 @@ pub(super) enum Condition {
     Fifo(usize, Comparison),
     /// The number of messages in the inbox of the host or a graphics processor satisfies a comparison.
     Inbox(Board, Comparison),
-    /// The number of occupied ring channels satisfies a comparison.
     Channels(Comparison),
     /// A program on a board waits for an event whose name starts with this text.
     Waits(Board, String),

@@ -18,7 +18,6 @@ struct ScreenState {
     history: Vec<String>,
     /// Number of command lines by which the user has gone back in the history.
     back: usize,
-    /// Number of lines by which the pane of boards is scrolled.
     scroll: u16,
 }
 

@@ -135,7 +135,6 @@ impl Run<'_> {
         }
     }
 
-    /// Formats an address, together with the nearest label before the address if one exists.
     fn named(&self, address: u32) -> String {
         label_of(self.program, address)
             .map_or_else(|| format!("{address:#x}"), |label| format!("{address:#x} ({label})"))

@@ -170,7 +170,6 @@ impl Batch {
     }
 }
 
-/// Without a commit, removes all temporary files.
 impl Drop for Batch {
     fn drop(&mut self) {
         self.discard();

@@ -12,7 +12,6 @@ pub(super) enum Target {
     File(PathBuf),
     /// A device, a pipe or a socket, into which the bytes are written, because no file may replace it.
     Through(PathBuf),
-    /// Standard output of this process, named by a path such as /dev/stdout.
     StandardOutput,
 }
 

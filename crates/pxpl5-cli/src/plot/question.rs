@@ -26,7 +26,6 @@ pub(super) struct Group {
     /// Values of the columns in `Question::by`, as text.
     pub(super) by: Vec<String>,
     pub(super) x: Value,
-    /// Number of rows with a number in the y column.
     pub(super) n: usize,
     /// Number of rows without a number in the y column, because the run failed or no pixel was evaluated.
     pub(super) missing: usize,

@@ -7,7 +7,6 @@ use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::page::{PagePicture, PageTable};
 use serde_json::Value;
 
-/// Maximum number of rows of a sweep on a page.
 const MOST_ROWS: usize = 5_000;
 
 /// Returns the tables of a results folder, or `None` if the folder holds neither a sweep nor a comparison.

@@ -80,7 +80,6 @@ pub(super) fn run(
     if options.settings.quiet { Ok(()) } else { print(&text(&study, name, out)) }
 }
 
-/// Name of a column of errors.csv, with the function that returns the column's value for a sample.
 type Column = (&'static str, fn(&HeadSample) -> Option<f64>);
 
 const COLUMNS: [Column; 12] = [

@@ -12,7 +12,7 @@ use distrs::{Normal, StudentsT};
 use pxpl5_sim::mix;
 use serde::{Deserialize, Serialize};
 
-/// Number of random series that a bootstrap draws from one series of values.
+/// Number of resampled series that a bootstrap draws from one series of values.
 pub const RESAMPLES: usize = 2_000;
 
 /// Minimum number of values for an interval (assumed). A shorter series does not show how its values depend on each
@@ -32,11 +32,11 @@ pub struct BootstrapSize {
     pub fields: usize,
     /// Number of successive display fields whose values form a block.
     pub block_fields: usize,
-    /// Number of random series, each of which gives one mean.
+    /// Number of resampled series, each of which gives one mean.
     pub resamples: usize,
 }
 
-/// Result of a moving-block bootstrap: the means of all random series, in ascending order.
+/// Result of a moving-block bootstrap: the means of all resampled series, in ascending order.
 #[derive(Clone, Debug)]
 pub struct BlockBootstrap {
     size: BootstrapSize,
@@ -44,8 +44,8 @@ pub struct BlockBootstrap {
 }
 
 impl BlockBootstrap {
-    /// Draws random series from a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`]
-    /// numbers, and if values depend on each other over more than a tenth of the series.
+    /// Resamples a series of finite numbers. Returns `None` for fewer than [`MIN_BOOTSTRAP_VALUES`] numbers, and if
+    /// values depend on each other over more than a tenth of the series.
     #[must_use]
     pub fn of(series: &[f64]) -> Option<Self> {
         if series.len() < MIN_BOOTSTRAP_VALUES {
@@ -62,13 +62,13 @@ impl BlockBootstrap {
         Some(Self { size, means })
     }
 
-    /// Returns the lengths of the series and of a block, and the number of random series.
+    /// Returns the lengths of the series and of a block, and the number of resampled series.
     #[must_use]
     pub const fn size(&self) -> BootstrapSize {
         self.size
     }
 
-    /// Returns the variance of the means of all random series, which estimates the variance of the mean.
+    /// Returns the variance of the resampled means, which estimates the variance of the mean.
     #[must_use]
     pub fn variance(&self) -> f64 {
         let centre = self.centre();
@@ -77,12 +77,12 @@ impl BlockBootstrap {
 
     /// Returns the interval of a mean at a confidence between 0 and 1.
     ///
-    /// The ends are percentiles of the means of all random series, with two corrections:
+    /// The ends are percentiles of the resampled means, with two corrections:
     ///
     /// - Values at the ends of the series are in fewer blocks than other values. The percentiles are therefore shifted,
-    ///   so that the mean of all random series becomes `mean`. The shift multiplies by a factor if `mean` is positive
-    ///   and no random series has a negative mean. Otherwise the shift adds a difference. With the factor, the interval
-    ///   of a quantity that is never negative has no negative end.
+    ///   so that the mean of the resampled means becomes `mean`. The shift multiplies by a factor if `mean` is positive
+    ///   and no resampled mean is negative. Otherwise the shift adds a difference. With the factor, the interval of a
+    ///   quantity that is never negative has no negative end.
     /// - A series of k blocks gives the variance as imprecisely as k independent values do. The distance of both ends
     ///   from the mean is therefore multiplied by two factors. The first is the ratio of Student's t with k - 1 degrees
     ///   of freedom to the normal distribution. The second is the root of k / (k - 1). If a factor shifts the
@@ -128,7 +128,8 @@ fn running_sums(series: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Returns the mean of a random series of blocks, which is as long as the original series. The last block may be cut.
+/// Returns the mean of one resampled series, which consists of random blocks and is as long as the original series. The
+/// last block may be cut.
 fn resampled_mean(sums: &[f64], block: usize, resample: u64) -> f64 {
     let n = sums.len() - 1;
     let starts = (n - block + 1) as u64;

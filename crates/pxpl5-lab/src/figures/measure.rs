@@ -52,7 +52,6 @@ const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
 /// there.
 const FIELDS_OF_FULL_BINS: u64 = 600;
 
-/// Paths of the parameters with times of the Rendering Control code.
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
 
 /// Number of head poses for each scene when the regions under triangles are counted (row 8 of ACCURACY.md).

@@ -1,4 +1,4 @@
-//! The input files of points, such as models and recordings, with hashes of their contents.
+//! The input files of a sweep's points, such as models and recordings, with hashes of their contents.
 
 use super::Sweep;
 use crate::experiment_file::{ExperimentFile, beside, is_file};

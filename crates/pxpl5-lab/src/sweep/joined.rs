@@ -83,7 +83,6 @@ impl Joined {
         &self.header
     }
 
-    /// Returns the points without a row, in ascending order.
     pub(super) fn missing(&self) -> Vec<u64> {
         (0..).zip(&self.holders).filter(|(_, holder)| **holder == 0).map(|(point, _)| point).collect()
     }
@@ -107,7 +106,6 @@ impl Joined {
 #[derive(Debug)]
 struct RowBlocks {
     path: PathBuf,
-    /// Byte position of the last piece in the file.
     begin: u64,
     block: Vec<u8>,
 }

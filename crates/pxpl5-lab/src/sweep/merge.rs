@@ -54,7 +54,6 @@ fn write(joined: &mut Joined, folders: &[PathBuf], out: &Path) -> Result<(), Fil
     renew_manifest(out)
 }
 
-/// Copies the lines of a folder's file of durations, except the header in the first line.
 fn put_times(times: &mut Replacement, path: &Path) -> Result<(), FileError> {
     let Ok(file) = File::open(path) else { return Ok(()) };
     let lines = BufReader::new(file).lines().map_while(Result::ok);

@@ -86,7 +86,6 @@ struct Work<'a, S> {
     shard: Shard,
     /// Points that were finished before this run of the sweep.
     finished: Points,
-    /// Index of the next point that a thread takes.
     next: AtomicU64,
     /// True after a row could not be written, so that no further row can be written.
     ended: AtomicBool,
@@ -108,7 +107,8 @@ impl<S: Swept> Work<'_, S> {
         }
     }
 
-    /// Takes the next point of the shard without a row that no thread has taken. Returns `None` if no point is left.
+    /// Takes the next point of the shard that has no row and was not taken by another thread. Returns `None` if no
+    /// point is left.
     fn take(&self) -> Option<u64> {
         let all = self.sweep.space().points();
         let mut taken =

@@ -4,7 +4,6 @@ use crate::error::CliError;
 use svg2pdf::usvg::{Options, Transform, Tree};
 use svg2pdf::{ConversionOptions, PageOptions};
 
-/// Resolution of a PNG file in dots per inch.
 const PNG_DOTS: f32 = 300.0;
 
 /// Resolution of an SVG drawing. The unit of length is the CSS pixel, and an inch has 96 CSS pixels.
