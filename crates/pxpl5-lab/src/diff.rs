@@ -39,7 +39,7 @@ pub struct Differences {
     pub equal: usize,
 }
 
-/// First names in the paths of settings. All other paths belong to results.
+/// First parts of the paths of settings, up to the first dot. All other paths belong to results.
 const SETTINGS: [&str; 17] = [
     "schema",
     "version",
@@ -60,7 +60,7 @@ const SETTINGS: [&str; 17] = [
     "fields",
 ];
 
-/// First names in the paths of values that are not compared, because they do not describe the simulated machine.
+/// First parts of the paths of values that are not compared, because they do not describe the simulated machine.
 const LEFT_OUT: [&str; 4] = ["config_hash", "trace_hash", "host_seconds", "events"];
 
 /// Compares two reports in JSON, such as the contents of two files `report.json`.

@@ -66,8 +66,8 @@ pub(crate) struct Setting {
 }
 
 impl Setting {
-    /// Returns the origin of the setting together with its key. An option such as `--level` stands alone, because it
-    /// names its key.
+    /// Returns the origin of the setting and its key, for error messages. The origin `--level` is returned alone,
+    /// because it names the key already.
     fn place_of(&self, key: &str) -> String {
         match self.place.as_str() {
             "" => key.to_owned(),

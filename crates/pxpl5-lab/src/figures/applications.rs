@@ -28,7 +28,7 @@ pub(super) type RigKey = (FinishedRegions, Vec<(String, u64)>);
 /// [`Record::met_full_store`]: pxpl5_machine::Record::met_full_store
 #[derive(Debug)]
 struct ByCapacity<K, T> {
-    /// Results for single capacities. The boolean is true if a backing store was full at some time of the run.
+    /// Results by key and capacity. The boolean is true if a backing store was full at some time of the run.
     exact: Places<(K, u64), (Arc<T>, bool)>,
     /// Smallest capacity with which no backing store was full, and the result of this run.
     roomy: Mutex<BTreeMap<K, (u64, Arc<T>)>>,

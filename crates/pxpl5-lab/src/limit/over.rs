@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// Equally spaced values of a setting, of which a search tries some.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Values {
-    /// Smallest value.
+    /// Smallest value that a search can try.
     pub from: f64,
     /// Difference between neighbouring values, which is 1 for whole numbers.
     pub step: f64,
@@ -44,7 +44,7 @@ impl Values {
         self.from + self.step * number as f64
     }
 
-    /// Returns the greatest value.
+    /// Returns the greatest value that a search can try.
     #[must_use]
     pub fn last(&self) -> f64 {
         self.value(self.count - 1)

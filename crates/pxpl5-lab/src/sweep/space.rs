@@ -43,7 +43,7 @@ impl Axis {
 /// Values of one setting along an axis, in order. A range stores only three numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxisValues {
-    /// Values in the order of the sweep's file.
+    /// A list of values, as written in the sweep's file.
     Listed(Vec<Value>),
     /// A range of whole numbers.
     Range {
