@@ -41,7 +41,6 @@ const fn pair(a: Operand, b: Operand) -> Word {
 }
 
 impl ArrayInstruction {
-    /// Appends the instruction's words to `out`.
     pub fn encode(&self, out: &mut Vec<Word>) {
         // Operations and tests have consecutive opcodes, in the order of their enums.
         match *self {
