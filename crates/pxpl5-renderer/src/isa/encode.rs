@@ -28,8 +28,7 @@ pub(crate) mod opcode {
     pub(crate) const OUTPUT: u8 = 0x70;
 }
 
-/// Bit 7 of the modifier. If this bit is set, the evaluator reuses the coefficients of the last expression of the same
-/// kind.
+/// Bit 7 of the modifier. If it is set, the evaluator reuses the coefficients of the last expression of the same kind.
 pub(super) const AGAIN: u8 = 0x80;
 
 pub(crate) const fn head(opcode: u8, modifier: u8, operand: u32) -> Word {
