@@ -1,6 +1,6 @@
-//! The part of a basic block that was executed.
+//! The executed part of a basic block.
 
-/// The part of a basic block that was executed, and the way in which the execution ended.
+/// The executed part of a basic block, and the end of its execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Execution {
     /// Number of instructions or pairs that were executed, without the delay slot.
