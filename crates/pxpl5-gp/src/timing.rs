@@ -71,11 +71,12 @@ pub enum CodeUse {
 // measured by `pxpl5_lab::code_times`. A test of that module compares these constants with the code.
 //
 // `message_ns` is the time of kernels/ring.s for a message or a chain, which differs between scenes
-// (docs/gp-timing.md). `message_ns` is also the time of kernels/token.s for a token without entries. `token_entry_ns`
-// is the time for each entry of a token.
+// (docs/gp-timing.md). It is also the time of kernels/token.s for a token without entries. `token_entry_ns` is the time
+// for each entry of a token.
 //
-// `pass_ns` is the time at the start of a pass that does not belong to structures: to reset bins and to load code into
-// the caches. A structure with culling takes 3.2 us more than others. The table does not contain this difference.
+// `pass_ns` is the time at the start of a pass for work that does not belong to structures: to reset bins, and to load
+// code into the caches. A structure with culling takes 3.2 us more than other structures. The table does not contain
+// this difference.
 impl GpTiming {
     /// Returns this table with the times of triangles and spheres in i860 code. `version` is the version of the code,
     /// and `of` is its pipeline.
