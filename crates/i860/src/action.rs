@@ -117,11 +117,9 @@ pub(crate) enum Floating {
     Subtract,
     /// Any other operation that reads two single-precision operands.
     Singles,
-    /// Pipelined multiplication of two double-precision operands.
     PipelinedMultiplyDoubles,
     PipelinedAddDoubles,
     PipelinedSubtractDoubles,
-    /// Scalar multiplication of two double-precision operands.
     MultiplyDoubles,
     AddDoubles,
     SubtractDoubles,

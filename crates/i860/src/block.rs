@@ -65,13 +65,11 @@ impl Unit {
         self.second.as_ref().unwrap_or(&self.first)
     }
 
-    /// Returns the address of the core half of a pair, or of the single instruction.
     #[inline]
     pub(crate) fn core_pc(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 4 } else { 0 })
     }
 
-    /// Returns the address of the next instruction or pair.
     #[inline]
     pub(crate) fn next(&self) -> u32 {
         self.pc.wrapping_add(if self.second.is_some() { 8 } else { 4 })
@@ -257,7 +255,6 @@ impl Block {
         (self.pc.wrapping_add(line as u32 * LINE_BYTES), end)
     }
 
-    /// Returns true if the instruction cache contains all cache lines of the block.
     #[inline]
     pub(crate) fn is_held(&mut self, cache: &InstructionTags) -> bool {
         self.held_in == cache.changes() || self.look_up(cache)

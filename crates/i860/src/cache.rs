@@ -54,7 +54,6 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         address & !(LINE_BYTES - 1) | VALID
     }
 
-    /// Returns true if the array contains the cache line of `address`.
     #[inline]
     pub(crate) fn holds(&self, address: u32) -> bool {
         self.sets[Self::set(address)].iter().any(|held| held & !DIRTY == Self::tag(address))

@@ -69,7 +69,6 @@ pub(crate) struct Clock {
     pub(crate) data: DataCache,
     stores: StorePipe,
     loads: LoadPipe,
-    /// Memoized clocks of blocks. `None` if memoization is off.
     pub(crate) memo: Option<Memo>,
 }
 
@@ -121,8 +120,8 @@ impl Clock {
         self.translation.clear();
     }
 
-    /// Exchanges the numbering of scoreboard states with `numbers`, the numbering in a shared store of decoded
-    /// programs. The memoized clocks in this store refer to scoreboard states by number.
+    /// Exchanges the table of numbered scoreboard states with `numbers`, from a shared store of decoded programs. The
+    /// memoized clocks in the store refer to states by these numbers.
     pub(crate) fn exchange_numbers(&mut self, numbers: &mut Box<Numbers>) {
         self.write_board();
         if let Some(memo) = &mut self.memo {
@@ -130,7 +129,6 @@ impl Clock {
         }
     }
 
-    /// Turns on address translation with the page directory at `directory`, or turns it off with `None`.
     pub(crate) fn set_translation(&mut self, directory: Option<u32>) {
         self.translation.set_directory(directory);
     }

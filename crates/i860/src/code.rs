@@ -53,7 +53,6 @@ impl Code {
         self.blocks[place(pc)] = Some(block);
     }
 
-    /// Discards all decoded blocks, because the code in memory may have changed.
     pub(crate) fn clear(&mut self) {
         self.blocks.fill(None);
         self.words.clear();

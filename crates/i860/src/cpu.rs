@@ -28,7 +28,6 @@ pub struct Cpu {
     /// Pairing mode (single instructions or pairs) after the delay slot. Set by a return from a trap.
     pub(crate) mode_after_slot: Option<Mode>,
     pub(crate) accesses: Accesses,
-    /// Cause of the trap that the current instruction or pair has raised.
     cause: Option<TrapCause>,
     /// New value of the directory-base register, if the current block has written this register.
     pub(crate) directory_base: Option<u32>,

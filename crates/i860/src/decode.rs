@@ -54,7 +54,6 @@ pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
     .ok_or(IllegalWord(word))
 }
 
-/// Sets the register bit fields that the operation does not use to zero.
 fn without_reserved_fields(mut i: Instruction) -> Instruction {
     let mask = register_mask(&i, i.has(Flags::IMMEDIATE));
     i.dest &= field(mask, 16);

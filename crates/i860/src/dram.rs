@@ -11,7 +11,6 @@ const BUS_DEPTH: usize = ChipSizes::PAPERS.bus_depth as usize;
 pub(crate) struct Transfer {
     /// Clock at which the first 8 bytes arrive. They contain the requested data.
     pub(crate) first: u64,
-    /// Clock at which the last 8 bytes arrive.
     pub(crate) last: u64,
     /// Number of clocks between successive transfers of 8 bytes.
     step: u64,
@@ -69,7 +68,7 @@ impl Dram {
     }
 
     /// Adds the time of a refresh, and of a transfer by another bus master, if they are due before a request at clock
-    /// `now`. If several refreshes are due, only the latest takes time, and the same is true for transfers (assumed).
+    /// `now`. Of several that are due, only the latest takes time (assumed).
     fn steal(&mut self, now: u64) {
         let t = self.timing;
         for (interval, clocks, due) in [

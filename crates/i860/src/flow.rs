@@ -2,7 +2,6 @@
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flow {
-    /// Continue with the next instruction in memory.
     Next,
     /// Continue with the next instruction in memory, which a store may have changed.
     NextOfChangedCode,

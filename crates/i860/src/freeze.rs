@@ -20,7 +20,6 @@ pub struct FreezeRow {
     pub clocks: &'static ParameterInfo,
 }
 
-/// Declares the enumeration `Freeze` and the table `FREEZES` from one list of rows.
 macro_rules! freezes {
     ($($id:ident $number:literal $condition:literal $variable:literal;)*) => {
         /// A hazard that stops the issue of instructions. The variants have the order of [`FREEZES`].

@@ -85,15 +85,15 @@ impl Memo {
         Some(number)
     }
 
-    /// Sets the current scoreboard state to the state after `remembered`, a memoized part of a block.
+    /// Sets the current scoreboard state to the state at the end of `remembered`, a memoized part of a block.
     #[inline]
     pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
         self.present = Some(remembered.exit);
         self.instructions += u64::from(remembered.instructions);
     }
 
-    /// Discards the number of the current scoreboard state, so that the [`Scoreboard`] contains the state again.
-    /// Returns the waits to restore in the [`Scoreboard`], or `None` if it is up to date.
+    /// Returns the waits from which the caller must restore the [`Scoreboard`], or `None` if the [`Scoreboard`] is up
+    /// to date. Afterwards, the [`Scoreboard`] holds the current state.
     #[inline]
     pub(crate) fn leave(&mut self) -> Option<&PendingWaits> {
         self.present.take().map(|number| &self.numbers.leftovers[(number.0 & !Number::FILLING) as usize])
@@ -102,7 +102,6 @@ impl Memo {
 
 const _: () = assert!(size_of::<RememberedClocks>() == 32);
 
-/// The part of an instruction-cache line that has not arrived yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ArrivingLine {
     /// Number of clocks until the last transfer of the line arrives, or 0 if no line is arriving.
@@ -213,7 +212,6 @@ impl RememberedClocks {
 pub(crate) struct BlockMemory(Box<[RememberedClocks]>);
 
 impl BlockMemory {
-    /// Smallest size of the hash table, in entries.
     const LEAST: usize = 8;
     const MOST: usize = 1 << 11;
     /// Number of successive entries of the hash table that a search examines.

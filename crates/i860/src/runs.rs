@@ -32,9 +32,9 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Returns the flags in the key of a run, the part of a block up to position `to`: the branch at the end was taken,
-    /// the last instruction trapped, and `continues`. `continues` is true if the first fetch is from a cache line that
-    /// is still arriving.
+    /// Returns three flags for the key of a run, the part of a block up to position `to`: its branch is taken, its last
+    /// instruction traps, and `continues`. `continues` is true if the first fetch is from a cache line that is still
+    /// arriving.
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;

@@ -6,7 +6,6 @@ use crate::instruction::{Instruction, Op};
 /// Operands of an instruction, in the order of assembler text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Syntax {
-    /// No operands.
     Bare,
     /// `src1 or immediate, src2, dest`: an integer operation.
     Integer,

@@ -43,7 +43,6 @@ pub enum RendererOutput {
         /// plus the time that it waits for room in the FIFO.
         last_word_at: Time,
     },
-    /// A message for the ring.
     Send {
         /// The pixels of a region, or the acknowledgement of a copy.
         message: Message,

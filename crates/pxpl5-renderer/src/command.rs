@@ -133,7 +133,6 @@ pub struct Unsupported {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// Selects the region of the following commands, and the context (part of pixel memory) that holds it.
     SelectRegion(SelectRegion),
     Clear(Clear),
     /// Draws a triangle with interpolated colour (Gouraud).

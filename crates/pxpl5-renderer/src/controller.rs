@@ -31,7 +31,7 @@ pub(crate) struct Controller {
     quadratic: Quadratic,
 }
 
-/// A linear or quadratic expression with the upper left pixel of the array as origin of coordinates.
+/// A linear or quadratic expression in coordinates of the array: the array's upper left pixel is (0, 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LocalExpression {
     Linear(Linear),
@@ -54,11 +54,11 @@ impl Controller {
         Ok((instruction, used))
     }
 
-    /// Stores the coefficients of `expression`, and returns the expression with the upper left pixel of the array as
-    /// origin of coordinates.
+    /// Stores the coefficients of `expression`, and converts it to coordinates of the array (origin at the array's
+    /// upper left pixel).
     ///
-    /// If `expression` has no coefficients, the stored coefficients of the last linear or quadratic expression are
-    /// used.
+    /// If `expression` has no coefficients, the function uses the stored coefficients of the last linear or quadratic
+    /// expression.
     pub(crate) fn latch(&mut self, expression: &Expression) -> LocalExpression {
         match expression {
             Expression::Linear(linear) => self.linear = *linear,
@@ -77,7 +77,8 @@ impl Controller {
         [self.left.into(), self.top.into()]
     }
 
-    /// Moves the origin of an expression from the upper left pixel of the picture to the upper left pixel of the array.
+    /// Converts an expression from coordinates of the picture to coordinates of the array. The origin of each is its
+    /// upper left pixel.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }

@@ -155,7 +155,6 @@ pub(crate) struct Block {
     /// Time at which the drawing before this blocking command ended. A wait for the copy command does not count as
     /// drawing, and neither does the selection of the region after the wait.
     pub(crate) finished_at: Time,
-    /// Start time of this blocking command.
     pub(crate) start: Time,
     /// Sum of the execution times of the commands between the previous blocking command and this command.
     pub(crate) executed: Span,

@@ -200,7 +200,6 @@ pub enum ArrayInstruction {
         /// y coordinate of the array's top row on the screen, in drawn lines.
         top: u16,
     },
-    /// Evaluates an expression in all pixels.
     Evaluate {
         expression: Expression,
         usage: ExpressionUse,
@@ -280,7 +279,6 @@ pub enum ArrayInstruction {
         /// Block of the backing store, 0 to 127.
         block: u8,
     },
-    /// Waits until all transfers of the backing store have ended.
     Wait,
     /// Sends the 24 bits of `field`, from each pixel of the region, to a frame buffer.
     Output {

@@ -12,11 +12,9 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 pub struct ArrayPool {
     layout: Layout,
     idle: Mutex<Vec<ArrayAndWords>>,
-    /// Cached pixels of regions without primitives.
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
 
-/// The pixel array and the buffer for words that one thread uses to compute pixels.
 struct ArrayAndWords {
     array: Lanes,
     /// Buffer for the words of command lists. The thread reuses the buffer to avoid allocations.

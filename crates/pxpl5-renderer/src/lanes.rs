@@ -120,7 +120,6 @@ impl Lanes {
 
 struct Drawing<'a> {
     array: &'a mut Lanes,
-    /// Words of commands that were collected, but not executed yet.
     words: &'a mut Vec<Word>,
     /// Regions copied so far, or the fault that ended the drawing.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,

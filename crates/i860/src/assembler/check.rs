@@ -29,11 +29,11 @@ type Located = (u32, usize, Instruction);
 /// A rule that some working programs break. A violation causes only a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rule {
-    /// A `d.` instruction has an address that is a multiple of 8.
+    /// Rule: a `d.` instruction has an address that is a multiple of 8.
     Alignment,
-    /// A pipelined multiply does not have its first source as destination.
+    /// Rule: a pipelined multiply does not have its first source as destination.
     MultiplySource,
-    /// No result is read from a pipe after a scalar operation has destroyed the contents of the pipe.
+    /// Rule: no result is read from a pipe after a scalar operation has destroyed the contents of the pipe.
     LostResult,
 }
 

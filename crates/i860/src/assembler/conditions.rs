@@ -12,11 +12,9 @@ struct Open {
     line: usize,
     /// True if this `.if` is itself in assembled code, and not in an excluded branch of another `.if`.
     outer: bool,
-    /// True while the lines of the current branch are assembled.
     selected: bool,
     /// True if a branch of this `.if` was already selected. All later branches are then excluded.
     done: bool,
-    /// True after the `.else` of this `.if`.
     ended: bool,
 }
 

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 /// Values of labels and of `.equ` constants, by name.
 pub(super) type Symbols = BTreeMap<String, i64>;
 
-/// Greatest nesting depth of a constant expression.
 const DEPTH: u32 = 64;
 
 struct Parser<'a> {

@@ -42,7 +42,6 @@ impl Width {
     }
 }
 
-/// Name and properties of an operation in a linear stretch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Name {
     pub(super) unit: Unit,

@@ -6,7 +6,6 @@ use super::settings::Settings;
 use crate::AssemblyError;
 use std::collections::HashMap;
 
-/// An operand in a linear stretch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     /// Value of an earlier operation: the index of the operation, and the index of one register of the value (`None`

@@ -104,9 +104,8 @@ struct Placer<'a> {
     /// Clock at which each operation was issued. `None` before its issue.
     issued: Vec<Option<u32>>,
     now: u32,
-    /// Index of the first operation that was not issued yet.
     first: usize,
-    /// Number of next multiplications that must not become dual operations. A reciprocal approximation (`frcp`,
+    /// Number of following multiplications that must not become dual operations. A reciprocal approximation (`frcp`,
     /// `frsqr`) has destroyed the values in the multiplier's pipe, so a dual operation would read a wrong product.
     after_seed: usize,
     /// Values in the adder's pipe, the oldest first. `None` is a result that no operation reads.

@@ -12,7 +12,7 @@ pub(super) struct Settings {
     /// Number of registers that are additionally reserved for each 64 lines of distance from the first unissued line.
     /// Distant lines then wait if few registers are free.
     pub(super) slope: usize,
-    /// Seed of random changes of the priorities. With 0, the priorities stay unchanged.
+    /// Seed of random changes of the priorities of operations. With 0, the priorities stay unchanged.
     pub(super) shake: u32,
 }
 

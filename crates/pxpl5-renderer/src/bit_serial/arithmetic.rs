@@ -87,7 +87,6 @@ impl Tile {
         SerialOperand { bits, extension }
     }
 
-    /// Overwrites bit plane `bit` of pixel memory in the enabled pixels of the tile.
     fn store(&mut self, bit: usize, new: &TilePlane) {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }
@@ -165,7 +164,6 @@ impl Tile {
         }
     }
 
-    /// Computes `field := f(a, b)`, one bit at a time.
     fn combine_bits(&mut self, field: FieldBits, a: &SerialOperand, b: &SerialOperand, f: fn(u64, u64) -> u64) {
         self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }

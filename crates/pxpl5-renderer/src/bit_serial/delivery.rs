@@ -8,15 +8,14 @@ use crate::controller::FieldBits;
 use crate::simd::SimdVector;
 use std::ops::Range;
 
-/// A consumer of the bits of an expression, which arrive one bit per clock.
 trait BitSink {
     /// Uses bit `t` of an expression in one vector of pixels. In a bit plane of the tile, word `at` is the first word
     /// of the vector.
     ///
-    /// `carry` holds one carry for each pixel between two bits. It must be zero for the first bit.
+    /// `carry` holds the carry of each pixel, which bit `t + 1` uses. It must be zero for bit 0.
     fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
-    /// Uses the carry that remains after the last bit of the expression.
+    /// Uses the carry of the last bit of the expression.
     fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
@@ -39,8 +38,7 @@ pub(super) enum ExpressionEffect {
 }
 
 impl Delivery {
-    /// Evaluates an expression bit by bit for one vector of pixels. Each bit has the effect that the field `effect`
-    /// names.
+    /// Evaluates an expression bit by bit in one vector of pixels, and uses each bit as the field `effect` states.
     #[inline(always)]
     pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
         let shift = self.taken.start;
@@ -83,7 +81,6 @@ impl Delivery {
     }
 }
 
-/// Stores the bits `new` of a vector's pixels in a bit plane. Disabled pixels keep their old bits.
 #[inline(always)]
 fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
     let old = V::load_words(&plane[at..]);
@@ -91,7 +88,6 @@ fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TileP
     old.xor(changed).store_words(&mut plane[at..]);
 }
 
-/// Clears the Enable bit of the pixels in which the arriving bit is set.
 struct ClearEnable;
 
 impl BitSink for ClearEnable {

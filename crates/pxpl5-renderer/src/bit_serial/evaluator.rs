@@ -182,7 +182,6 @@ pub(super) trait Evaluator {
 
 /// An evaluator whose adder trees span the whole array.
 pub(super) trait WholeTrees: Evaluator {
-    /// Coefficients of a linear or quadratic expression.
     type Coefficients;
 
     /// Simulates the adder trees for the first `bits` bits of the expression.

@@ -30,7 +30,6 @@ pub(super) fn or(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// Computes `old := new` in the pixels where `enable` is set.
 #[inline(always)]
 pub(super) fn store(old: &mut TilePlane, new: &TilePlane, enable: &TilePlane) {
     for ((old, new), enable) in old.iter_mut().zip(new).zip(enable) {

@@ -171,7 +171,6 @@ impl Delivery {
 /// for tile n.
 #[derive(Clone, Copy, Debug, Default)]
 struct Signs {
-    /// Tiles in which the expression is negative at every pixel.
     negative: u32,
     /// Tiles in which the expression is at least 0 at every pixel.
     positive: u32,

@@ -19,7 +19,6 @@ pub(super) type TilePlane = [u64; HEIGHT / 2];
 pub(super) const EMPTY: TilePlane = [0; HEIGHT / 2];
 pub(super) const FULL: TilePlane = [u64::MAX; HEIGHT / 2];
 
-/// Pixel memory and Enable of one tile. Tiles are independent of each other.
 #[derive(Clone, Debug)]
 #[repr(align(64))] // No vector of pixels crosses a border between lines of the host's cache.
 pub(super) struct Tile {

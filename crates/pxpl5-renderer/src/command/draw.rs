@@ -93,7 +93,6 @@ pub(crate) const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usiz
 pub(crate) const EDGES_AT: [usize; 3] = [2, 6, 10];
 pub(crate) const DEPTH_AT: usize = 14;
 pub(crate) const COMPONENTS_AT: [usize; 3] = [19, 23, 27];
-/// Index of the word with the colour in an encoded Phong triangle command.
 pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 
 /// A fast encoder of triangle commands. It does not build the program of each command, because a scene can have 100,000

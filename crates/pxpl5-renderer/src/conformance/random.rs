@@ -57,7 +57,6 @@ impl Random {
         words
     }
 
-    /// Appends one to six legal instructions with random operands.
     fn instructions(&mut self, words: &mut Vec<Word>) {
         let mut wanted = 1 + self.below(6);
         while wanted > 0 {

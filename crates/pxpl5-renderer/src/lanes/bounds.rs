@@ -94,7 +94,6 @@ impl RowLimit {
 
 pub(super) type PerTriangle<T> = [T; LANES];
 
-/// Edge expressions of all triangles of a batch.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edges(pub(super) [LinearLanes; 3]);
 
@@ -108,8 +107,8 @@ impl Edges {
         }
     }
 
-    /// Moves the origin of all edge expressions from the upper left pixel of the picture to the upper left pixel of the
-    /// array. `left` and `top` are the coordinates of the latter in the picture.
+    /// Converts all edge expressions from coordinates of the picture to coordinates of the array. The origin of each is
+    /// its upper left pixel. `left` and `top` are the place of the array in the picture.
     #[inline(always)]
     pub(super) fn localise(&mut self, [left, top]: [i32; 2]) {
         for e in &mut self.0 {
@@ -126,7 +125,6 @@ impl Edges {
     }
 }
 
-/// Bounding boxes of the triangles of a batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes {
     /// First column (0 to 128) and last column (-1 to 127) of each triangle in the array. The first column is greater

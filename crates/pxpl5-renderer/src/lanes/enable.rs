@@ -12,7 +12,6 @@ const WIDTH: usize = 128;
 #[derive(Clone, Debug)]
 pub(super) struct Enable {
     pixels: Box<[u8; PIXELS]>,
-    /// Rows that can contain enabled pixels.
     used: Range<usize>,
 }
 

@@ -71,13 +71,11 @@ impl SlimTriangles {
         all
     }
 
-    /// Returns true if triangle `i` of the batch is at most four columns wide.
     #[inline(always)]
     pub(super) const fn has(&self, i: usize) -> bool {
         self.vectors[i] >= 0
     }
 
-    /// Draws triangle `i` of the batch, which must be at most four columns wide.
     #[inline(always)]
     pub(super) fn draw<V: SimdVector, P: PaintTriangle>(
         &self,

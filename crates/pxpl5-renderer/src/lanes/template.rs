@@ -35,7 +35,6 @@ impl<const N: usize> Template<N> {
         words.split_first_chunk::<N>().filter(|(command, _)| self.fits(command))
     }
 
-    /// Returns true if `command` equals the template in all words except the operands.
     #[inline(always)]
     pub(super) fn fits(&self, command: &[Word; N]) -> bool {
         let mut different = 0;

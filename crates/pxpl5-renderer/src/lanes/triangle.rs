@@ -355,7 +355,6 @@ impl PaintTriangle for PaintGouraud<'_> {
     }
 }
 
-/// A painter that stores interpolated normals and the object's colour.
 pub(super) struct PaintPhong<'a> {
     pub(super) normal: [&'a mut Values; 3],
     pub(super) constant: u32,

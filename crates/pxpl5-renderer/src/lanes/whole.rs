@@ -153,7 +153,6 @@ fn last(commands: usize, words: usize) -> Option<usize> {
     Some(commands.checked_sub(1)? * words + COMPONENTS_AT[2])
 }
 
-/// Stores the same value in all pixels.
 struct Fill<'a> {
     column: &'a mut Values,
     value: u32,
