@@ -52,7 +52,6 @@ pub struct Program {
     pub lines: Vec<(u32, usize)>,
     /// Data blocks of the program, sorted by address.
     pub data: Vec<Data>,
-    /// Warnings, sorted by source line.
     pub warnings: Vec<AssemblyWarning>,
 }
 

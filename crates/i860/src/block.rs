@@ -21,7 +21,7 @@ const LONGEST: usize = 32;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
     pub(crate) pc: u32,
-    /// Pairing mode (single instructions or pairs) of this instruction or pair.
+    /// Pairing mode (single instructions or pairs) in which this code executes.
     pub(crate) mode: Mode,
     pub(crate) after: Mode,
     /// The single instruction, or the floating-point half of a pair.

@@ -9,7 +9,7 @@ use crate::memo::ArrivingLine;
 use crate::timing::{ChipSizes, Freeze};
 use crate::translation::Translation;
 
-/// Value of `Fetch::line` while there is no last fetch.
+/// Value of `Fetch::line` if the fetch unit holds no cache line.
 const NO_LINE: u32 = u32::MAX;
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;

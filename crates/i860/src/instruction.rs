@@ -186,7 +186,7 @@ impl Flags {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
     pub op: Op,
-    /// Register number, 0 to 31. The operation determines the register file.
+    /// Destination: a register number from 0 to 31. The operation determines the register file.
     pub dest: u8,
     /// Register number of the first source. (For ld.c and st.c, `src2` selects the control register.)
     pub src1: u8,

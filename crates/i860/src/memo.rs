@@ -27,7 +27,7 @@ pub(crate) struct Number(u32);
 impl Number {
     const FILLING: u32 = 1 << 31;
 
-    /// Returns true if an instruction-cache line is arriving in this state.
+    /// Returns true if, in this scoreboard state, an instruction-cache line is still arriving.
     #[inline]
     pub(crate) fn is_filling(self) -> bool {
         self.0 & Number::FILLING != 0
@@ -104,9 +104,9 @@ const _: () = assert!(size_of::<RememberedClocks>() == 32);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ArrivingLine {
-    /// Number of clocks until the last transfer of the line arrives, or 0 if no line is arriving.
+    /// Number of clocks until the last transfer of the cache line arrives, or 0 if no cache line is arriving.
     pub(crate) clocks: u64,
-    /// Index, within the line, of the 8-byte transfer that arrives first.
+    /// Index, within the cache line, of the 8-byte transfer that arrives first.
     pub(crate) first: u8,
 }
 

@@ -19,12 +19,12 @@ pub enum SeedTable {
     /// fraction bits of the operand determine the interval. A ROM of 256 entries can hold these results (512 entries
     /// for frsqr, because of the parity of the exponent). Assumed.
     Midpoint8,
-    /// The correctly rounded result, without any error of a table.
+    /// The correctly rounded result.
     Exact,
 }
 
 impl SeedTable {
-    /// Returns the name of this table in lists of settings.
+    /// Returns the name of this table of approximations, for lists of settings.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -55,7 +55,7 @@ fn midpoint(x: f64) -> f64 {
 }
 
 impl SeedTable {
-    /// Returns an upper bound of the relative error of the results.
+    /// Returns an upper bound of the relative error of the approximations in this table.
     #[must_use]
     pub fn relative_error_bound(self) -> f64 {
         match self {

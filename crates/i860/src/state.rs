@@ -34,15 +34,15 @@ pub mod psr {
     pub const DIM: u32 = 1 << 14;
     /// KNF (kill next): skip the next floating-point instruction. The model ignores this bit.
     pub const KNF: u32 = 1 << 15;
-    /// Number of the lowest bit of SC, the shift count.
+    /// Index, in psr, of the lowest bit of SC, the shift count.
     pub const SC_SHIFT: u32 = 17;
     /// SC: shift count of `shrd`, five bits.
     pub const SC: u32 = 31 << SC_SHIFT;
-    /// Number of the lowest bit of PS, the pixel size.
+    /// Index, in psr, of the lowest bit of PS, the pixel size.
     pub const PS_SHIFT: u32 = 22;
     /// PS: pixel size. The values 0, 1, 2 stand for 8, 16, 32 bits.
     pub const PS: u32 = 3 << PS_SHIFT;
-    /// Number of the lowest bit of PM, the pixel mask.
+    /// Index, in psr, of the lowest bit of PM, the pixel mask.
     pub const PM_SHIFT: u32 = 24;
     /// PM: pixel mask, eight bits. `pst` stores only pixels whose bits are set.
     pub const PM: u32 = 0xFF << PM_SHIFT;
@@ -68,7 +68,7 @@ pub mod epsr {
 pub mod fsr {
     /// FZ: flush to zero. Results that underflow become zero.
     pub const FZ: u32 = 1;
-    /// Number of the lowest bit of RM, the rounding mode. In this model, only `fix` uses RM.
+    /// Index, in fsr, of the lowest bit of RM, the rounding mode. In this model, only `fix` uses RM.
     pub const RM_SHIFT: u32 = 2;
 }
 
@@ -162,7 +162,6 @@ pub struct State {
     /// Pipe of the pipelined loads (`pfld`).
     pub load: [PipeStage; 3],
     pub graphics: PipeStage,
-    /// Pairing mode: single instructions or pairs.
     pub mode: Mode,
 }
 

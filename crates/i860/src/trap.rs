@@ -60,6 +60,6 @@ pub enum RunEnd {
     /// The stop address was reached in single-instruction mode. The instruction at this address was not executed.
     Stopped,
     Trapped(Trap),
-    /// The instruction budget was used up.
+    /// The run has executed its budget of instructions.
     Exhausted,
 }

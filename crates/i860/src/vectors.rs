@@ -43,13 +43,13 @@ pub struct TestVector {
 /// Expected registers and memory words after the program of a vector has run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Expectation {
-    /// Integer registers, as bit patterns.
+    /// Expected integer registers, as bit patterns.
     #[serde(deserialize_with = "registers")]
     pub r: [u32; 32],
-    /// Floating-point registers, as bit patterns.
+    /// Expected floating-point registers, as bit patterns.
     #[serde(deserialize_with = "registers")]
     pub f: [u32; 32],
-    /// Addresses and words that memory must contain.
+    /// Addresses and words that memory must contain after the run.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
 }
@@ -137,7 +137,7 @@ pub enum Failure {
     Trapped(Trap),
     /// The program used up its instruction budget before it reached its stop address.
     Exhausted {
-        /// Address of the next instruction.
+        /// Address at which the program was stopped.
         pc: u32,
     },
     /// The run ended correctly, but some registers or memory words differ.

@@ -32,16 +32,16 @@ pub enum FrameBufferOutput {
     RegionArrived {
         /// Destination of the pixels: the frame buffer, the region and the picture.
         target: CopyTarget,
-        /// Arrival time of the first message.
+        /// Arrival time of the region's first message.
         first_part_at: Time,
-        /// Arrival time of the last message.
+        /// Arrival time of the region's last message.
         last_part_at: Time,
     },
     /// A requested swap has taken effect, at the retrace that began `field`.
     Swapped {
         /// Number of the buffer that is displayed from now on, 0 or 1.
         buffer: u8,
-        /// First field that is scanned from this buffer.
+        /// First field that is scanned from the newly displayed buffer.
         field: PeriodNumber,
     },
 }
@@ -75,14 +75,14 @@ pub enum FrameBufferFault {
         /// Width and height of the frame in pixels.
         frame: [u32; 2],
     },
-    /// The number of messages in the sender's message does not match the number of pixels in the region.
+    /// The sender's number of messages does not fit the number of pixels in the region.
     #[error("region {} needs {expected} messages of pixels, found {found}", target.region.0)]
     Parts {
         /// Frame buffer, region and picture of the pixels according to the sender.
         target: CopyTarget,
         /// Number of messages that a region of this size needs.
         expected: u32,
-        /// Number of messages according to the sender.
+        /// Number of messages of the region according to the sender.
         found: u32,
     },
     /// The message does not exist in its region, or has already arrived.
@@ -92,7 +92,7 @@ pub enum FrameBufferFault {
         target: CopyTarget,
         /// Number of the message in its region, counted from 0.
         found: u32,
-        /// Number of messages of the region.
+        /// Number of messages of which the region consists.
         parts: u32,
     },
     /// A retrace occurred at a time that differs from the video timing.

@@ -27,11 +27,11 @@ pub(crate) struct Segment {
     pub(crate) y: u32,
     pub(crate) x: u32,
     pub(crate) length: u32,
-    /// Index of the first pixel in the region's image.
+    /// Index of the segment's first pixel in the image of the region.
     pub(crate) index: u32,
-    /// Arrival time of the word of the first pixel.
+    /// Arrival time of the word of the segment's first pixel.
     first_at: Time,
-    /// Arrival time of the last word of the message.
+    /// Arrival time of the last word of the segment's message.
     pub(crate) message_at: Time,
 }
 
@@ -83,12 +83,12 @@ impl RegionWrite {
         self.n_arrived == self.parts
     }
 
-    /// Returns the arrival time of the first message, or `NEVER` if no message has arrived.
+    /// Returns the arrival time of the region's first message, or `NEVER` if no message has arrived.
     pub(crate) fn first_at(&self) -> Time {
         self.arrived.iter().copied().min().unwrap_or(NEVER)
     }
 
-    /// Returns the arrival time of the last message, or `None` while a message is missing.
+    /// Returns the arrival time of the region's last message, or `None` while a message is missing.
     pub(crate) fn last_at(&self) -> Option<Time> {
         let arrived = &self.arrived[..self.parts as usize];
         self.is_complete().then(|| arrived.iter().copied().max())?

@@ -39,7 +39,7 @@ pub struct ScannedLateRegion {
 }
 
 impl ScannedField {
-    /// Returns the number of the field.
+    /// Returns the number of the scanned field.
     #[must_use]
     pub const fn field(&self) -> PeriodNumber {
         self.field

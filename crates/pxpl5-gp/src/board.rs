@@ -28,7 +28,7 @@ pub enum GpEvent {
     /// The status signal of another board has changed. A status signal carries one number, for example the number of
     /// swaps of a frame buffer. The event belongs to phase `Arrive`.
     Status {
-        /// Ring port of this other board.
+        /// Ring port of the board whose status signal has changed.
         from: NodeId,
         /// New value of the status signal.
         value: u64,
@@ -331,7 +331,7 @@ impl GpBoard {
         }
     }
 
-    /// Removes and returns all breakpoint hits that are recorded.
+    /// Removes and returns the recorded breakpoint hits, if the board runs i860 code.
     #[must_use]
     pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
         self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()

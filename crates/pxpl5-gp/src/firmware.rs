@@ -39,7 +39,6 @@ pub enum Fault {
 pub struct Received {
     /// Arrival time of the last word of the message.
     pub arrived: Time,
-    /// Ring port of the sender.
     pub source: NodeId,
     pub body: Body,
 }

@@ -58,7 +58,7 @@ pub struct OutOfMemory {
     pub region: Option<RegionId>,
     /// Number of bytes in use for the purpose `account` after the request.
     pub needed_bytes: u64,
-    /// Largest possible number of bytes for the purpose `account`.
+    /// Largest number of bytes that the purpose `account` could have.
     pub available_bytes: u64,
 }
 

@@ -31,7 +31,7 @@ impl CodeVersion {
     /// All versions, the slowest first.
     pub const ALL: [Self; 3] = [Self::Unoptimised, Self::Compiled, Self::Scheduled];
 
-    /// Returns the name of this version in experiment files.
+    /// Returns the name with which experiment files choose this version of the code.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -55,16 +55,14 @@ pub enum ProcessorFault {
     #[error("graphics processor at node {}: {trap}", gp.0)]
     Trap {
         gp: NodeId,
-        /// Cause and address of the trap.
         trap: Trap,
     },
     /// The code used up its instruction budget before it returned.
     #[error("graphics processor at node {}: no return within {budget} instructions, at {address:#010x}", gp.0)]
     Endless {
         gp: NodeId,
-        /// Address of the next instruction.
+        /// Address of the instruction that would have been executed next.
         address: u32,
-        /// Instruction budget of the call.
         budget: u64,
     },
     /// An access from outside the i860 to addresses without memory.
@@ -73,7 +71,6 @@ pub enum ProcessorFault {
         gp: NodeId,
         /// Address of the first word of the access.
         address: u32,
-        /// Number of words of the access.
         words: usize,
     },
     /// The memory is too small for the outputs of the two bin contexts (sets of bins).

@@ -8,7 +8,7 @@ use pxpl5_wire::{NodeId, PeriodNumber};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GpSnapshot {
-    /// The interrupt program comes first.
+    /// Snapshots of the programs, the interrupt program first.
     pub programs: Vec<ProgramSnapshot>,
     /// Messages that no program has received yet, in order of arrival.
     pub inbox: Vec<WaitingMessageInfo>,
@@ -40,7 +40,6 @@ pub struct ProgramSnapshot {
 pub struct WaitingMessageInfo {
     /// Arrival time of the last word of the message.
     pub arrived: Time,
-    /// Ring port of the sender.
     pub source: NodeId,
 }
 

@@ -9,11 +9,8 @@ const UNKNOWN: Time = Time(u64::MAX);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelSnapshot {
     pub channel: usize,
-    /// Ring port of the sender.
     pub source: NodeId,
-    /// Ring port of the receiver.
     pub destination: NodeId,
-    /// Length of the message in words.
     pub words: u32,
     pub granted: Time,
     /// Time at which the channel becomes free. `None` if the receiver has a FIFO and has not answered yet.

@@ -15,7 +15,6 @@ pub enum RingEvent {
     /// earliest possible time replaces it. If the answer arrives after the time at which the message would free its
     /// sender, the sender becomes free immediately.
     Accept {
-        /// Ring port of the receiver.
         destination: NodeId,
         /// Time at which the last word enters the receiver, including the stall.
         last_word_at: Time,
@@ -60,16 +59,13 @@ pub enum RingOutput {
     Delivered(Message),
     /// Answer to the sender: the receiver has accepted the last word.
     Sent {
-        /// Ring port of the sender.
         source: NodeId,
-        /// Ticket of the message, from [`Request::ticket`].
         ticket: u64,
     },
     /// Answer to the sender: the ring has refused the message.
     Refused {
-        /// Ring port of the sender, as given in the message.
+        /// Ring port of the sender, according to the message.
         source: NodeId,
-        /// Ticket of the message, from [`Request::ticket`].
         ticket: u64,
         error: RingError,
     },
@@ -93,9 +89,7 @@ pub enum RingError {
     /// The length of a message is 0 or more than 1,024 words.
     #[error("message from ring port {} to {}: expected 1 to {max} words, found {words}", .r#source.0, .destination.0, max = MAX_MESSAGE_WORDS)]
     Length {
-        /// Ring port of the sender.
         r#source: NodeId, // Raw, because `thiserror` takes a plain `source` for another error.
-        /// Ring port of the receiver.
         destination: NodeId,
         /// Length of the message in words, without the overhead.
         words: u32,
@@ -103,25 +97,23 @@ pub enum RingError {
     /// A receiver answered without an announcement, or answered an announcement twice.
     #[error("ring port {} accepted a message that was not announced to it", .destination.0)]
     NothingAnnounced {
-        /// Ring port of the receiver.
         destination: NodeId,
     },
     /// A receiver answered with a time at which the last word cannot have arrived yet.
     #[error("ring port {} accepted the last word at {found}, but it cannot enter before {expected}", .destination.0)]
     AcceptedEarly {
-        /// Ring port of the receiver.
         destination: NodeId,
         /// Earliest time at which the last word can have arrived.
         expected: Time,
-        /// Time in the answer of the receiver.
+        /// Time of the last word in the answer of the receiver.
         found: Time,
     },
     /// A time in the input of the reference model is not a multiple of its time step.
     #[error("{what} of {found_ps} ps is no multiple of the tick of {tick}")]
     OffTick {
-        /// Name of this time.
+        /// Name of the time that is not a multiple of the time step.
         what: &'static str,
-        /// Value of this time in picoseconds.
+        /// The time, in picoseconds, that is not a multiple of the time step.
         found_ps: u64,
         /// Time step of the reference model.
         tick: Span,

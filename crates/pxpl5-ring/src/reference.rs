@@ -26,9 +26,7 @@ use std::collections::VecDeque;
 pub struct PlannedMessage {
     /// Time at which the sending board passes the message to its port.
     pub at: Time,
-    /// Ring port of the sender.
     pub source: NodeId,
-    /// Ring port of the receiver.
     pub destination: NodeId,
     /// Length of the message in words, 1 to 1,024, without the overhead.
     pub words: u32,
@@ -39,7 +37,6 @@ pub struct PlannedMessage {
 /// The channel and the times of the transfer of one message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CarriedMessage {
-    /// Number of the channel, counted from 0.
     pub channel: usize,
     /// Time at which the arbiter granted the channel and the ports.
     pub granted: Time,
@@ -87,7 +84,8 @@ pub struct SteppedRing<'a, R> {
     n_nodes: u16,
     traffic: &'a [PlannedMessage],
     receivers: R,
-    /// For each source, the indices of its waiting messages, and the time at which the first of them became first.
+    /// For each source, the indices of its waiting messages, and the time at which the first of these messages reached
+    /// the head of the queue.
     queues: Vec<(VecDeque<usize>, Time)>,
     /// For each source, the number of channels on which it sends.
     sending: Vec<u64>,

@@ -133,7 +133,7 @@ impl Ring {
         self.arbitrate_at_next_end(context);
     }
 
-    /// Recomputes all counters of the ring. Returns true if the counters have the same values.
+    /// Recomputes all counters of the ring. Returns true if the counters were correct.
     fn check_counters(&self) -> bool {
         let to_fifo = |node: NodeId| !self.is_elastic(node);
         // Count in one pass over the heads, because a scan for each port would take most of the time of a test run.
@@ -281,7 +281,8 @@ impl Ring {
         }
     }
 
-    /// Returns the earliest time at which a destination becomes free for which the first message of a queue waits.
+    /// Returns the earliest known time at which a destination becomes free that a waiting message needs. Only messages
+    /// at the head of their queue count.
     fn first_end_waited_for(&self) -> Option<Time> {
         let waited_for = |flight: &MessageInFlight| self.destinations[usize::from(flight.destination.0)].heads > 0;
         self.channels.ends().find(|(_, flight)| waited_for(flight)).map(|(end, _)| end)

@@ -10,9 +10,9 @@ use std::fmt;
 pub struct RingStats {
     /// Time for which each channel was occupied, including overhead and stalls.
     pub channel_busy: Vec<Span>,
-    /// Number of messages that have freed their channels.
+    /// Number of messages that have ended and have freed their channels.
     pub messages: u64,
-    /// Number of words of these messages, without the overhead.
+    /// Number of words of all ended messages, without the overhead.
     pub words: u64,
     /// Sum of the waiting times of all messages, from request to grant.
     pub waiting: Span,
@@ -25,7 +25,7 @@ pub struct RingStats {
 /// Number of refused messages and answers, and the reason for the first refusal.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Refusals {
-    /// Number since the ring was made.
+    /// Number of refused messages and answers since the ring was made.
     pub count: u64,
     /// Time and reason of the first refusal.
     pub first: Option<(Time, RingError)>,
@@ -41,11 +41,9 @@ impl Refusals {
 /// A message that waits for its grant or for the answer of its receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMessage {
-    /// Ring port of the sender.
     pub source: NodeId,
-    /// Ring port of the receiver.
     pub destination: NodeId,
-    /// Length in words, without the overhead.
+    /// Length of the message in words, without the overhead.
     pub words: u32,
     /// Time at which the message was granted. Without a grant, time at which the message became the first of its queue.
     pub since: Time,
@@ -55,11 +53,11 @@ pub struct WaitingMessage {
 /// The condition for which a message waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WaitReason {
-    /// The receiver must answer the announcement of the message.
+    /// The receiver must still answer the announcement of the message.
     Acceptance,
-    /// The receiver is busy with a message from this port.
+    /// The receiver is busy with a message from the port in this variant.
     DestinationBusy(NodeId),
-    /// The receiver is reserved for a transfer from this port.
+    /// The receiver is reserved for a transfer from the port in this variant.
     DestinationReserved(NodeId),
     /// All channels that the message can use are occupied.
     Channel,

@@ -10,7 +10,7 @@ pub struct AssemblyError {
     pub file: String,
     /// Line number, counted from 1. For text from a macro, this is the line of the macro call.
     pub line: usize,
-    /// Description, with the expected and the found text.
+    /// Description of the error, with the expected and the found text.
     pub reason: String,
 }
 
@@ -29,7 +29,7 @@ pub struct AssemblyWarning {
     /// Line number, counted from 1. For text from a macro, this is the line of the macro call.
     pub line: usize,
     pub rule: Rule,
-    /// Description, with the expected and the found text.
+    /// Description of the warning, with the expected and the found text.
     pub reason: String,
 }
 

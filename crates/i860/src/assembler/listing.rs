@@ -58,7 +58,7 @@ struct Rows<'a> {
     /// Labels that are not listed yet, sorted by address.
     labels: &'a [(String, u32)],
     source: Vec<&'a str>,
-    /// Number of the source line in the last row.
+    /// Source line number of the last row in the listing.
     line: usize,
 }
 
