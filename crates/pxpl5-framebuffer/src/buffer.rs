@@ -27,8 +27,8 @@ pub(crate) struct Buffer {
     /// Indices in `held` of the regions that are still arriving. The list is short, because a port receives one region
     /// at a time.
     arriving: Vec<usize>,
-    /// For each set of pixels, the index of the newest complete region that fills exactly this set. The key comes from
-    /// [`cut`]. This region hides all older regions with the same key.
+    /// For each set of pixels, the index of the newest complete region that fills exactly this set. The region hides
+    /// all older regions of the set. [`cut`] returns the key for a set.
     newest: BTreeMap<[u32; 6], usize>,
     scans: Scans,
 }

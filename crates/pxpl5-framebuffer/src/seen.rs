@@ -27,7 +27,7 @@ pub struct ScannedField {
 pub struct ScannedLateRegion {
     /// Frame buffer and region of the pixels, and number of their picture.
     pub target: CopyTarget,
-    /// Arrival time of the last message, or `None` if it arrived after the end of the field.
+    /// Arrival time of the region's last message, or `None` if it arrived after the end of the field.
     pub arrived_at: Option<Time>,
     /// First line of the frame in which the viewer sees an older pixel.
     pub first_line: u32,

@@ -100,8 +100,8 @@ impl fmt::Debug for GpBoard {
 }
 
 impl GpBoard {
-    /// Makes a board without programs at the ring port `node`. Each output leaves the board one `cycle` after its
-    /// cause.
+    /// Makes a board without programs at the ring port `node`. `cycle` is the time from an event to the resulting
+    /// output at the ring port.
     #[must_use]
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
@@ -299,7 +299,7 @@ impl GpBoard {
         self.shared.borrow().vertex_transforms
     }
 
-    /// Returns true if a program has ever decided something because the backing store of a renderer was full
+    /// Returns true if a decision of a program has ever depended on a full backing store of a renderer
     /// ([`Gp::note_full_store`]).
     #[must_use]
     pub fn found_store_full(&self) -> bool {

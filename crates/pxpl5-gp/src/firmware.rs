@@ -74,11 +74,11 @@ pub(crate) struct Shared {
     pub(crate) processor: Option<Box<Processor>>,
     /// Number of vertices that the programs have transformed since the start of the simulation.
     pub(crate) vertex_transforms: u64,
-    /// True if a program has ever decided something because a backing store was full.
+    /// True if a decision of a program has ever depended on a full backing store of a renderer.
     pub(crate) found_store_full: bool,
-    /// CPU time that the message software has requested so far.
+    /// CPU time that was requested so far for the message software.
     pub(crate) message_software: Span,
-    /// CPU time that work for answers to messages has requested so far.
+    /// CPU time that was requested so far for answers to messages.
     pub(crate) answer_work: Span,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
@@ -88,8 +88,8 @@ pub(crate) struct Shared {
     /// Receivers that have not accepted any message of the current batch yet.
     pub(crate) unaccepting_receivers: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
-    /// Records of ends of stages that are made later, when the receivers have accepted a batch of messages. Each entry
-    /// has the number of the batch and the record. The entries are sorted by batch.
+    /// Ends of stages to record later, when the receivers have accepted a batch of messages: the number of the batch,
+    /// and the record. The list is sorted by batch.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
@@ -214,7 +214,7 @@ pub struct Gp {
 }
 
 impl Gp {
-    /// Returns a handle to the same board for the program of priority `priority`.
+    /// Returns a handle to this board for the program of priority `priority`.
     #[must_use]
     pub fn at_priority(&self, priority: Priority) -> Self {
         Self { shared: Rc::clone(&self.shared), priority }
@@ -329,8 +329,7 @@ impl Gp {
         bytes <= self.shared.borrow().memory.room_for_bins(context)
     }
 
-    /// Records that the program has decided something because the backing store of a renderer was full. Takes no
-    /// simulated time.
+    /// Records that a decision of the program depended on a full backing store of a renderer. Takes no simulated time.
     pub fn note_full_store(&self) {
         self.shared.borrow_mut().found_store_full = true;
     }

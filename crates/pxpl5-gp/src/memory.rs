@@ -58,7 +58,7 @@ pub struct OutOfMemory {
     pub region: Option<RegionId>,
     /// Number of bytes in use for the purpose `account` after the request.
     pub needed_bytes: u64,
-    /// Largest number of bytes that the purpose `account` could have.
+    /// Largest number of bytes that could be in use for the purpose `account`.
     pub available_bytes: u64,
 }
 

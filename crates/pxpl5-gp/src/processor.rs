@@ -81,7 +81,7 @@ pub enum ProcessorFault {
         context: u8,
         /// Number of bytes that the context requested.
         needed_bytes: u32,
-        /// Number of bytes that are free for this context. The free range of context 0 ends at context 1 or at the end
+        /// Number of bytes that are free for the context. The free range of context 0 ends at context 1 or at the end
         /// of memory. The free range of context 1 begins after context 0 or after the program's data.
         available_bytes: u32,
     },

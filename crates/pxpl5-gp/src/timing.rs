@@ -60,7 +60,7 @@ impl GpTiming {
 pub enum CodeUse {
     /// PPHIGS: whole frames, Phong shading, commands in bins.
     Pphigs,
-    /// Slats: fields, precomputed colours, clumps of thirty triangles, both eyes in one pass.
+    /// Slats: fields, precomputed colours, clumps of thirty triangles, and one pass for both eyes.
     Slats,
     /// Slats with lighting on the graphics processor: fields, clumps of thirty triangles, and a separate pass for each
     /// eye.
@@ -78,8 +78,8 @@ pub enum CodeUse {
 // code into the caches. A structure with culling takes 3.2 us more than other structures. The table does not contain
 // this difference.
 impl GpTiming {
-    /// Returns this table with the times of triangles and spheres in i860 code. `version` is the version of the code,
-    /// and `of` is its pipeline.
+    /// Returns this timing table with the times that triangles and spheres take in i860 code. `version` is the version
+    /// of the code, and `of` is its pipeline.
     ///
     /// PPHIGS has times only for scheduled code, which fits in the instruction cache like all PPHIGS code in the
     /// papers.
@@ -94,8 +94,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in PPHIGS: code scheduled by hand, Phong triangles of a frame,
-    /// and commands in bins.
+    /// Returns this timing table with the times of triangles and spheres in PPHIGS: code scheduled by hand, Phong
+    /// triangles, whole frames, and commands in bins.
     #[must_use]
     pub const fn of_scheduled_phong(self) -> Self {
         Self {
@@ -113,8 +113,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in Slats: compiled code, fields, and precomputed vertex colours.
-    /// A clump has thirty triangles, and one pass makes the commands of both eyes.
+    /// Returns this timing table with the times of triangles and spheres in Slats: compiled code, fields, and
+    /// precomputed vertex colours. A clump has thirty triangles, and one pass makes the commands of both eyes.
     #[must_use]
     pub const fn of_compiled_precomputed(self) -> Self {
         Self {
@@ -131,8 +131,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in Slats: code scheduled by hand, fields, and precomputed vertex
-    /// colours. Triangles are sent in clumps.
+    /// Returns this timing table with the times of triangles and spheres in Slats: code scheduled by hand, fields, and
+    /// precomputed vertex colours. Triangles are sent in clumps (messages of commands).
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
         Self {
@@ -149,8 +149,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in Slats with lighting: compiled code, fields, and Gouraud
-    /// triangles. A clump has thirty triangles.
+    /// Returns this timing table with the times of triangles and spheres in Slats with lighting: compiled code, fields,
+    /// and Gouraud triangles. A clump (a message of commands) has thirty triangles.
     #[must_use]
     pub const fn of_compiled_gouraud(self) -> Self {
         Self {
@@ -167,8 +167,8 @@ impl GpTiming {
         }
     }
 
-    /// Returns this table with the times of primitives in Slats with lighting: code scheduled by hand, fields, and
-    /// Gouraud triangles. Triangles are sent in clumps.
+    /// Returns this timing table with the times of triangles and spheres in Slats with lighting: code scheduled by
+    /// hand, fields, and Gouraud triangles. Triangles are sent in clumps (messages of commands).
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {

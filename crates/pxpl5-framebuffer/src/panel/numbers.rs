@@ -31,7 +31,7 @@ pub struct PanelNumbers {
     pub active_permille: u64,
     /// Time for which a pixel is switched on in each scan, in microseconds.
     pub persistence_us: u64,
-    /// Time constant, in microseconds, with which the brightness of a pixel follows its switching.
+    /// Time constant, in microseconds, of a pixel's brightness after the pixel is switched on or off.
     pub response_us: u64,
     /// Number of ring ports of one board.
     pub ports: u64,
@@ -83,7 +83,7 @@ impl PanelNumbers {
         PixelLight { scan, persistence, response }
     }
 
-    /// Checks rules that relate several parameters. `table` is the prefix of their names in error messages.
+    /// Checks rules that relate several parameters. `table` is the prefix of parameter names in error messages.
     ///
     /// # Errors
     ///
