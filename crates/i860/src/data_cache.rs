@@ -29,8 +29,9 @@ impl DataCache {
         self.0.holds(address)
     }
 
-    /// Finds the first access that misses the cache, from access `from` on and before instruction or pair `limit`. An
-    /// access that always uses the bus counts as a miss. Stores that hit mark their cache lines as dirty.
+    /// Finds the first access that misses the cache. The search begins with access `from`, and ends before instruction
+    /// or pair `limit`. An access that always uses the bus counts as a miss. Stores that hit mark their cache lines as
+    /// dirty.
     ///
     /// After a miss, returns the indices of the access and of its instruction or pair. Without a miss, returns the
     /// index of the first access that was not checked, and `None`.

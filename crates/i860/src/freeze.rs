@@ -120,8 +120,8 @@ impl FreezeRules {
         self
     }
 
-    /// Returns the numbers of the enabled rows of the freeze table, in order. The text also states if row 8 applies
-    /// after logical operations.
+    /// Returns a text with the numbers of the enabled rows of the freeze table, in order. The text also states if row 8
+    /// applies after logical operations.
     pub(crate) fn names(&self) -> String {
         let applying = FREEZES.iter().filter(|row| self.applies(row.id)).map(|row| row.number);
         let logicals = self.logicals_delay_branches.then_some("logicals delay branches");

@@ -42,8 +42,8 @@
 //! selects the operation with the longest path to the end of the stretch.
 //!
 //! The first line in the window can take the last free registers. Later lines must leave a *reserve* of free registers.
-//! For each 64 lines of distance from the first line, the reserve increases by *slope* registers. The reserve prevents
-//! that a schedule runs out of registers.
+//! For each 64 lines of distance from the first line, the reserve increases by *slope* registers. With this reserve, no
+//! schedule runs out of registers.
 //!
 //! An operation without operands pushes a pipe (a *drain*) in two cases. In the first case, no operation can be issued.
 //! In the second case, the path of a value in the pipe is longer than the path of the best operation by more than the

@@ -45,8 +45,8 @@ pub(crate) struct Numbers {
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
-    /// Number of the current scoreboard state, if the latest clocks were reused. With `None`, the [`Scoreboard`] itself
-    /// contains the state.
+    /// Number of the current scoreboard state. `None` if the [`Scoreboard`] itself contains the state, because the
+    /// latest clocks were counted instead of reused.
     present: Option<Number>,
     /// Number of executed instructions whose clocks were reused.
     pub(crate) instructions: u64,

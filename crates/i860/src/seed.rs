@@ -2,8 +2,8 @@
 //! begin Newton steps (*seeds*).
 //!
 //! The chip's table is not public. Only a limit of the error is known: the error of the fraction is below 2^-7. The
-//! user therefore chooses one of three tables. Programs refine the seeds by Newton steps, so the choice affects only
-//! the last one or two bits of their results, and no clocks.
+//! user therefore chooses one of three tables. Programs refine the seeds by Newton steps. The choice therefore affects
+//! only the last one or two bits of their results, and does not affect the number of clocks.
 
 use crate::arithmetic::{narrow, widen};
 

@@ -93,7 +93,7 @@ pub struct PipeStage {
     pub double: bool,
 }
 
-/// Pairing mode: the number of instructions that the processor executes next, and the way in which pairs continue.
+/// Pairing mode: decides if the next instructions execute alone or as pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Mode {
     /// Instructions execute one at a time.

@@ -198,9 +198,9 @@ impl Config {
         [(FREEZES_PATH, &mut self.freezes.clocks), (DRAM_PATH, &mut self.dram)]
     }
 
-    /// Returns the settings that change results and differ from [`Config::cycle`], as keys and values. Names of
-    /// experiments include these settings. Parameter tables are not part of the list. Memoization is not either,
-    /// because it changes no result.
+    /// Returns the settings that differ from [`Config::cycle`] and change results, as keys and values. Names of
+    /// experiments include these settings. Parameter tables are not part of the list. Memoization is not part of it
+    /// either, because it changes no result.
     #[must_use]
     pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
         // The pattern lists every field, so that the compiler reports a new field that is not handled here.

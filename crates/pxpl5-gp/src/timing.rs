@@ -132,7 +132,7 @@ impl GpTiming {
     }
 
     /// Returns this timing table with the times of triangles and spheres in Slats: code scheduled by hand, fields, and
-    /// precomputed vertex colours. Triangles are sent in clumps (messages of commands).
+    /// precomputed vertex colours. Triangles are sent in clumps .
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
         Self {
@@ -150,7 +150,7 @@ impl GpTiming {
     }
 
     /// Returns this timing table with the times of triangles and spheres in Slats with lighting: compiled code, fields,
-    /// and Gouraud triangles. A clump (a message of commands) has thirty triangles.
+    /// and Gouraud triangles. A clump has thirty triangles.
     #[must_use]
     pub const fn of_compiled_gouraud(self) -> Self {
         Self {
@@ -168,7 +168,7 @@ impl GpTiming {
     }
 
     /// Returns this timing table with the times of triangles and spheres in Slats with lighting: code scheduled by
-    /// hand, fields, and Gouraud triangles. Triangles are sent in clumps (messages of commands).
+    /// hand, fields, and Gouraud triangles. Triangles are sent in clumps .
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {

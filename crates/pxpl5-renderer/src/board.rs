@@ -82,8 +82,8 @@ pub struct Renderer {
     copies: VecDeque<PendingCopy>,
     /// Copy command whose region is being sent to a frame buffer.
     copying: Option<CopyOrder>,
-    /// Copies through the backing store whose regions are still in pixel memory. The first of these regions can be on
-    /// its way to the backing store.
+    /// Copies that go through the backing store, but whose regions are still in pixel memory. The first of these
+    /// regions can be on its way to the backing store.
     unstored: VecDeque<PendingCopy>,
     storing: bool,
     /// Copies whose regions are in the backing store. Each copy waits for the end of an earlier transfer to a frame
@@ -448,8 +448,8 @@ impl Renderer {
         Some(array)
     }
 
-    /// Turns off two optimizations. From this call on, the board computes the pixels of regions without primitives
-    /// again each time, and executes commands that touch no pixel.
+    /// Turns off two optimizations. From this call on, the board always computes the pixels of regions without
+    /// primitives, and also executes commands that touch no pixel.
     pub const fn draw_every_region(&mut self) {
         self.caches_empty_regions = false;
     }

@@ -77,21 +77,21 @@ impl Controller {
         [self.left.into(), self.top.into()]
     }
 
-    /// Converts an expression from coordinates of the picture to coordinates of the array. The origin of each is its
-    /// upper left pixel.
+    /// Converts an expression from coordinates of the picture to coordinates of the array. Both have their origin at
+    /// the upper left pixel.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }
 
-    /// Stores linear coefficients for reuse by a later instruction. Arrays call this function for commands that they
-    /// execute in one step.
+    /// Stores linear coefficients, which a later instruction can reuse. Arrays call this function for commands that
+    /// they execute in one step instead of instruction by instruction.
     pub(crate) fn hold(&mut self, linear: Linear) {
         self.linear = linear;
     }
 
-    /// Stores quadratic coefficients for reuse by a later instruction. Arrays call this function for commands that they
-    /// execute in one step.
+    /// Stores quadratic coefficients, which a later instruction can reuse. Arrays call this function for commands that
+    /// they execute in one step instead of instruction by instruction.
     pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
         self.quadratic = quadratic;
     }

@@ -178,7 +178,7 @@ struct Watched {
 /// the last call of `discard_before` are removed.
 #[derive(Debug, Default)]
 struct Course {
-    /// Steps of the count, in the order of time: the time of the step, and the count from this time on.
+    /// Steps of the count, in the order of time. Each step has its time, and the count from this time on.
     steps: VecDeque<(Time, u64)>,
     /// Count before the first entry of `steps`.
     before: u64,

@@ -28,9 +28,8 @@
 //! # Numbers
 //!
 //! A triangle takes 258 clocks with interpolated colour and 292 with normals. The published rate is 150,000 triangles
-//! per second (TR94), which is 267 clocks per triangle. The evaluation of expressions takes one clock per bit: 220 of
-//! the 258 clocks, and 250 of the 292 clocks. [`isa::timing`] derives the numbers, and [`command`] lists the other
-//! commands.
+//! per second (TR94), which is 267 clocks per triangle. Each bit of the number formats takes one clock: 220 of the 258
+//! clocks, and 250 of the 292 clocks. [`isa::timing`] derives the numbers, and [`command`] lists the other commands.
 //!
 //! # Faults
 //!

@@ -84,7 +84,7 @@ impl Vectors {
     }
 }
 
-/// A vector unit that the running computer has, according to a check.
+/// A vector unit that the running computer certainly has, because a constructor has checked this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PresentVectors(Vectors);
 

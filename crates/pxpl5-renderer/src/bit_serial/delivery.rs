@@ -26,8 +26,8 @@ pub(super) struct Delivery {
     pub(super) effect: ExpressionEffect,
 }
 
-/// An operation that each pixel performs with every arriving bit of an expression. Numbers are addresses of bits in
-/// pixel memory.
+/// An operation that each pixel performs with every arriving bit of an expression. `first` is the address of a bit
+/// field's first bit in pixel memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum ExpressionEffect {
     DisableNegative,

@@ -80,8 +80,9 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Multiplies the coefficient by the index of each leaf (or by the square of the index), adds `stream`, and returns
-    /// bit `t` of the sums. The trees keep carries between calls, so callers must pass `t` = 0, 1, 2 and so on.
+    /// Multiplies the coefficient of each tree by the index of each column or row (or by the square of the index), adds
+    /// `stream`, and returns bit `t` of the sums. The trees keep carries between calls, so callers must pass `t` = 0,
+    /// 1, 2 and so on.
     #[inline(always)]
     pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
         for l in (1..LEVELS).rev() {

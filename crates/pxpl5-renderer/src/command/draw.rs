@@ -122,6 +122,8 @@ impl TriangleEncoder {
 }
 
 impl PhongTriangleEncoder {
+    /// Creates an encoder for the commands of `layout`.
+    ///
     /// # Errors
     /// Returns [`Unsupported`] if the layout has no normals.
     pub fn new(layout: &Layout) -> Result<Self, Unsupported> {

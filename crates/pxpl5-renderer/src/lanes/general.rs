@@ -99,8 +99,8 @@ impl Lanes {
         Ok(())
     }
 
-    /// Stores the numbers of the first operand buffer in the bit field `destination` of all enabled pixels. The buffer
-    /// has one 64-bit number for each pixel.
+    /// Stores the numbers of the first buffer in the bit field `destination` of all enabled pixels. The two buffers of
+    /// the array hold one 64-bit number for each pixel.
     fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
@@ -124,8 +124,8 @@ impl Lanes {
     }
 
     /// Computes two results of `f` in each pixel, such as a quotient and a remainder. The inputs are the bit field
-    /// `source` and the second operand buffer. The first result goes to `destination`, and the second result goes to
-    /// `source`.
+    /// `source` and the numbers in the second buffer. The first result goes to `destination`, and the second result
+    /// goes to `source`.
     fn two_results(
         &mut self,
         destination: Operand,
@@ -198,8 +198,8 @@ impl Lanes {
         }
     }
 
-    /// Computes `f` in each pixel, and stores the results in the first operand buffer. The arguments of `f` are the
-    /// value of the expression at the pixel, `shift`, and the pixel's number in the second operand buffer.
+    /// Computes `f` in each pixel, and stores the results in the first buffer. The arguments of `f` are the value of
+    /// the expression at the pixel, `shift`, and the pixel's number in the second buffer.
     fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {

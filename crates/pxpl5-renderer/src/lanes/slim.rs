@@ -1,4 +1,4 @@
-//! Fast drawing of triangles of at most four columns. Most triangles of a dense scene are as narrow as this.
+//! Fast drawing of triangles of at most four columns. In a dense scene, most triangles have at most four columns.
 //!
 //! A vector covers four columns of several rows, so one vector is sufficient for nearly every slim triangle. For all
 //! triangles of a batch together, the code computes the values of the edge expressions at each triangle's first pixel.
