@@ -38,7 +38,7 @@ impl<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> Tags<SETS, WAY
         self.changes
     }
 
-    /// Gives the current state and all later states of the array numbers above `latest`.
+    /// Changes the number of the array's state to a number above `latest`, from which later states count on.
     pub(crate) fn number_changes_from(&mut self, latest: u64) {
         self.changes = self.changes.max(latest) + 1;
     }

@@ -1,4 +1,4 @@
-//! The store of decoded basic blocks, found by address, and the set of decoded memory words.
+//! The store of decoded basic blocks, which finds a block by its address, and the set of decoded memory words.
 
 use crate::assembler::Program;
 use crate::block::Block;

@@ -90,7 +90,7 @@ impl Cpu {
         self.time.instructions()
     }
 
-    /// Returns the number of instructions, since reset, whose clocks were memoized at an earlier execution of the same
+    /// Returns the number of instructions, since reset, whose clocks were reused from an earlier execution of the same
     /// code ([`Config::memoise`]).
     #[must_use]
     pub fn repeated_instructions(&self) -> u64 {

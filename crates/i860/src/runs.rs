@@ -93,8 +93,7 @@ impl Clock {
         memo.present().or_else(|| memo.number_of(&self.board, self.common.now, self.fetch.filling(&self.common)))
     }
 
-    /// Restores the scoreboard from the number of its current state. This is necessary because reused clocks change
-    /// only the number.
+    /// Restores the scoreboard to its current state, of which only the number was kept while clocks were reused.
     #[inline]
     pub(crate) fn write_board(&mut self) {
         if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {

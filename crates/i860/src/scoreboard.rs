@@ -18,8 +18,8 @@ pub(crate) struct Wait {
 
 pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 
-/// First value of [`Left::place`] that stands for a hazard. Lower values are register numbers. The highest value stands
-/// for the last floating-point result.
+/// First value of [`Left::place`] that stands for a hazard instead of a register. The highest value stands for the last
+/// floating-point result.
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
 

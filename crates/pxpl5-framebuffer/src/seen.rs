@@ -25,7 +25,7 @@ pub struct ScannedField {
 /// older pixels instead. `target.picture` gives the picture for which the region was drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScannedLateRegion {
-    /// Frame buffer and region of the pixels, and number of their picture.
+    /// Frame buffer and region of the pixels, and number of the picture to which they belong.
     pub target: CopyTarget,
     /// Arrival time of the region's last message, or `None` if it arrived after the end of the field.
     pub arrived_at: Option<Time>,

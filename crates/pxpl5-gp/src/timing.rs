@@ -132,7 +132,7 @@ impl GpTiming {
     }
 
     /// Returns this timing table with the times of triangles and spheres in Slats: code scheduled by hand, fields, and
-    /// precomputed vertex colours. Triangles are sent in clumps .
+    /// precomputed vertex colours. Triangles are sent in clumps.
     #[must_use]
     pub const fn of_scheduled_precomputed(self) -> Self {
         Self {
@@ -168,7 +168,7 @@ impl GpTiming {
     }
 
     /// Returns this timing table with the times of triangles and spheres in Slats with lighting: code scheduled by
-    /// hand, fields, and Gouraud triangles. Triangles are sent in clumps .
+    /// hand, fields, and Gouraud triangles. Triangles are sent in clumps.
     #[must_use]
     pub const fn of_scheduled_gouraud(self) -> Self {
         Self {

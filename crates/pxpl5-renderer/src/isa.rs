@@ -197,7 +197,7 @@ pub enum ArrayInstruction {
         context_base: u8,
         /// x coordinate of the array's left column on the screen, in pixels.
         left: u16,
-        /// y coordinate of the array's top row on the screen, in drawn lines.
+        /// y coordinate of the array's top row on the screen, counted in drawn lines.
         top: u16,
     },
     Evaluate {

@@ -54,8 +54,8 @@ impl Vectors {
         Self::ALL[..=most].iter().rev().copied().find(|vectors| vectors.present()).unwrap_or(Self::Portable)
     }
 
-    /// Limits the vector unit that new pixel arrays of this process choose by default to this unit. Existing arrays do
-    /// not change.
+    /// Makes this vector unit the fastest unit that new pixel arrays of this process choose by default. Existing arrays
+    /// do not change.
     ///
     /// The tests in `tests/hashes.rs` use this limit to run whole experiments on each unit.
     pub fn at_most(self) {

@@ -114,8 +114,8 @@ impl RingChannels {
         Some((channel, ended, self.flights[channel].take()?))
     }
 
-    /// Counts one word time of the message on `channel`, and takes the message from the channel. The caller must return
-    /// it with [`RingChannels::put_back`].
+    /// Counts one word time of the message on `channel`, and removes the message from the channel. The caller must then
+    /// put it back with [`RingChannels::put_back`].
     pub(crate) fn take_slot(&mut self, channel: usize) -> Option<MessageInFlight> {
         let flight = self.flights.get_mut(channel)?.take()?;
         Some(MessageInFlight { slots_left: flight.slots_left.saturating_sub(1), ..flight })

@@ -199,7 +199,7 @@ impl SphereCommand {
 
 /// Returns the instructions for `component := limit(linear + (upper root * factor >> 8))`.
 ///
-/// The upper 10 bits of the product bit field hold the sum.
+/// The upper 10 bits of `scratch.product` hold the sum.
 fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &SphereScratch) -> [ArrayInstruction; 3] {
     let sum = scratch.product.part(8, 10).signed();
     [
