@@ -206,8 +206,8 @@ impl RememberedClocks {
     }
 }
 
-/// The memoized runs (parts) of a block, as a hash table. Each run is in one of [`BlockMemory::REACH`] entries from the
-/// place that its hash selects.
+/// The memoized runs (parts) of a block, as a hash table. A run is in one of [`BlockMemory::REACH`] successive entries,
+/// of which its hash selects the first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMemory(Box<[RememberedClocks]>);
 

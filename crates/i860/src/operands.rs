@@ -60,8 +60,8 @@ pub(crate) fn last_product(state: &State, source_double: bool) -> PipeStage {
     state.multiplier[if source_double { 1 } else { 2 }]
 }
 
-/// Returns the result that leaves the pipe at a pipelined instruction and goes to the destination register. Returns
-/// `None` for a scalar instruction.
+/// Returns the result that a pipelined instruction moves out of its pipe into the destination register. Returns `None`
+/// for a scalar instruction.
 fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     if i.op == Op::DualOp {
         let product = last_product(state, i.has(Flags::SOURCE_DOUBLE));

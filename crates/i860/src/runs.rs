@@ -32,9 +32,9 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Returns three flags for the key of a run, the part of a block up to position `to`: its branch is taken, its last
-    /// instruction traps, and `continues`. `continues` is true if the first fetch is from a cache line that is still
-    /// arriving.
+    /// Returns the three flags in the key of a run, the part of a block up to position `to`. The flags are: the branch
+    /// was taken, the last instruction trapped, and the first fetch is from a cache line that is still arriving
+    /// (`continues`).
     #[inline]
     fn flags(&self, to: usize, continues: bool) -> [bool; 3] {
         let ends = to == PLACES * self.units || to > PLACES * self.last;

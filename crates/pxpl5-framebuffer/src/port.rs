@@ -55,7 +55,7 @@ pub enum FrameBufferFault {
     WrongBoard {
         /// Ring port of this frame buffer.
         expected: NodeId,
-        /// Ring port of the frame buffer that the sender has chosen.
+        /// Ring port of the frame buffer for which the sender meant the pixels.
         found: NodeId,
     },
     /// A swap request asks for a buffer that is neither 0 nor 1.

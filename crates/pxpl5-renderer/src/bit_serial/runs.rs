@@ -95,8 +95,8 @@ impl InstructionRun {
         self.words = 0;
     }
 
-    /// Returns, for each expression, the tiles in which all pixels have the same sign of the expression. The sets are
-    /// empty for an expression whose sign disables no pixels.
+    /// Returns, for each expression, the tiles in which all pixels have the same sign of the expression. There are no
+    /// tiles for an expression whose sign disables no pixels.
     #[inline(always)]
     fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];

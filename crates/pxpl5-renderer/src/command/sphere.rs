@@ -30,7 +30,8 @@ pub struct SphereBody {
     pub silhouette: Quadratic,
     /// Number of low bits of the silhouette expression that the square root ignores, 0 to 24.
     pub root_shift: u8,
-    /// Plane through the silhouette, as a depth with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction bits.
+    /// Depth expression of the plane through the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`] fraction
+    /// bits.
     pub depth: Linear,
     /// Number of bits by which the square root is shifted left before its subtraction from the depth, 0 to 20.
     pub depth_shift: u8,
