@@ -178,7 +178,6 @@ impl Floating {
 pub(crate) struct Action {
     pub(crate) core: CoreAction,
     pub(crate) floating: FloatingAction,
-    /// Index of the instruction or pair in its block of code.
     pub(crate) number: u8,
 }
 

@@ -21,7 +21,6 @@ const LONGEST: usize = 32;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unit {
     pub(crate) pc: u32,
-    /// Pairing mode (single instructions or pairs) in which this code executes.
     pub(crate) mode: Mode,
     pub(crate) after: Mode,
     /// The single instruction, or the floating-point half of a pair.
@@ -107,7 +106,6 @@ const NEVER: u64 = u64::MAX;
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
     pub(crate) pc: u32,
-    /// Pairing mode (single instructions or pairs) at the start of the block.
     mode: Mode,
     /// Pairing mode (single instructions or pairs) after the delay slot.
     pub(crate) after_slot: Mode,
@@ -152,7 +150,6 @@ impl Access {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AccessingUnit {
     pub(crate) access: Access,
-    /// Index of the instruction or pair in its block of code.
     pub(crate) number: u8,
     pub(crate) is_store: bool,
     /// True if the access always uses the bus, even if the cache contains the data.

@@ -150,7 +150,6 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of an executed block for which no memoized clocks exist.
     #[inline(never)]
     fn count_block<B: Bus>(&mut self, block: &mut Block, execution: Execution, accesses: &Accesses, bus: &B) {
         if !self.on {

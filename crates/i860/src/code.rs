@@ -17,7 +17,6 @@ fn place(pc: u32) -> usize {
 pub(crate) struct Code {
     blocks: Box<[Option<Box<Block>>]>,
     pub(crate) words: CodeMap,
-    /// True if decoded blocks were discarded because the code in memory may have changed.
     changed: bool,
 }
 

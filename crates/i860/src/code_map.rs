@@ -7,7 +7,6 @@ use std::ops::Range;
 pub(crate) struct CodeMap {
     /// Address range of the assembled program. Empty if the code does not come from an assembled program.
     program: Range<u32>,
-    /// True if a store has changed a word of the assembled program.
     is_stored_to: bool,
     /// Lowest and highest address of the assembled program and all decoded words.
     range: (u32, u32),

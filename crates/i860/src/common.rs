@@ -8,7 +8,6 @@ use crate::timing::{Config, Freeze};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Common {
-    /// The current clock, counted from the reset.
     pub(crate) now: u64,
     /// Clock at which the profile was started. Every later clock is either a freeze clock or an issue clock.
     profile_start: u64,
@@ -16,7 +15,6 @@ pub(crate) struct Common {
     pub(crate) profile: Profile,
     pub(crate) costs: Costs,
     pub(crate) bus: Dram,
-    /// Pseudo-random numbers that choose the cache line to replace in a full set.
     pub(crate) chance: Chance,
     /// Clock at which the latest line fill of the data cache ends. A miss of the instruction cache takes more clocks if
     /// it begins before this clock (row 1b of the freeze table).

@@ -29,9 +29,7 @@ pub struct Cpu {
     pub(crate) mode_after_slot: Option<Mode>,
     pub(crate) accesses: Accesses,
     cause: Option<TrapCause>,
-    /// New value of the directory-base register, if the current block has written this register.
     pub(crate) directory_base: Option<u32>,
-    /// True if memory may have changed since its code was decoded.
     pub(crate) code_changed: bool,
     pub(crate) code: Code,
     config: Config,

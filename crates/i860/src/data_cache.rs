@@ -106,7 +106,6 @@ impl DataCache {
         transfer
     }
 
-    /// Writes the cache line of an address back to memory if it is dirty.
     pub(crate) fn flush(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) {
         if self.0.clean(address) {
             stores.write_back(common.now, address, common);

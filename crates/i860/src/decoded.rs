@@ -88,7 +88,6 @@ impl Decoded {
         op == Op::Fnop || dest == 0 && matches!(op, Op::Shl | Op::Shra | Op::Shrd)
     }
 
-    /// Returns the D bit of the instruction, which requests dual-instruction mode.
     #[inline]
     pub(crate) fn dual(&self) -> bool {
         self.marks & mark::DUAL != 0

@@ -12,7 +12,6 @@ pub(crate) struct Transfer {
     /// Clock at which the first 8 bytes arrive. They contain the requested data.
     pub(crate) first: u64,
     pub(crate) last: u64,
-    /// Number of clocks between successive transfers of 8 bytes.
     step: u64,
 }
 

@@ -42,7 +42,6 @@ impl Fetch {
         self.line = line;
     }
 
-    /// Returns true if `pc` is in the cache line of the last fetch.
     #[inline]
     pub(crate) fn is_in_line(&self, pc: u32) -> bool {
         pc / LINE_BYTES == self.line
@@ -82,7 +81,6 @@ impl Fetch {
         self.line = NO_LINE;
     }
 
-    /// Counts the clocks for the fetch of the instruction or pair at address `pc`.
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
         if pc / LINE_BYTES != self.line || common.is_filling() {

@@ -238,7 +238,6 @@ impl Cpu {
         self.push_sum(sum);
     }
 
-    /// Executes a dual operation whose operands and results are all in single precision.
     #[inline]
     fn single_dual_operation(&mut self, i: &Instruction, route: &Route, from: Operands, leaving: [PipeStage; 2]) {
         let flush = self.flush_to_zero();

@@ -134,7 +134,6 @@ impl FreezeRules {
     }
 }
 
-/// The delays of the freeze table, in a form that the clock can read fast.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Costs {
     enabled: u32,

@@ -34,21 +34,18 @@ impl Number {
     }
 }
 
-/// All scoreboard states that have occurred so far, with their numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbers {
     numbers: FxHashMap<PendingWaits, Number>,
     leftovers: Vec<PendingWaits>,
 }
 
-/// The numbering of scoreboard states, and the current state.
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
     pub(crate) numbers: Box<Numbers>,
     /// Number of the current scoreboard state. `None` if the [`Scoreboard`] itself contains the state, because the
     /// latest clocks were counted instead of reused.
     present: Option<Number>,
-    /// Number of executed instructions whose clocks were reused.
     pub(crate) instructions: u64,
 }
 
@@ -144,7 +141,6 @@ pub(crate) struct WaitedClocks([u16; WaitedClocks::MOST]);
 
 impl WaitedClocks {
     const CAUSE_BITS: u32 = 5;
-    /// Greatest number of causes of delay that a memoized part of a block can have.
     const MOST: usize = 6;
 
     /// Returns the clocks of delay between the profiles `before` and `after`, by cause. Returns `None` if they do not
@@ -178,7 +174,6 @@ impl WaitedClocks {
 #[repr(align(32))]
 pub(crate) struct RememberedClocks {
     run: Run,
-    /// Number of the scoreboard state after the run (a part of a block).
     exit: Number,
     pub(crate) clocks: u16,
     pub(crate) instructions: u16,

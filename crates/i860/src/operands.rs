@@ -17,7 +17,6 @@ pub(crate) struct Operands {
 }
 
 impl Cpu {
-    /// Reads the source operands of a floating-point instruction, alone or in a pair.
     #[inline(always)]
     pub(crate) fn read_operands<'a>(&self, a: &FloatingAction, unit: impl Fn() -> &'a Unit) -> Operands {
         let state = &self.state;

@@ -25,7 +25,6 @@ struct Course<'a> {
     units: usize,
     last: usize,
     accesses: &'a [u32],
-    /// Number of data accesses whose clocks were counted so far.
     accessed: usize,
     /// Position up to which clocks are counted. Each instruction or pair has [`PLACES`] positions.
     at: usize,
@@ -155,7 +154,6 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks of a fetch that misses the instruction cache.
     fn miss<B: Bus>(&mut self, block: &Block, course: &mut Course<'_>, bus: &B) {
         self.write_board();
         let unit = block.unit(course.at / PLACES);

@@ -281,7 +281,6 @@ impl Scoreboard {
 
     // ---- hazards that an instruction leaves
 
-    /// Records the hazards that the executed instruction `d` causes for later instructions.
     #[inline]
     pub(crate) fn retire(&mut self, d: &Decoded, now: u64) {
         match d.arms & self.arms_seen {

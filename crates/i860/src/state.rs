@@ -116,7 +116,6 @@ impl Mode {
         matches!(self, Mode::DualOnce | Mode::Dual)
     }
 
-    /// Returns the pairing mode after a pair whose D bit is `d`.
     pub(crate) fn after_pair(self, d: bool) -> Mode {
         match (self, d) {
             (Mode::DualOnce, false) => Mode::Single,

@@ -5,7 +5,6 @@ use crate::timing::{ChipSizes, Freeze};
 
 const DEPTH: usize = ChipSizes::PAPERS.store_depth as usize;
 const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
-/// Number of 8-byte bus transfers for one cache line.
 const LINE_BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug, Default)]

@@ -148,7 +148,6 @@ pxpl5_sim::parameters::parameter_table! {
     }
 }
 
-/// Prefix of the names of the freeze delays in lists of parameters.
 const FREEZES_PATH: &str = "i860.freezes";
 const DRAM_PATH: &str = "i860.dram";
 

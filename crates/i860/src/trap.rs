@@ -6,7 +6,6 @@ pub enum TrapCause {
     /// A word that does not encode an XR instruction.
     #[error("{word:08x} is not an i860 XR instruction")]
     Illegal {
-        /// The fetched instruction word.
         word: u32,
     },
     /// A pair that does not consist of a floating-point instruction and then a core instruction.

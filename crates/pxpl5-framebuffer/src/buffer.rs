@@ -72,7 +72,6 @@ impl Buffer {
         Arc::make_mut(&mut self.held[place].region)
     }
 
-    /// Records that field `field` shows this buffer.
     pub(crate) fn scan(&mut self, field: PeriodNumber) {
         self.scans.begin(field);
     }

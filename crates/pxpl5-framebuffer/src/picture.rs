@@ -16,7 +16,6 @@ pub(crate) struct Canvas {
     words: Vec<Word>,
 }
 
-/// Successive pixels in one row of a canvas.
 pub(crate) struct CanvasRow<'a>(&'a mut [Word]);
 
 impl Canvas {

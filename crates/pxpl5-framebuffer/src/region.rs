@@ -10,7 +10,6 @@ use std::sync::Arc;
 const MAX_PARTS: usize = (REGION_SIZE * REGION_SIZE).div_ceil(MAX_MESSAGE_WORDS) as usize;
 const NEVER: Time = Time(u64::MAX);
 
-/// A region of pixels, with the arrival time of each of its messages.
 #[derive(Clone, Debug)]
 pub(crate) struct RegionWrite {
     pub(crate) target: CopyTarget,

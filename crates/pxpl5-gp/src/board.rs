@@ -28,9 +28,7 @@ pub enum GpEvent {
     /// The status signal of another board has changed. A status signal carries one number, for example the number of
     /// swaps of a frame buffer. The event belongs to phase `Arrive`.
     Status {
-        /// Ring port of the board whose status signal has changed.
         from: NodeId,
-        /// New value of the status signal.
         value: u64,
     },
     /// The programs of the board continue. They can read all inputs that have arrived at this instant.

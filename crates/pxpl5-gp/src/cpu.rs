@@ -24,7 +24,6 @@ pub(crate) struct Cpu {
 }
 
 impl Cpu {
-    /// Starts CPU work of length `span` for the program of priority `priority`.
     pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
         self.remaining[priority as usize] = Some(span);

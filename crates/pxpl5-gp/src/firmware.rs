@@ -62,7 +62,6 @@ pub(crate) struct ChainLink {
     pub(crate) hold: bool,
 }
 
-/// State that the board shares with its programs.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub(crate) node: NodeId,
@@ -72,11 +71,9 @@ pub(crate) struct Shared {
     pub(crate) memory: Memory,
     /// The i860 that runs code. `None` if all times come from the timing table.
     pub(crate) processor: Option<Box<Processor>>,
-    /// Number of vertices that the programs have transformed since the start of the simulation.
     pub(crate) vertex_transforms: u64,
     /// True if a decision of a program has ever depended on a full backing store of a renderer.
     pub(crate) found_store_full: bool,
-    /// CPU time that was requested so far for the message software.
     pub(crate) message_software: Span,
     /// CPU time that was requested so far for answers to messages.
     pub(crate) answer_work: Span,
@@ -112,7 +109,6 @@ pub(crate) struct Wait {
     pub(crate) ended_by: Cause,
 }
 
-/// A kind of event that can end the wait of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cause {
     /// Work on the board's CPU has ended.

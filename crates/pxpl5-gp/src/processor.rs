@@ -69,7 +69,6 @@ pub enum ProcessorFault {
     #[error("graphics processor at node {}: no memory for {words} words at {address:#010x}", gp.0)]
     Unmapped {
         gp: NodeId,
-        /// Address of the first word of the access.
         address: u32,
         words: usize,
     },
@@ -79,7 +78,6 @@ pub enum ProcessorFault {
         gp: NodeId,
         /// Bin context (set of bins, 0 or 1) that requested memory.
         context: u8,
-        /// Number of bytes that the context requested.
         needed_bytes: u32,
         /// Number of bytes that are free for the context. The free range of context 0 ends at context 1 or at the end
         /// of memory. The free range of context 1 begins after context 0 or after the program's data.
@@ -146,7 +144,6 @@ pub struct Processor {
     cpu: Cpu,
     memory: Memory,
     loaded: Option<Arc<Program>>,
-    /// True if memory still holds the loaded program unchanged.
     is_as_loaded: bool,
     /// Decoded programs with their memoized clocks. Several boards share this store.
     decoded: Rc<RefCell<DecodedPrograms>>,
@@ -155,7 +152,6 @@ pub struct Processor {
     /// Address range that is reserved for the output of each bin context (set of bins).
     outputs: [Option<Range<u32>>; 2],
     breakpoints: BTreeSet<u32>,
-    /// Breakpoint hits since the last [`Processor::take_hits`].
     hits: Vec<BreakpointHit>,
 }
 
@@ -422,7 +418,6 @@ impl Processor {
         Ok(())
     }
 
-    /// Returns true if memory holds a program exactly as it was loaded.
     fn holds(&self, program: &Program) -> bool {
         let Range { start, end } = extent(program);
         self.memory.0.bytes().get(start as usize..end as usize) == Some(program.bytes.as_slice())

@@ -38,7 +38,6 @@ const RX_COUNT: u32 = 8;
 const RX: u32 = WINDOW + 256;
 /// Size of a receive buffer in bytes. It holds a header of two words and the longest message, in whole cache lines.
 const BUFFER_BYTES: u32 = 4608;
-/// Number of descriptors for outgoing messages in chains.
 const TX_COUNT: u32 = 256;
 const TX: u32 = WINDOW + 0x1000;
 const DESCRIPTOR_BYTES: u32 = 16;

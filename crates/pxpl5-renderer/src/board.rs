@@ -22,7 +22,6 @@ pub enum RendererEvent {
     Announce {
         /// Message with commands for the FIFO. Words that are not commands are discarded and counted as illegal.
         message: Message,
-        /// Time at which the message's first word is on the channel.
         first_word_at: Time,
     },
     /// The controller starts a copy command, which copies a region to a frame buffer.
@@ -80,7 +79,6 @@ pub struct Renderer {
     caches_empty_regions: bool,
     logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
-    /// Copy command whose region is being sent to a frame buffer.
     copying: Option<CopyOrder>,
     /// Copies that go through the backing store, but whose regions are still in pixel memory. The first of these
     /// regions can be on its way to the backing store.

@@ -113,7 +113,6 @@ impl StartTimes {
     }
 }
 
-/// The FIFO and the controller that executes its commands. Sizes are in words.
 #[derive(Debug)]
 pub(crate) struct InputFifo {
     depth: u64,
@@ -135,7 +134,6 @@ pub(crate) struct InputFifo {
     last_block: Block,
     /// Start and end of the latest interval in which the controller waited for commands.
     last_wait: (Time, Time),
-    /// Record of the words that enter and leave the FIFO. `None` if recording is off.
     watched: Option<Watched>,
 }
 
@@ -248,7 +246,6 @@ impl InputFifo {
         self.advance()
     }
 
-    /// Ends the running blocking command (the copy of a region) at time `now`.
     pub(crate) fn resume(&mut self, now: Time) -> Progress {
         self.free_at = Some(now);
         self.blocked += now.since(self.last_block.start);

@@ -17,7 +17,6 @@ pub struct ArrayPool {
 
 struct ArrayAndWords {
     array: Lanes,
-    /// Buffer for the words of command lists. The thread reuses the buffer to avoid allocations.
     words: Vec<Word>,
 }
 

@@ -121,7 +121,6 @@ impl Lanes {
 struct Drawing<'a> {
     array: &'a mut Lanes,
     words: &'a mut Vec<Word>,
-    /// Regions copied so far, or the fault that ended the drawing.
     outputs: Result<Vec<OutputRegion>, ArrayFault>,
 }
 

@@ -94,7 +94,6 @@ impl PresentVectors {
         Self(if wanted.present() { wanted } else { Vectors::Portable })
     }
 
-    /// Runs the loop `kernel`, in the version that is compiled for this vector unit.
     #[inline]
     pub(crate) fn run<K: VectorKernel>(self, kernel: K) -> K::Output {
         match self.0 {

@@ -101,7 +101,6 @@ impl RingChannels {
         self.due.iter().rev().filter_map(|(end, channel)| Some((*end, self.flight(*channel)?)))
     }
 
-    /// Returns the time at which the message on `channel` ends, if this time is known.
     pub(crate) fn end(&self, channel: usize) -> Option<Time> {
         Some(self.ends_at[channel]).filter(|end| *end != UNKNOWN)
     }
@@ -134,7 +133,6 @@ impl RingChannels {
         self.flights.iter().flatten()
     }
 
-    /// Returns the message on `channel` if its end is not known yet.
     pub(crate) fn unanswered(&self, channel: usize) -> Option<&MessageInFlight> {
         self.flight(channel).filter(|_| self.ends_at[channel] == UNKNOWN)
     }

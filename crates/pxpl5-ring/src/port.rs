@@ -91,7 +91,6 @@ pub enum RingError {
     Length {
         r#source: NodeId, // Raw, because `thiserror` takes a plain `source` for another error.
         destination: NodeId,
-        /// Length of the message in words, without the overhead.
         words: u32,
     },
     /// A receiver answered without an announcement, or answered an announcement twice.
@@ -115,7 +114,6 @@ pub enum RingError {
         what: &'static str,
         /// The time, in picoseconds, that is not a multiple of the time step.
         found_ps: u64,
-        /// Time step of the reference model.
         tick: Span,
     },
     /// The run of the reference model ended before all messages were delivered.
@@ -123,7 +121,6 @@ pub enum RingError {
     Unfinished {
         /// Number of messages whose last word was accepted.
         delivered: usize,
-        /// Number of all messages.
         of: usize,
         /// Simulated time at which the run ended.
         until: Time,

@@ -95,7 +95,6 @@ pub struct SteppedRing<'a, R> {
     carried: Vec<Option<CarriedMessage>>,
 }
 
-/// A message on a channel, with its remaining word times.
 #[derive(Clone, Copy, Debug)]
 struct ChannelSlots {
     message: usize,

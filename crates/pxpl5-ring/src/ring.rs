@@ -288,7 +288,6 @@ impl Ring {
         self.channels.ends().find(|(_, flight)| waited_for(flight)).map(|(end, _)| end)
     }
 
-    /// Returns true if the first message of a queue waits because no channel is free.
     fn is_channel_missing(&self) -> bool {
         (!self.heads.is_empty() && !self.channels.has_free())
             || (self.heads_to_fifos > 0 && self.to_fifos >= self.timing.fifo_channels)

@@ -19,7 +19,6 @@ struct Open {
 }
 
 impl Open {
-    /// Begins the next branch of the `.if`. Its condition has the value `holds`.
     const fn branch(&mut self, holds: bool) {
         self.selected = self.outer && holds && !self.done;
         self.done |= self.selected;

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-/// Values of labels and of `.equ` constants, by name.
 pub(super) type Symbols = BTreeMap<String, i64>;
 
 const DEPTH: u32 = 64;

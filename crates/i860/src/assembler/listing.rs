@@ -55,7 +55,6 @@ impl Program {
 
 struct Rows<'a> {
     text: String,
-    /// Labels that are not listed yet, sorted by address.
     labels: &'a [(String, u32)],
     source: Vec<&'a str>,
     /// Source line number of the last row in the listing.

@@ -47,7 +47,6 @@ fn need_integer(text: &str) -> Result<u8, String> {
     integer_register(text).ok_or_else(|| format!("expected an integer register, found `{text}`"))
 }
 
-/// Parses the name of a floating-point register for an operand of `bytes` bytes.
 fn need_floating(text: &str, bytes: u8) -> Result<u8, String> {
     let n = register_number(text, 'f').ok_or_else(|| format!("expected a floating-point register, found `{text}`"))?;
     // A register pair or quad must begin at a multiple of its length.

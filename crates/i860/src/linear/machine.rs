@@ -47,7 +47,6 @@ pub(super) struct Name {
     pub(super) unit: Unit,
     pub(super) mnemonic: &'static str,
     pub(super) result: Option<Width>,
-    /// Number of source operands, without a memory address.
     pub(super) sources: usize,
     pub(super) addresses: bool,
     /// Number of clocks from the issue of the operation until another instruction can use the result without a freeze.

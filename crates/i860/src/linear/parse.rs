@@ -30,7 +30,6 @@ pub(super) struct Operation {
 }
 
 impl Operation {
-    /// Iterates over the indices of the operations whose values this operation reads.
     pub(super) fn reads(&self) -> impl Iterator<Item = usize> {
         let base = self.address.iter().map(|(_, base)| base);
         self.sources.iter().chain(base).filter_map(|source| match source {

@@ -185,7 +185,6 @@ pub(super) trait Evaluator {
 pub(super) trait WholeTrees: Evaluator {
     type Coefficients;
 
-    /// Simulates the adder trees for the first `bits` bits of the expression.
     fn run_trees<V: SimdVector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
 }
 

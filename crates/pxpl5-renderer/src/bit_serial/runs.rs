@@ -223,7 +223,6 @@ fn wraps(e: &Linear) -> bool {
 /// Output bits of the adder trees of one tile. For each clock, there is one word for each expression of the instruction sequence.
 struct TileStreams {
     streams: LinearStreams,
-    /// Number of expressions whose adder trees were simulated so far.
     ready: usize,
 }
 

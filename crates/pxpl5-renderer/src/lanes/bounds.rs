@@ -249,7 +249,6 @@ fn small(value: f64) -> i32 {
     (value + UNIT).to_bits() as i32
 }
 
-/// Returns the largest value of an expression at the pixels of the array.
 #[inline(always)]
 fn largest(e: &Linear) -> i64 {
     let [a, b, c] = [e.a, e.b, e.c].map(i64::from);

@@ -36,7 +36,6 @@ impl Ellipse {
         self.rows.clone()
     }
 
-    /// Returns the columns of row `row` at which the quadratic expression can be positive.
     #[inline(always)]
     pub(super) fn columns(&self, row: usize) -> Range<usize> {
         let Some(q) = &self.quadratic else { return 0..SIZE };

@@ -45,7 +45,6 @@ impl<const N: usize> Template<N> {
     }
 }
 
-/// Templates and execution times of all commands that the array executes in one step.
 #[derive(Clone, Debug)]
 pub(super) struct Templates {
     pub(super) clear: Option<Template<CLEAR_WORDS>>,
