@@ -88,8 +88,8 @@ pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
     if flush && result.is_subnormal() { result.to_bits() & 0x8000_0000 } else { result.to_bits() }
 }
 
-/// Computes one floating-point operation on bit patterns. The operands are in double precision if `source` (the S bit)
-/// is true, and the result is in double precision if `result` (the R bit) is true.
+/// Computes one floating-point operation on bit patterns. If `source` (the S bit) is true, the operands are in double
+/// precision. If `result` (the R bit) is true, the result is in double precision.
 #[inline]
 pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result: bool, flush: bool) -> PipeStage {
     if !source && !result {

@@ -5,8 +5,8 @@ use crate::timing::ChipSizes;
 /// A set-associative tag array with pseudo-random replacement. All sizes of the array are powers of two.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tags<const SETS: usize, const WAYS: usize, const LINE_BYTES: u32> {
-    /// Tags of all sets. A tag is the address of a cache line with [`VALID`] and [`DIRTY`] in its low bits, or 0 if a
-    /// way (place in a set) is empty.
+    /// Tags of all sets. A tag is the address of a cache line with [`VALID`] and [`DIRTY`] in its low bits. It is 0 if
+    /// the way (place in a set) is empty.
     sets: Box<[[u32; WAYS]; SETS]>,
     /// Number of changes to the array. While this number stays the same, the array contains the same cache lines.
     changes: u64,

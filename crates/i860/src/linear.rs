@@ -46,8 +46,8 @@
 //! schedule runs out of registers.
 //!
 //! An operation without operands pushes a pipe (a *drain*) in two cases. In the first case, no operation can be issued.
-//! In the second case, the path of a value in the pipe is longer than the path of the best operation by more than the
-//! *eagerness*. An operation that can be a dual operation also pushes the other pipe, if no result is lost.
+//! In the second case, a value in the pipe has a longer path than the best operation, by more than the *eagerness*. An
+//! operation that can be a dual operation also pushes the other pipe, if no result is lost.
 //!
 //! The scheduler respects the rules of the freeze table. The scheduled code therefore runs without freezes if all
 //! accesses hit the caches. If the parameter *shake* is not 0, the scheduler changes the priorities at random by small

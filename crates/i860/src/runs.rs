@@ -3,9 +3,9 @@
 //! runs, are counted each time.
 //!
 //! A *place* is a position in a block: three times the index of an instruction or pair, plus 1 after its fetch or plus
-//! 2 after its issue. A run ends before an access that needs the bus, before a cache line that is not in the
-//! instruction cache, or at the end of the executed code. After an access that needs the bus, the next run begins with
-//! the scoreboard after this access.
+//! 2 after its issue. A run ends before an access that needs the bus, or before a cache line that is not in the
+//! instruction cache. Otherwise, it ends at the end of the executed code. After an access that needs the bus, the next
+//! run begins with the scoreboard after this access.
 
 use crate::block::{AccessingUnit, Block};
 use crate::bus::Bus;
@@ -100,8 +100,8 @@ impl Clock {
         }
     }
 
-    /// Counts the clocks up to the end of the current run (a part of the block), and the clocks of the access or cache
-    /// miss that ends the run.
+    /// Counts the clocks up to the end of the current run (a part of the block). Also counts the clocks of the access
+    /// or cache miss that ends the run.
     #[inline]
     fn next_run<B: Bus>(&mut self, block: &mut Block, course: &mut Course<'_>, entry: Number, whole: bool, bus: &B) {
         let number = course.at / PLACES;

@@ -91,8 +91,8 @@ impl Buffer {
         (older != place).then_some(older)
     }
 
-    /// Returns the number of lines of the region with index `older` that the beam had not shown completely when the
-    /// region with index `newer` overwrote them. Both regions fill the same pixels.
+    /// Returns the number of lines that the beam had not shown completely when a newer region overwrote them. `older`
+    /// and `newer` are the indices of the overwritten region and of the newer region, which fill the same pixels.
     pub(crate) fn lines_never_shown(&self, older: usize, newer: usize, video: &Video, word: Span) -> u64 {
         let [older, newer] = [older, newer].map(|place| self.region(place));
         self.scans.lines_never_shown(&Overwritten { older, newer, video, word })

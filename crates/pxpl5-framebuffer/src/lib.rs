@@ -45,9 +45,8 @@
 //! | first visible line of an odd field | 22.5 lines after its retrace |
 //! | pixel `x` of a line | (140 + `x`) pixel periods of 11/135 us after its start |
 //!
-//! Odd fields begin in the middle of a line, which interlaces the two fields on a screen. The first line of an odd
-//! field is scanned half the time of a line later in its field than the first line of an even field. It therefore
-//! appears half a line pitch lower.
+//! Odd fields begin in the middle of a line, which interlaces the two fields on a screen. In an odd field, the first
+//! line is scanned half a line time later than in an even field. It therefore appears half a line pitch lower.
 //!
 //! **Not modelled:**
 //!

@@ -41,8 +41,8 @@ impl Scans {
     /// Returns true if a fast test proves that the beam has shown the older region completely. The test treats the even
     /// rows and the odd rows of the region as two groups.
     ///
-    /// For each group, a field must show the first and the last pixel after the write of the older region and before
-    /// the write of the newer region. The beam then also shows the other pixels of the group between these writes.
+    /// For each group, a field must show the first and the last pixel between the write of the older region and the
+    /// write of the newer region. The beam then also shows the other pixels of the group between these writes.
     fn shows_all(&self, pair: &Overwritten<'_>) -> bool {
         // The older region must be complete before a field shows it.
         let Some(written) = pair.older.last_at() else { return false };
@@ -84,8 +84,8 @@ fn corners(region: &RegionWrite, [first, last]: [u32; 2]) -> impl Iterator<Item 
 /// Iterates over the first and the last pixel of each part of a row that arrived in one message. Each item has the
 /// pixel and the arrival time of its word. The region must be complete.
 ///
-/// If the beam passes these two pixels in time, it also passes the pixels between them in time, because the beam and
-/// the words of a message advance at constant rates.
+/// The beam and the words of a message advance at constant rates. If the beam passes these two pixels in time, it
+/// therefore also passes the pixels between them in time.
 fn ends(region: &RegionWrite, row: u32, word: Span) -> impl Iterator<Item = ([u32; 2], Time)> + '_ {
     region.row(row, word).flat_map(move |segment| {
         [0, segment.length - 1].map(|i| ([segment.x + i, segment.y], segment.arrival(i, word)))

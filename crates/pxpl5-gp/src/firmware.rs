@@ -330,8 +330,8 @@ impl Gp {
         self.shared.borrow_mut().found_store_full = true;
     }
 
-    /// Records that a stage begins now, for observers of the run. `surface` is the picture of an eye or another surface
-    /// for which the stage draws, or `None` if the stage does not draw one surface at a time.
+    /// Records that a stage begins now, for observers of the run. `surface` is the surface for which the stage draws,
+    /// for example the picture of an eye. It is `None` if the stage does not draw one surface at a time.
     pub fn begin(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, StageEdge::Begin, self.now());
     }

@@ -135,8 +135,8 @@ const LINK: usize = 1;
 /// % of the calls have the same code and inputs as an earlier call. While the head moves, no call has. These numbers
 /// are from 48 fields each: 188 calls of Slats with 110 triangles, and 2,800 calls of Rendering Control with the
 /// aircraft scene. Even calls with equal inputs differ in the content of the caches, because the replacement of lines
-/// is pseudo-random, and in the time to the next memory refresh. The model can memoize the clocks of short sequences of
-/// instructions ([`i860::Config::memoise`]).
+/// is pseudo-random. They also differ in the time to the next memory refresh. The model can memoize the clocks of short
+/// sequences of instructions ([`i860::Config::memoise`]).
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,

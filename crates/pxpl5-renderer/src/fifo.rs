@@ -236,7 +236,7 @@ impl InputFifo {
         self.in_transit.push_back(work);
     }
 
-    /// Computes the arrival of a message. The message consists of the commands that calls of [`Self::take`] have added
+    /// Computes the arrival of a message. The message consists of the commands that calls of `take` have added
     /// since the previous message.
     ///
     /// `begins` is the time at which the first word of the message is on the channel.

@@ -10,9 +10,9 @@
 //! # Words
 //!
 //! The first word of an instruction is `opcode << 24 | modifier << 16 | operand`. An operand encodes a *bit field* of
-//! pixel memory in 16 bits. Bit 15 is set if the bit field is signed. Bit 14 is set if the address is relative to the
-//! first bit of the selected context (the part of pixel memory that holds one region). Bits 13..8 are width - 1. Bits
-//! 7..0 are the address of the least significant bit. Unused bits must be zero.
+//! pixel memory in 16 bits. Bit 15 is set if the bit field is signed. Bit 14 is set if the address counts from the
+//! first bit of the selected context (the part of pixel memory with the region). Bits 13..8 are width - 1. Bits 7..0
+//! are the address of the least significant bit. Unused bits must be zero.
 //!
 //! | opcode | instruction | words | bit clocks | effect |
 //! |---|---|---|---|---|

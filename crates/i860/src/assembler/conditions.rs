@@ -73,8 +73,8 @@ pub(crate) fn select(source: &str) -> Result<Cow<'_, str>, (usize, String)> {
     }
 }
 
-/// Stores the constant that the line `code` defines. A value with an unknown name is ignored, because the line can
-/// belong to a linear stretch or use a label whose address is not known yet.
+/// Stores the constant that the line `code` defines. Ignores a value with an unknown name. Such a line can belong to a
+/// linear stretch, or use a label whose address is not known yet.
 fn define(code: &str, constants: &mut Symbols) {
     let equ = code.strip_prefix(".equ").or_else(|| code.strip_prefix(".set"));
     let parts = equ.map_or_else(|| code.split_once('='), |rest| rest.split_once(','));

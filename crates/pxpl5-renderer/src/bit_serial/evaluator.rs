@@ -80,7 +80,7 @@ impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
         Self::new(in_lanes(coefficients), vectors)
     }
 
-    /// Multiplies the coefficient of each tree by the index of each column or row (or by the square of the index), adds
+    /// Multiplies the coefficient of each tree by the index of each column or row (or by the square of the index). Adds
     /// `stream`, and returns bit `t` of the sums. The trees keep carries between calls, so callers must pass `t` = 0,
     /// 1, 2 and so on.
     #[inline(always)]

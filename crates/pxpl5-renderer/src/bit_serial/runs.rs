@@ -23,7 +23,7 @@ use crate::isa::LINEAR_BITS;
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 
-/// Largest number of expressions in an [`InstructionRun`]. The widest vector can hold the adder trees of eight.
+/// Largest number of expressions in an `InstructionRun`. The widest vector can hold the adder trees of eight.
 pub(super) const EXPRESSIONS: usize = 8;
 
 const LEVELS: usize = 5;
@@ -47,7 +47,7 @@ pub(super) struct RunStep {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BitOrigin {
-    /// Index of an expression in [`InstructionRun::expressions`].
+    /// Index of an expression in `InstructionRun::expressions`.
     Expression(usize),
     Constant(ConstantBits),
 }
@@ -220,7 +220,7 @@ fn wraps(e: &Linear) -> bool {
     corners.iter().any(|corner| i32::try_from(*corner).is_err())
 }
 
-/// Output bits of the adder trees of one tile. For each clock, there is one word for each expression of the instruction sequence.
+/// Output bits of the adder trees of one tile. For each clock, there is one word for each expression.
 struct TileStreams {
     streams: LinearStreams,
     ready: usize,

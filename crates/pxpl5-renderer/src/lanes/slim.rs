@@ -28,8 +28,8 @@ pub(super) struct SlimTriangles {
 impl SlimTriangles {
     /// Finds the triangles of a batch that are at most four columns wide.
     ///
-    /// The edge expressions have the upper left pixel of the array as origin, and the planes have the upper left pixel
-    /// of the picture as origin. `left` and `top` are the coordinates of the array's upper left pixel in the picture.
+    /// The origin of the edge expressions is the upper left pixel of the array. The origin of the planes is the upper
+    /// left pixel of the picture. `left` and `top` are the coordinates of the array's upper left pixel in the picture.
     #[inline(always)]
     pub(super) fn among<V: SimdVector>(
         boxes: &Boxes,
